@@ -1,0 +1,21 @@
+// Wall-clock time of a stage.
+#pragma once
+#include <chrono>
+#include <cstddef>
+
+namespace umbrick {
+
+class Stopwatch {
+ public:
+  double elapsedMs() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Highest resident memory of this process so far, bytes; 0 where the system does not tell.
+std::size_t peakMemoryBytes();
+
+}  // namespace umbrick

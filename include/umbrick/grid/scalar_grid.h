@@ -1,0 +1,35 @@
+// One scalar grid, as 32-bit float, with its name and its affine transform.
+#pragma once
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/mat4x4.hpp>
+#include <string>
+
+#include "umbrick/core/box.h"
+
+namespace umbrick {
+
+struct ScalarGrid {
+  openvdb::FloatGrid::ConstPtr grid;
+  std::string name;
+  double conversionError = 0;  // largest |stored - float| when the file held double or integers beyond 24 bits
+
+  glm::dmat4 indexToWorld() const;
+  /// Bounds of the active voxels' centres; tiles included. Empty for an empty grid.
+  IndexBox activeBox() const;
+  /// World bounds of activeBox(), of its eight corners.
+  Box worldBounds() const;
+};
+
+/// Reads a grid of a .vdb file.
+/// @param selector  empty: the only scalar grid, or else the one called "density"; "name"; "name[1]": the second of
+/// that name
+/// @throw IoError          missing, a directory, truncated, corrupt or not a .vdb file
+/// @throw InvalidArgument  no such grid (lists those there are), not a scalar grid (names its type), or a transform
+/// that
+///                         is not affine (frustum)
+ScalarGrid readScalarGrid(const std::filesystem::path& path, const std::string& selector = {});
+
+}  // namespace umbrick

@@ -1,0 +1,40 @@
+// OpenEXR files with layers and text attributes.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "umbrick/image/image.h"
+
+namespace umbrick {
+
+/// One layer of a file. The main layer has an empty name; its channels are R, G, B, A. A layer of one channel is stored
+/// as the channel `name` ("depth" as Z when it is called "Z"); of several as `name.R`, `name.G`, ...
+struct ImageLayer {
+  std::string name;
+  Image image;
+};
+
+enum class ExrPixel { half, float32 };
+
+struct ExrOptions {
+  ExrPixel pixel = ExrPixel::half;              // "Z" is always float32
+  std::map<std::string, std::string> metadata;  // string attributes of the header, e.g. {"umbrick.scene", json}
+};
+
+struct ExrFile {
+  std::vector<ImageLayer> layers;  // the main layer first
+  std::map<std::string, std::string> metadata;
+};
+
+/// Writes all layers, of one size, as one part; scan lines from the top as the format wants. Nothing half-written.
+/// Half clamps finite values beyond 65504 to it.
+/// @throw InvalidArgument  no layers, sizes that differ, two layers of one name
+/// @throw IoError          names the file and what failed
+void writeExr(const std::filesystem::path& path, const std::vector<ImageLayer>& layers, const ExrOptions& options = {});
+
+/// @throw IoError  missing, truncated, or not an EXR file that holds scan lines
+ExrFile readExr(const std::filesystem::path& path);
+
+}  // namespace umbrick

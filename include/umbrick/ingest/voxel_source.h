@@ -1,0 +1,36 @@
+// Where voxels come from: a stream of slabs with spacing and orientation.
+#pragma once
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <map>
+#include <span>
+#include <string>
+
+namespace umbrick {
+
+enum class VoxelType { u8, i8, u16, i16, u32, i32, f32, f64 };
+
+struct VolumeInfo {
+  std::string name;            // what messages call the source, usually its file name
+  glm::i64vec3 dims{0};        // voxels along x (fastest), y, z
+  glm::dmat4 indexToWorld{1};  // voxel centres at integers
+  VoxelType type = VoxelType::u8;
+  std::map<std::string, std::string> metadata;
+};
+
+/// Slabs of a dense volume, read in order of z.
+class VoxelSource {
+ public:
+  virtual ~VoxelSource() = default;
+  const VolumeInfo& info() const { return info_; }
+  /// The next `count` slices, x fastest, as 32-bit float: out.size() == dims.x * dims.y * count.
+  /// @return the largest error of the conversion to float in this slab (0 but for 32-bit integers and f64)
+  /// @throw IoError  the file ends early (expected and found bytes) or cannot be decoded
+  virtual double readSlab(std::int64_t count, std::span<float> out) = 0;
+
+ protected:
+  VolumeInfo info_;
+};
+
+}  // namespace umbrick

@@ -1,0 +1,104 @@
+// Everything that a picture depends on. The same scene drives every renderer.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "umbrick/core/camera.h"
+#include "umbrick/optics/transfer_function.h"
+
+namespace umbrick {
+
+/// What light is scattered at a point: `emission` all of the ambient radiance, `cone` the share that a cone around the
+/// slice normal lets in.
+enum class Model { emission, cone };
+/// How the share is computed. dos: directional occlusion shading, Schott et al. 2009,
+/// doi:10.1111/j.1467-8659.2009.01464.x
+enum class Method { dos };
+
+/// How a slab between two slices is integrated.
+enum class Quadrature {
+  preintegrated,  // value taken as linear between front and back of the slab
+  midpoint,       // the medium at the middle of the slab, for all of it
+};
+
+struct OcclusionOptions {
+  double aperture = 1.0471975511965976;  // theta: half-angle of the cone, rad, in [0, pi/2)
+  int footprint = 3;                     // n: n x n samples over the cone's footprint on the previous slice, 1 to 16
+  int passes = 1;                        // Algorithm 1 of the paper: 2, two passes a slice; 1, multiple render targets
+  int algorithm = 3;                     // 2: exact distance per sample; 3: slice distance for every sample
+  bool perspectiveCorrection = true;     // Eqs. 12-15 of the paper
+  int bits = 32;                         // of the occlusion buffer, 16 or 32
+  bool operator==(const OcclusionOptions&) const = default;
+};
+
+struct SamplingOptions {
+  double spacing = 0.5;         // d: distance of slices along the view direction
+  bool spacingInVoxels = true;  // spacing counts the shortest voxel edge, else world units
+  Quadrature quadrature = Quadrature::preintegrated;
+  int bits = 32;             // of the eye buffer, 16 or 32
+  double saturation = 1e-3;  // pixels with less transmittance than this are shaded no more; 0: never
+  int tableSize = 256;       // entries of the transfer table along an axis, 2 to 4096
+  bool operator==(const SamplingOptions&) const = default;
+};
+
+struct BrickSettings {
+  bool bricked = true;             // false: the whole volume as one texture
+  int interior = 32;               // owned voxels along a brick's edge: 8 to 256, a multiple of 8
+  bool culling = true;             // skip bricks that the transfer function makes invisible
+  std::string format = "auto";     // texel: auto (smallest exact one), unorm8, unorm16, half, float32
+  std::uint64_t budgetMiB = 2048;  // of textures that hold voxels; larger volumes stream through a pool of this size
+  bool operator==(const BrickSettings&) const = default;
+};
+
+/// Keeps the half-space dot(xyz, point) + w >= 0, world units.
+using ClipPlane = glm::dvec4;
+
+struct VolumeReference {
+  std::filesystem::path file;
+  std::string grid;  // empty, "name" or "name[1]"
+  bool operator==(const VolumeReference&) const = default;
+};
+
+/// A camera given as angles around the volume; see orbitCamera.
+struct Orbit {
+  double azimuth = 0, elevation = 0;  // rad
+  bool operator==(const Orbit&) const = default;
+};
+
+struct Scene {
+  VolumeReference volume;
+  std::optional<TransferFunction> transfer;  // windowed and scaled already
+  Camera camera;
+  std::optional<Orbit> orbit = Orbit{};  // when set, eye, lookAt, up and viewHeight follow from the volume
+  Model model = Model::emission;
+  Method method = Method::dos;
+  glm::dvec3 ambient{1};                 // L_a, radiance from every direction
+  std::optional<glm::dvec3> background;  // L_b; when set the picture is opaque (alpha 1)
+  SamplingOptions sampling;
+  OcclusionOptions occlusion;
+  std::vector<ClipPlane> clipPlanes;
+  std::optional<Box> clipBox;  // world
+  BrickSettings bricks;
+};
+
+/// Reads a scene; what it leaves out keeps its default, what it does not know is an error. File names are relative to
+/// the scene's folder.
+/// @param source  what messages call the text, usually its file name
+/// @throw IoError  malformed JSON, or a field of the wrong kind or out of range: names source, line, column and field
+Scene parseScene(std::string_view text, const std::string& source, const std::filesystem::path& folder = {});
+/// @throw IoError
+Scene readScene(const std::filesystem::path& path);
+/// JSON that parses back to an equal scene.
+std::string printScene(const Scene& scene);
+
+/// Checks every field against its range, however the scene was made.
+/// @throw InvalidArgument  names the field, what it is and what it may be
+void validateScene(const Scene& scene);
+
+}  // namespace umbrick

@@ -1,0 +1,48 @@
+# Rules that every target shares: warnings, sanitizers, rooms, embedded text.
+
+# Flags of every target of the project, kept off its users.
+function(umbrick_flags target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+  # GCC 12 sees overlaps that are not there in std::string (its bug 105329).
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+  # The same source line gives the same number wherever it is inlined: neighbouring bricks must agree to the bit.
+  target_compile_options(${target} PRIVATE -ffp-contract=off)
+  if(UMBRICK_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(UMBRICK_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=undefined
+                                             -fno-omit-frame-pointer)
+    target_link_options(${target} PRIVATE -fsanitize=address,undefined)
+  endif()
+endfunction()
+
+# A room: its sources become part of the library.
+#   umbrick_room(core SOURCES a.cpp b.cpp)
+function(umbrick_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES" ${ARGN})
+  list(TRANSFORM ROOM_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
+  target_sources(umbrick PRIVATE ${ROOM_SOURCES})
+endfunction()
+
+# Text files that become part of the library: writes a .cpp that defines
+#   std::string_view umbrick::FUNCTION(std::string_view name)   the text of one file, empty if there is none
+#   std::vector<std::string> umbrick::FUNCTIONNames()           the names there are
+# The name of a file is its path below BASE.
+function(umbrick_embed function)
+  cmake_parse_arguments(EMBED "" "BASE" "FILES" ${ARGN})
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
+  list(TRANSFORM EMBED_FILES PREPEND ${EMBED_BASE}/ OUTPUT_VARIABLE paths)
+  string(REPLACE ";" "," names "${EMBED_FILES}")
+  add_custom_command(
+    OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} -DFUNCTION=${function} -DBASE=${EMBED_BASE} -DNAMES=${names} -DOUTPUT=${output}
+            -P ${PROJECT_SOURCE_DIR}/src/embed.cmake
+    DEPENDS ${paths} ${PROJECT_SOURCE_DIR}/src/embed.cmake
+    VERBATIM)
+  # A target of its own, since the library is declared in another folder than this rule.
+  add_custom_target(umbrick_${function} DEPENDS ${output})
+  set_source_files_properties(${output} TARGET_DIRECTORY umbrick PROPERTIES GENERATED TRUE)
+  add_dependencies(umbrick umbrick_${function})
+  target_sources(umbrick PRIVATE ${output})
+endfunction()

@@ -1,0 +1,1 @@
+umbrick_tests(core camera_test.cpp pending_file_test.cpp)

@@ -1,0 +1,17 @@
+// A sub-command of the umbrick program: declares its options, then runs.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace umbrick::tools {
+
+/// What a sub-command does once its options are parsed; the exit status.
+using Run = std::function<int()>;
+
+/// Wrong usage that CLI11 cannot see, such as options that exclude each other: exit status 2.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Each in the file of its name. Adds a sub-command with its options to `app`.
+}  // namespace umbrick::tools

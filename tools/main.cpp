@@ -1,0 +1,39 @@
+// The umbrick program: one sub-command per file beside this one.
+#include <exception>
+#include <iostream>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+
+namespace {
+using namespace umbrick::tools;
+
+// Exit status: 0 success, 1 a failed job or comparison, 2 wrong usage.
+int runProgram(int argc, char** argv) {
+  CLI::App app{"Sparse volumes: convert, inspect, render, check.", "umbrick"};
+  app.set_version_flag("--version", "umbrick " UMBRICK_VERSION);
+  app.require_subcommand(1);
+  std::vector<std::pair<CLI::App*, Run>> commands;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error, std::cout, std::cerr) == 0 ? 0 : 2;
+  }
+  for (const auto& [command, run] : commands)
+    if (command->parsed()) return run();
+  return 2;
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return runProgram(argc, argv);
+  } catch (const umbrick::tools::UsageError& error) {
+    std::cerr << "umbrick: " << error.what() << '\n';
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "umbrick: " << error.what() << '\n';
+    return 1;
+  }
+}
