@@ -1,0 +1,1 @@
+umbrick_tests(optics medium_test.cpp)

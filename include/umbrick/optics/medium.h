@@ -1,0 +1,21 @@
+// The maths of light in a medium that CPU and GPU share: the text of these functions is in shaders/optics.
+// sigma_t in 1/world unit, lengths in world units, angles in radians.
+#pragma once
+
+namespace umbrick {
+
+/// exp(-sigma_t ds).
+float transmittance(float sigma_t, float ds);
+/// (1 - exp(-x)) / x, 1 at x = 0; relative error below 1e-6 for x >= 0.
+float slabFactor(float x);
+/// 1 - exp(-x) without cancellation; relative error below 1e-6 for x >= 0.
+float oneMinusExp(float x);
+
+/// Solid angle of a cone of half-angle `aperture`, sr.
+float coneSolidAngle(float aperture);
+/// Uniform phase function on the cone, in 1/sr. @pre aperture in (0, pi/2)
+float conePhase(float cosAngle, float aperture);
+/// ds tan(aperture): the radius of the cone's footprint. Schott et al. 2009, Eq. 11
+float coneRadius(float ds, float aperture);
+
+}  // namespace umbrick

@@ -1,0 +1,110 @@
+// JSON that knows where it stands: a wrong value is reported with file, line, column and path.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace umbrick {
+class JsonValue;
+
+/// A parsed text. Values are kept in one flat list, so nesting of any depth needs no stack.
+class JsonDocument {
+ public:
+  /// @param source  what messages call the text, usually its file name
+  /// @throw IoError  not JSON (NaN, Infinity and comments are not), or an object with one key twice
+  JsonDocument(std::string_view text, std::string source);
+  JsonDocument(const JsonDocument&) = delete;
+  JsonDocument& operator=(const JsonDocument&) = delete;
+
+  /// Lives as long as the document, as do the values below it.
+  JsonValue root() const;
+  /// The value at a path such as `points[2].sigma_t`, or, where the text leaves it out, the closest one that contains
+  /// it.
+  JsonValue closest(std::string_view path) const;
+
+ private:
+  friend class JsonValue;
+  friend class JsonBuilder;
+  enum class Kind { null, boolean, number, string, array, object };
+  struct Node {
+    Kind kind = Kind::null;
+    std::size_t begin = 0;  // of the value's text: bytes from the start
+    std::size_t parent = 0;
+    std::string key;  // in the parent, if that is an object
+    double number = 0;
+    bool boolean = false;
+    std::string text;
+    std::vector<std::size_t> children;
+  };
+  std::string where(std::size_t offset) const;  // "source:line:column"
+
+  std::string text_, source_;
+  std::vector<Node> nodes_;  // the root first, parents before children
+};
+
+/// One value of a document. Each reader throws an IoError that says where the value is, what was expected and what was
+/// found.
+class JsonValue {
+ public:
+  bool isString() const;
+  bool isArray() const;
+  bool isObject() const;
+
+  double number() const;
+  /// A number that `accept` agrees to; `expected` completes "expected ..., found ...".
+  template <typename Accept>
+  double number(Accept accept, std::string_view expected) const {
+    const double value = number();
+    if (!accept(value)) failExpected(expected);
+    return value;
+  }
+  /// An angle written in degrees, in radians. Read with more digits than a double has, so that jsonDegrees() of any
+  /// angle comes back to the last bit.
+  double degrees() const;
+  int integer() const;
+  std::uint64_t unsignedInteger() const;
+  bool boolean() const;
+  const std::string& string() const;
+  /// A string that is one of a few names.
+  template <typename T>
+  T choice(std::initializer_list<std::pair<std::string_view, T>> names) const {
+    const std::string& text = string();
+    std::vector<std::string_view> known;
+    for (const auto& [name, value] : names) {
+      if (name == text) return value;
+      known.push_back(name);
+    }
+    failUnknownChoice(known);
+  }
+  /// Elements of an array; of exactly `count` when that is not 0.
+  std::vector<JsonValue> items(std::size_t count = 0) const;
+  std::vector<double> numbers(std::size_t count = 0) const;
+
+  std::optional<JsonValue> find(std::string_view key) const;
+  JsonValue at(std::string_view key) const;
+  /// Refuses fields of other names and suggests the nearest one that exists.
+  void allowFields(std::initializer_list<std::string_view> keys) const;
+
+  [[noreturn]] void fail(const std::string& message) const;
+  [[noreturn]] void failExpected(std::string_view expected) const;
+
+ private:
+  friend class JsonDocument;
+  JsonValue(const JsonDocument& document, std::size_t index) : document_(&document), index_(index) {}
+  const JsonDocument::Node& node() const { return document_->nodes_[index_]; }
+  std::string_view numberText() const;
+  std::string path() const;
+  std::string found() const;
+  [[noreturn]] void failUnknownChoice(const std::vector<std::string_view>& known) const;
+  [[noreturn]] void failUnknownField(const std::vector<std::string_view>& known) const;
+
+  const JsonDocument* document_;
+  std::size_t index_;
+};
+
+}  // namespace umbrick

@@ -1,0 +1,86 @@
+#include "core/json_writer.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace {
+
+constexpr long double kDegree = 3.14159265358979323846264338327950288L / 180;
+
+template <typename T>
+std::string shortest(T number) {
+  std::array<char, 64> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+  return {text.data(), end};
+}
+
+void checkFinite(double number) {
+  if (!std::isfinite(number)) throw InvalidArgument("JSON has no number for " + std::to_string(number));
+}
+
+std::string bracketed(char open, const std::vector<std::string>& parts, char close) {
+  constexpr std::size_t kLine = 110;  // characters
+  std::size_t length = 0;
+  bool oneLine = true;
+  for (const std::string& part : parts) {
+    length += part.size() + 2;
+    oneLine = oneLine && part.find('\n') == std::string::npos;
+  }
+  oneLine = oneLine && length <= kLine;
+  std::string text(1, open);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i > 0) text += oneLine ? ", " : ",";
+    if (!oneLine) text += "\n  ";
+    for (const char c : parts[i]) {
+      text += c;
+      if (c == '\n') text += "  ";
+    }
+  }
+  if (!oneLine) text += '\n';
+  return text + close;
+}
+
+}  // namespace
+
+std::string jsonNumber(double number) {
+  checkFinite(number);
+  return shortest(number);
+}
+
+std::string jsonDegrees(double radians) {
+  checkFinite(radians);
+  const long double degrees = radians / kDegree;
+  const double rounded = static_cast<double>(degrees);
+  return static_cast<double>(rounded * kDegree) == radians ? shortest(rounded) : shortest(degrees);
+}
+
+std::string jsonString(const std::string& text) {
+  try {
+    return nlohmann::json(text).dump();
+  } catch (const nlohmann::json::exception&) {
+    throw InvalidArgument("JSON cannot hold a text that is not UTF-8: '" + text + "'");
+  }
+}
+
+std::string jsonArray(const std::vector<std::string>& values) { return bracketed('[', values, ']'); }
+
+std::string jsonNumbers(const std::vector<double>& numbers) {
+  std::vector<std::string> values;
+  values.reserve(numbers.size());
+  for (const double number : numbers) values.push_back(jsonNumber(number));
+  return jsonArray(values);
+}
+
+std::string jsonObject(const JsonFields& fields) {
+  std::vector<std::string> parts;
+  parts.reserve(fields.size());
+  for (const auto& [key, value] : fields) parts.push_back(jsonString(key) + ": " + value);
+  return bracketed('{', parts, '}');
+}
+
+}  // namespace umbrick

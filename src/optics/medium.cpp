@@ -1,0 +1,9 @@
+#include "umbrick/optics/medium.h"
+
+#include <cmath>
+
+namespace umbrick {
+using std::cos, std::exp, std::sin, std::tan;
+#include "optics/cone.glsl"
+#include "optics/slab.glsl"
+}  // namespace umbrick

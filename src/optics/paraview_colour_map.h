@@ -1,0 +1,12 @@
+// ParaView's colour-map JSON.
+#pragma once
+#include "core/json_reader.h"
+#include "umbrick/optics/transfer_function.h"
+
+namespace umbrick {
+
+/// See parseTransferFunction for what becomes of colours and opacities. @param maps  the array of the file
+/// @throw IoError
+TransferFunction readParaViewColourMap(const JsonValue& maps);
+
+}  // namespace umbrick

@@ -1,0 +1,15 @@
+// A transfer function as one value of a larger JSON document.
+#pragma once
+#include "core/json_reader.h"
+#include "umbrick/optics/transfer_function.h"
+
+namespace umbrick {
+
+/// Our own object or ParaView's array. @throw IoError
+TransferFunction readTransferFunction(const JsonValue& value);
+/// [low, high], low < high. @throw IoError
+TransferFunction windowedBy(const TransferFunction& transfer, const JsonValue& window);
+/// A number >= 0. @throw IoError
+TransferFunction scaledBy(const TransferFunction& transfer, const JsonValue& factor);
+
+}  // namespace umbrick
