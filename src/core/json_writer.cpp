@@ -10,7 +10,7 @@
 namespace umbrick {
 namespace {
 
-constexpr long double kDegree = 3.14159265358979323846264338327950288L / 180;
+constexpr long double kDegree = 3.14159265358979323846 / 180.0L;  // pi as a double, so that 60 is what pi / 3 gives
 
 template <typename T>
 std::string shortest(T number) {
@@ -62,7 +62,8 @@ std::string jsonDegrees(double radians) {
         std::to_chars(text.data(), text.data() + text.size(), degrees, std::chars_format::general, digits).ptr;
     long double read = 0;
     std::from_chars(text.data(), end, read);
-    if (static_cast<double>(read * kDegree) == radians) return {text.data(), end};
+    if (static_cast<double>(read * kDegree) == radians)
+      return std::string(text.data(), static_cast<std::size_t>(end - text.data()));
   }
   return shortest(degrees);
 }

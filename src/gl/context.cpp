@@ -7,6 +7,7 @@
 namespace umbrick {
 
 GlContext::GlContext() = default;
+GlContext::~GlContext() = default;
 
 void GlContext::initialise(Backend backend, std::unique_ptr<GlFunctions> functions) {
   functions_ = std::move(functions);

@@ -16,7 +16,7 @@ enum class Backend {
 /// Made current on the thread that creates it, and used on that thread only.
 class GlContext {
  public:
-  virtual ~GlContext() = default;
+  virtual ~GlContext();
   const GlFunctions& gl() const { return *functions_; }
   Backend backend() const { return backend_; }
   /// "OSMesa: llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 (Core Profile) Mesa 22.3.6"
