@@ -51,7 +51,7 @@ std::optional<std::int64_t> integer(std::string_view text) {
 }
 
 std::optional<double> number(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
@@ -203,16 +203,16 @@ class HeaderReader {
       fail("endian", "little or big", endian);
     header_.bigEndian = endian == "big";
 
-    header_.lineSkip = skip("lineskip", 0);
-    header_.byteSkip = skip("byteskip", -1);
+    header_.lineSkip = skip("line skip", "lineskip", 0);
+    header_.byteSkip = skip("byte skip", "byteskip", -1);
     if (header_.byteSkip < 0 && header_.encoding != NrrdEncoding::raw)
       fail("byte skip", "0 or more with this encoding", value("byteskip"));
   }
 
-  std::int64_t skip(const std::string& field, std::int64_t least) const {
+  std::int64_t skip(const std::string& title, const std::string& field, std::int64_t least) const {
     if (!fields_.contains(field)) return 0;
     const auto count = integer(value(field));
-    if (!count || *count < least) fail(field, "a number from " + std::to_string(least), value(field));
+    if (!count || *count < least) fail(title, "a number from " + std::to_string(least), value(field));
     return *count;
   }
 

@@ -75,7 +75,8 @@ class DecimalStream : public ByteStream {
     const auto bytes = static_cast<std::size_t>(voxelBytes(type_));
     std::size_t done = 0;
     for (; done + bytes <= out.size() && word(); done += bytes) {
-      const char* begin = word_.data() + (word_.front() == '+');
+      const bool plus = word_.front() == '+' && !word_.starts_with("+-");  // from_chars takes none
+      const char* begin = word_.data() + plus;
       double value = 0;
       const auto [end, error] = std::from_chars(begin, word_.data() + word_.size(), value);
       if (error != std::errc() || end != word_.data() + word_.size() || !storeAs(type_, value, out.data() + done))
