@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/ingest/nrrd_volume.h"
 #include "umbrick/ingest/raw_volume.h"
 
 namespace umbrick::tools {
@@ -77,7 +80,24 @@ openvdb::MetaMap fileMetadata(openvdb::MetaMap metadata) {
   return metadata;
 }
 
-std::unique_ptr<VoxelSource> openVolume(const ConvertOptions& options) {
+enum class Format { vdb, nrrd, raw };
+
+// By the extension, or else by the first bytes, unless the options of raw say that it is raw.
+Format formatOf(const ConvertOptions& options) {
+  const fs::path& path = options.input;
+  const std::string extension = path.extension().string();
+  if (extension == ".vdb") return Format::vdb;
+  if (extension == ".nrrd" || extension == ".nhdr") return Format::nrrd;
+  if (!options.dims.empty() || !options.type.empty()) return Format::raw;
+  char magic[7]{};
+  if (fs::is_regular_file(path)) std::ifstream(path, std::ios::binary).read(magic, sizeof magic);
+  const std::string_view start(magic, sizeof magic);
+  if (start.starts_with(" BDV")) return Format::vdb;
+  return start == "NRRD000" ? Format::nrrd : Format::raw;
+}
+
+std::unique_ptr<VoxelSource> openVolume(const ConvertOptions& options, Format format) {
+  if (format == Format::nrrd) return openNrrd(options.input);
   if (options.dims.size() != 3 || options.type.empty())
     throw UsageError(options.input.string() + ": taken for headerless raw, which needs --dims and --type");
   RawOptions raw;
@@ -96,8 +116,8 @@ std::unique_ptr<VoxelSource> openVolume(const ConvertOptions& options) {
 }
 
 // @return bytes read
-std::int64_t convertVolume(const ConvertOptions& options) {
-  const auto source = openVolume(options);
+std::int64_t convertVolume(const ConvertOptions& options, Format format) {
+  const auto source = openVolume(options, format);
   const BuiltGrid built = buildGrid(*source, options.build);
   writeGrids(options.output, {built.grid}, fileMetadata({}));
   printReport(options.build.name, built.report, /*dense=*/true);
@@ -141,8 +161,11 @@ int convert(ConvertOptions options) {
     throw UsageError(options.output.string() + ": expected an output file that ends in .vdb");
   ProgressBar bar;
   options.build.progress = [&](double share) { bar.show(share); };
-  const std::string extension = options.input.extension().string();
-  const std::int64_t bytesIn = extension == ".vdb" ? convertVdb(options) : convertVolume(options);
+  const Format format = formatOf(options);
+  if (format != Format::raw && (!options.dims.empty() || !options.type.empty()))
+    throw UsageError(options.input.string() + ": --dims and --type are for headerless raw, not for " +
+                     options.input.extension().string());
+  const std::int64_t bytesIn = format == Format::vdb ? convertVdb(options) : convertVolume(options, format);
   std::cout << options.output.string() << ": " << bytesIn << " bytes in, " << fs::file_size(options.output)
             << " bytes out, " << std::lround(stopwatch.elapsedMs()) << " ms\n";
   return 0;

@@ -15,6 +15,7 @@ int runProgram(int argc, char** argv) {
   app.require_subcommand(1);
   const std::vector<Command> commands{
       addConvert(app),
+      addInfo(app),
       addRender(app),
   };
   try {

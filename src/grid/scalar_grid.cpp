@@ -13,10 +13,6 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-bool isScalar(const std::string& valueType) {
-  return valueType == "float" || valueType == "double" || valueType == "int32" || valueType == "int64";
-}
-
 std::string quoted(const VdbFile::Entry& entry) { return '"' + entry.label + '"'; }
 
 std::string listed(const VdbFile& file) {
@@ -31,7 +27,7 @@ const VdbFile::Entry& defaultEntry(const VdbFile& file) {
   const VdbFile::Entry *only = nullptr, *density = nullptr;
   int scalars = 0;
   for (const VdbFile::Entry& entry : file.entries()) {
-    if (!isScalar(valueTypeName(entry.type))) continue;
+    if (!isScalarType(valueTypeName(entry.type))) continue;
     ++scalars;
     only = &entry;
     if (entry.name == "density" && !density) density = &entry;
@@ -47,7 +43,7 @@ const VdbFile::Entry& findEntry(const VdbFile& file, const std::string& selector
   if (selector.empty()) return defaultEntry(file);
   const VdbFile::Entry* entry = file.find(selector);
   if (!entry) throw InvalidArgument(file.path().string() + ": no grid \"" + selector + "\": " + listed(file));
-  if (!isScalar(valueTypeName(entry->type)))
+  if (!isScalarType(valueTypeName(entry->type)))
     throw InvalidArgument(file.path().string() + ": grid " + quoted(*entry) + ": expected a scalar grid, found " +
                           valueTypeName(entry->type));
   return *entry;
@@ -151,7 +147,7 @@ GridListing listGrids(const fs::path& path) {
   GridListing listing;
   for (const VdbFile::Entry& entry : file.entries()) {
     const std::string type = valueTypeName(entry.type);
-    listing.grids.push_back({entry.label, type, isScalar(type)});
+    listing.grids.push_back({entry.label, type, isScalarType(type)});
   }
   listing.metadata = file.metadata();
   return listing;

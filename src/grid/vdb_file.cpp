@@ -1,5 +1,6 @@
 #include "grid/vdb_file.h"
 
+#include <cctype>
 #include <map>
 #include <new>
 #include <system_error>
@@ -59,7 +60,8 @@ VdbFile::VdbFile(const fs::path& path) : path_(path), fileBytes_(regularFileSize
 }
 
 void VdbFile::readHead() {
-  if (fileBytes_ < 8 || number<std::int64_t>() != openvdb::OPENVDB_MAGIC) throw Broken("not a .vdb file");
+  if (fileBytes_ < 8 || number<std::int64_t>() != openvdb::OPENVDB_MAGIC)
+    throw Broken("expected a .vdb file, found other first bytes");
   const auto fileVersion = number<std::uint32_t>();
   if (fileVersion < kOldestVersion || fileVersion > openvdb::OPENVDB_FILE_VERSION)
     throw Broken("file version: expected " + std::to_string(kOldestVersion) + " to " +
@@ -205,6 +207,10 @@ std::string valueTypeName(const std::string& treeType) {
     name.resize(underscore);
   }
   return name;
+}
+
+bool isScalarType(const std::string& valueType) {
+  return valueType == "float" || valueType == "double" || valueType == "int32" || valueType == "int64";
 }
 
 }  // namespace umbrick

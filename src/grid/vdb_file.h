@@ -33,6 +33,7 @@ class VdbFile : private openvdb::io::Archive {
   const std::vector<Entry>& entries() const { return entries_; }
   std::int64_t fileBytes() const { return fileBytes_; }
   std::uint32_t version() const { return fileVersion(); }
+  std::string writtenBy() const { return openvdb::io::Archive::version(); }
   const openvdb::MetaMap& metadata() const { return metadata_; }
 
   /// The entry of a selector: a label, a name (the first of that name) or "name[k]".
@@ -64,5 +65,7 @@ class VdbFile : private openvdb::io::Archive {
 
 /// "float" for "Tree_float_5_4_3": the type of the values, as people call it.
 std::string valueTypeName(const std::string& treeType);
+/// True for the types that readScalarGrid turns into float.
+bool isScalarType(const std::string& valueType);
 
 }  // namespace umbrick

@@ -111,34 +111,21 @@ class GzipStream : public ByteStream {
 
 class JoinedStream : public ByteStream {
  public:
-  explicit JoinedStream(std::vector<std::unique_ptr<ByteStream>> parts) : parts_(std::move(parts)) {}
+  explicit JoinedStream(std::vector<std::function<std::unique_ptr<ByteStream>()>> parts) : parts_(std::move(parts)) {}
   std::size_t read(std::span<std::byte> out) override {
     std::size_t done = 0;
-    while (done < out.size() && at_ < parts_.size()) {
-      const std::size_t got = parts_[at_]->read(out.subspan(done));
-      done += got;
-      if (done < out.size()) parts_[at_++].reset();
+    while (done < out.size() && (open_ || next_ < parts_.size())) {
+      if (!open_) open_ = parts_[next_++]();
+      done += open_->read(out.subspan(done));
+      if (done < out.size()) open_.reset();
     }
     return done;
   }
 
  private:
-  std::vector<std::unique_ptr<ByteStream>> parts_;
-  std::size_t at_ = 0;
-};
-
-class LimitedStream : public ByteStream {
- public:
-  LimitedStream(std::unique_ptr<ByteStream> stream, std::int64_t count) : stream_(std::move(stream)), left_(count) {}
-  std::size_t read(std::span<std::byte> out) override {
-    const std::size_t got = stream_->read(out.first(std::min(out.size(), static_cast<std::size_t>(left_))));
-    left_ -= static_cast<std::int64_t>(got);
-    return got;
-  }
-
- private:
-  std::unique_ptr<ByteStream> stream_;
-  std::int64_t left_;
+  std::vector<std::function<std::unique_ptr<ByteStream>()>> parts_;
+  std::unique_ptr<ByteStream> open_;
+  std::size_t next_ = 0;
 };
 
 }  // namespace
@@ -181,13 +168,8 @@ std::unique_ptr<ByteStream> openGzip(const fs::path& path, std::int64_t offset) 
   return std::make_unique<GzipStream>(path, offset);
 }
 
-std::unique_ptr<ByteStream> joinStreams(std::vector<std::unique_ptr<ByteStream>> parts) {
-  if (parts.size() == 1) return std::move(parts.front());
+std::unique_ptr<ByteStream> joinStreams(std::vector<std::function<std::unique_ptr<ByteStream>()>> parts) {
   return std::make_unique<JoinedStream>(std::move(parts));
-}
-
-std::unique_ptr<ByteStream> limitStream(std::unique_ptr<ByteStream> stream, std::int64_t count) {
-  return std::make_unique<LimitedStream>(std::move(stream), count);
 }
 
 }  // namespace umbrick

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -28,10 +29,7 @@ bool isGzip(const std::filesystem::path& path, std::int64_t offset = 0);
 std::unique_ptr<ByteStream> openPlain(const std::filesystem::path& path, std::int64_t offset = 0);
 std::unique_ptr<ByteStream> openGzip(const std::filesystem::path& path, std::int64_t offset = 0);
 
-/// One after the other.
-std::unique_ptr<ByteStream> joinStreams(std::vector<std::unique_ptr<ByteStream>> parts);
-
-/// Up to `count` bytes of a stream.
-std::unique_ptr<ByteStream> limitStream(std::unique_ptr<ByteStream> stream, std::int64_t count);
+/// One after the other, each opened when the one before has ended: a volume may lie in thousands of files.
+std::unique_ptr<ByteStream> joinStreams(std::vector<std::function<std::unique_ptr<ByteStream>()>> parts);
 
 }  // namespace umbrick

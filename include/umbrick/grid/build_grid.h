@@ -15,13 +15,13 @@
 namespace umbrick {
 
 struct BuildOptions {
-  std::string name = "density";     // of the grid, buildGrid only
-  std::optional<float> background;  // value of what is left out; else 0, or what the grid has
-  float tolerance = 0;              // grid units: voxels this close to the background are left out, and leaves whose
-                                    // values lie this close to one value become a tile
-  std::optional<float> clipBelow;   // grid units: voxels below become background
-  bool half = false;                // round to 16-bit floats and save as such; so is a grid that is so marked already
-  std::function<void(double)> progress;  // called now and then with the share done, 0 to 1; may be empty
+  std::string name = "density";          // of the grid, buildGrid only
+  std::optional<float> background = {};  // value of what is left out; else 0, or what the grid has
+  float tolerance = 0;  // grid units: voxels this close to the background are left out, and leaves whose
+                        // values lie this close to one value become a tile
+  std::optional<float> clipBelow = {};  // grid units: voxels below become background
+  bool half = false;  // round to 16-bit floats and save as such; so is a grid that is so marked already
+  std::function<void(double)> progress = {};  // called now and then with the share done, 0 to 1; may be empty
 };
 
 /// What a grid holds after it was built, and what was lost. Exact, not sampled.

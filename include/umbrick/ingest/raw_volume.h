@@ -13,10 +13,11 @@ struct RawOptions {
   glm::i64vec3 dims{0};  // voxels along x (fastest), y, z
   VoxelType type = VoxelType::u8;
   std::endian endian = std::endian::little;
-  std::int64_t headerBytes = 0;   // skipped at the start, after unpacking
-  std::optional<int> bitsStored;  // of integers; bits above them are flags and masked off, signed types sign-extended
-  glm::dvec3 spacing{1};          // world units between voxel centres
-  glm::dvec3 origin{0};           // world position of the centre of voxel (0, 0, 0)
+  std::int64_t headerBytes = 0;  // skipped at the start, after unpacking
+  std::optional<int> bitsStored =
+      {};                 // of integers; bits above them are flags and masked off, signed types sign-extended
+  glm::dvec3 spacing{1};  // world units between voxel centres
+  glm::dvec3 origin{0};   // world position of the centre of voxel (0, 0, 0)
 };
 
 /// Opens a raw file, plain or gzip'd (told by its first bytes, unless the plain size fits). The size of a plain file is

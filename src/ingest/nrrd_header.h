@@ -1,0 +1,32 @@
+// The text at the head of a NRRD file.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+enum class NrrdEncoding { raw, gzip, text, hex };
+
+/// What the header says, checked; three axes, whatever the file had.
+struct NrrdHeader {
+  glm::i64vec3 dims{1};
+  VoxelType type = VoxelType::u8;
+  NrrdEncoding encoding = NrrdEncoding::raw;
+  bool bigEndian = false;
+  std::int64_t lineSkip = 0, byteSkip = 0;       // byteSkip -1: the voxels are the last bytes of the file
+  std::vector<std::filesystem::path> dataFiles;  // empty: the data follow the header
+  std::int64_t bytes = 0;                        // of the header, with its closing blank line
+  glm::dmat4 indexToWorld{1};
+  std::map<std::string, std::string> metadata;  // what does not change voxels, and the key/value pairs
+};
+
+/// @throw IoError  naming the file, the field, what was expected and what was found
+NrrdHeader readNrrdHeader(const std::filesystem::path& path);
+
+}  // namespace umbrick

@@ -1,0 +1,147 @@
+#include "ingest/text_stream.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace {
+
+// One character at a time out of a stream.
+class Characters {
+ public:
+  explicit Characters(std::unique_ptr<ByteStream> stream) : stream_(std::move(stream)), buffer_(1 << 16) {}
+  /// @return -1 at the end
+  int next() {
+    if (at_ == end_) {
+      end_ = stream_->read(buffer_);
+      at_ = 0;
+      if (end_ == 0) return -1;
+    }
+    return static_cast<int>(buffer_[at_++]);
+  }
+
+ private:
+  std::unique_ptr<ByteStream> stream_;
+  std::vector<std::byte> buffer_;
+  std::size_t at_ = 0, end_ = 0;
+};
+
+bool isBlank(int c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+
+template <class T>
+bool store(double value, std::byte* to) {
+  if constexpr (std::is_integral_v<T>)
+    if (!(value >= std::numeric_limits<T>::min() && value <= std::numeric_limits<T>::max()) ||
+        value != std::floor(value))
+      return false;
+  const auto typed = static_cast<T>(value);
+  std::memcpy(to, &typed, sizeof typed);
+  return true;
+}
+
+bool storeAs(VoxelType type, double value, std::byte* to) {
+  switch (type) {
+    case VoxelType::u8:
+      return store<std::uint8_t>(value, to);
+    case VoxelType::i8:
+      return store<std::int8_t>(value, to);
+    case VoxelType::u16:
+      return store<std::uint16_t>(value, to);
+    case VoxelType::i16:
+      return store<std::int16_t>(value, to);
+    case VoxelType::u32:
+      return store<std::uint32_t>(value, to);
+    case VoxelType::i32:
+      return store<std::int32_t>(value, to);
+    case VoxelType::f32:
+      return store<float>(value, to);
+    case VoxelType::f64:
+      return store<double>(value, to);
+  }
+  return false;
+}
+
+class DecimalStream : public ByteStream {
+ public:
+  DecimalStream(std::unique_ptr<ByteStream> text, VoxelType type, std::string name)
+      : text_(std::move(text)), type_(type), name_(std::move(name)) {}
+
+  std::size_t read(std::span<std::byte> out) override {
+    const auto bytes = static_cast<std::size_t>(voxelBytes(type_));
+    std::size_t done = 0;
+    for (; done + bytes <= out.size() && word(); done += bytes) {
+      const bool plus = word_.front() == '+' && !word_.starts_with("+-");  // from_chars takes none
+      const char* begin = word_.data() + plus;
+      double value = 0;
+      const auto [end, error] = std::from_chars(begin, word_.data() + word_.size(), value);
+      if (error != std::errc() || end != word_.data() + word_.size() || !storeAs(type_, value, out.data() + done))
+        throw IoError(name_ + ": voxel " + std::to_string(voxel_) + ": expected a number that " +
+                      std::string(voxelTypeName(type_)) + " can hold, found \"" + word_.substr(0, 40) + '"');
+      ++voxel_;
+    }
+    return done;
+  }
+
+ private:
+  bool word() {
+    word_.clear();
+    int c = text_.next();
+    while (isBlank(c) || c == ',') c = text_.next();
+    for (; c >= 0 && !isBlank(c) && c != ',' && word_.size() < 400; c = text_.next())
+      word_.push_back(static_cast<char>(c));
+    return !word_.empty();
+  }
+
+  Characters text_;
+  VoxelType type_;
+  std::string name_, word_;
+  std::int64_t voxel_ = 0;
+};
+
+class HexStream : public ByteStream {
+ public:
+  HexStream(std::unique_ptr<ByteStream> text, std::string name) : text_(std::move(text)), name_(std::move(name)) {}
+
+  std::size_t read(std::span<std::byte> out) override {
+    std::size_t done = 0;
+    for (; done < out.size(); ++done) {
+      const int high = digit();
+      if (high < 0) break;
+      const int low = digit();
+      if (low < 0) throw IoError(name_ + ": hex: expected pairs of digits, found an odd one at the end");
+      out[done] = static_cast<std::byte>(high * 16 + low);
+    }
+    return done;
+  }
+
+ private:
+  int digit() {
+    int c = text_.next();
+    while (isBlank(c)) c = text_.next();
+    if (c < 0) return -1;
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    throw IoError(name_ + ": hex: expected a digit 0 to f, found character " + std::to_string(c));
+  }
+
+  Characters text_;
+  std::string name_;
+};
+
+}  // namespace
+
+std::unique_ptr<ByteStream> decimalStream(std::unique_ptr<ByteStream> text, VoxelType type, std::string name) {
+  return std::make_unique<DecimalStream>(std::move(text), type, std::move(name));
+}
+
+std::unique_ptr<ByteStream> hexStream(std::unique_ptr<ByteStream> text, std::string name) {
+  return std::make_unique<HexStream>(std::move(text), std::move(name));
+}
+
+}  // namespace umbrick

@@ -1,0 +1,17 @@
+// Voxels written as text, as the bytes that they stand for.
+#pragma once
+#include <memory>
+
+#include "ingest/byte_stream.h"
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+/// Decimal numbers between blanks or commas, as voxels of `type` in this machine's byte order.
+/// @param name  for messages
+std::unique_ptr<ByteStream> decimalStream(std::unique_ptr<ByteStream> text, VoxelType type, std::string name);
+
+/// Pairs of hexadecimal digits, blanks ignored.
+std::unique_ptr<ByteStream> hexStream(std::unique_ptr<ByteStream> text, std::string name);
+
+}  // namespace umbrick

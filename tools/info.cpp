@@ -1,0 +1,162 @@
+// umbrick info: what is in a .vdb file.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "command.h"
+#include "umbrick/grid/summary.h"
+
+namespace umbrick::tools {
+namespace {
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct InfoOptions {
+  fs::path input;
+  int bins = 16;
+  bool json = false;
+};
+
+template <class Vector>
+json array(const Vector& v) {
+  return json::array({v.x, v.y, v.z});
+}
+
+json numberOrText(const std::string& text) {
+  const json number = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  return number.is_number() ? number : json(text);
+}
+
+json toJson(const GridSummary& grid) {
+  const glm::i64vec3 dims = grid.activeBox.extent();
+  json out{{"name", grid.label},
+           {"type", grid.valueType},
+           {"scalar", grid.scalar},
+           {"saved_as_half", grid.savedAsHalf},
+           {"class", grid.gridClass},
+           {"dims", array(dims)},
+           {"active_voxels", grid.activeVoxels},
+           {"active_tiles", grid.activeTiles},
+           {"leaves", grid.leaves},
+           {"background", numberOrText(grid.background)},
+           {"transform", grid.transformType},
+           {"voxel_size", array(grid.voxelSize)},
+           {"memory_bytes", grid.memoryBytes},
+           {"file_bytes", grid.fileBytes},
+           {"metadata", grid.metadata}};
+  if (!grid.activeBox.empty()) {
+    out["index_box"] = {{"min", array(grid.activeBox.min)}, {"max", array(grid.activeBox.max)}};
+    out["world_bounds"] = {{"min", array(grid.worldBounds.min)}, {"max", array(grid.worldBounds.max)}};
+  }
+  if (grid.indexToWorld) {
+    json rows = json::array();
+    for (int row = 0; row < 4; ++row) {
+      json entries = json::array();
+      for (int column = 0; column < 4; ++column) entries.push_back((*grid.indexToWorld)[column][row]);
+      rows.push_back(entries);
+    }
+    out["index_to_world"] = rows;  // of column vectors
+  }
+  if (grid.values)
+    out["values"] = {{"of", grid.values->magnitude ? "magnitude" : "value"},
+                     {"min", grid.values->min},
+                     {"max", grid.values->max},
+                     {"histogram", grid.values->histogram},
+                     {"non_finite", grid.values->nonFinite}};
+  return out;
+}
+
+json toJson(const fs::path& path, const FileSummary& file) {
+  json grids = json::array();
+  for (const GridSummary& grid : file.grids) grids.push_back(toJson(grid));
+  return {{"file", path.string()},        {"file_bytes", file.fileBytes},
+          {"file_version", file.version}, {"library_version", file.libraryVersion},
+          {"metadata", file.metadata},    {"grids", grids}};
+}
+
+template <class Vector>
+std::string text(const Vector& v, const char* between = ", ") {
+  std::ostringstream out;
+  out << v.x << between << v.y << between << v.z;
+  return out.str();
+}
+
+void printHistogram(const ValueSummary& values) {
+  const auto most = values.histogram.empty() ? 0 : *std::max_element(values.histogram.begin(), values.histogram.end());
+  const double bins = static_cast<double>(values.histogram.size());
+  const auto edge = [&](std::size_t i) {
+    const double share = static_cast<double>(i) / bins;
+    return (1 - share) * values.min + share * values.max;
+  };
+  for (std::size_t i = 0; i < values.histogram.size(); ++i) {
+    const auto bar = static_cast<std::size_t>(std::lround(40.0 * double(values.histogram[i]) / double(most)));
+    char line[128];
+    std::snprintf(line, sizeof line, "    %11.5g to %-11.5g %12llu ", edge(i), edge(i + 1),
+                  static_cast<unsigned long long>(values.histogram[i]));
+    std::cout << line << std::string(bar, '#') << '\n';
+  }
+}
+
+void print(const GridSummary& grid) {
+  std::cout << "grid \"" << grid.label << "\"\n  type           " << grid.valueType
+            << (grid.savedAsHalf ? ", saved as half" : "") << (grid.scalar ? "" : " (not a scalar)") << '\n';
+  std::cout << "  file bytes     " << grid.fileBytes << '\n';
+  if (grid.transformType.empty()) {
+    std::cout << "  (a type that this program does not know)\n";
+    return;
+  }
+  const glm::i64vec3 dims = grid.activeBox.extent();
+  std::cout << "  class          " << grid.gridClass << "\n  dimensions     " << text(dims, " x ") << " voxels";
+  if (!grid.activeBox.empty())
+    std::cout << ", index (" << text(grid.activeBox.min) << ") to (" << text(grid.activeBox.max) << ')';
+  const double inBox = double(dims.x) * double(dims.y) * double(dims.z);
+  std::cout << "\n  active voxels  " << grid.activeVoxels;
+  if (inBox > 0) std::cout << " (" << 100 * double(grid.activeVoxels) / inBox << " % of the box)";
+  std::cout << "\n  leaves, tiles  " << grid.leaves << ", " << grid.activeTiles << '\n';
+  if (!grid.background.empty()) std::cout << "  background     " << grid.background << '\n';
+  std::cout << "  transform      " << grid.transformType << ", voxel size " << text(grid.voxelSize, " x ")
+            << " world units\n";
+  if (!grid.worldBounds.empty())
+    std::cout << "  world bounds   (" << text(grid.worldBounds.min) << ") to (" << text(grid.worldBounds.max) << ")\n";
+  std::cout << "  memory bytes   " << grid.memoryBytes << '\n';
+  if (!grid.values) return;
+  if (grid.values->nonFinite > 0) std::cout << "  not finite     " << grid.values->nonFinite << " active voxels\n";
+  if (grid.values->histogram.empty()) return;
+  std::cout << "  " << (grid.values->magnitude ? "magnitudes     " : "values         ") << grid.values->min << " to "
+            << grid.values->max << ", active voxels by value:\n";
+  printHistogram(*grid.values);
+}
+
+int info(const InfoOptions& options) {
+  const FileSummary file = summariseFile(options.input, options.bins);
+  if (options.json) {
+    std::cout << toJson(options.input, file).dump(2, ' ', false, json::error_handler_t::replace) << '\n';
+    return 0;
+  }
+  std::cout << options.input.string() << ": " << file.fileBytes << " bytes, file version " << file.version
+            << ", written by OpenVDB " << file.libraryVersion.substr(0, file.libraryVersion.find('/')) << '\n';
+  for (const GridSummary& grid : file.grids) print(grid);
+  if (file.grids.empty()) std::cout << "no grids\n";
+  return 0;
+}
+
+}  // namespace
+
+Command addInfo(CLI::App& app) {
+  const auto options = std::make_shared<InfoOptions>();
+  CLI::App* command = app.add_subcommand("info", "Describe every grid of a .vdb file.");
+  command->add_option("file", options->input, "a .vdb file")->required();
+  command->add_option("--bins", options->bins, "of the histogram of the active values")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "JSON instead of text");
+  return {command, [options] { return info(*options); }};
+}
+
+}  // namespace umbrick::tools
