@@ -63,9 +63,7 @@ std::string joined(const std::vector<std::string_view>& names) {
 // of that value, so walking over separators from the end of the previous one finds it.
 class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
-  explicit JsonBuilder(JsonDocument& document) : document_(document) {
-    if (document.text_.starts_with("\xEF\xBB\xBF")) end_ = 3;  // a byte-order mark
-  }
+  explicit JsonBuilder(JsonDocument& document) : document_(document) {}
 
   bool null() override {
     add(JsonDocument::Kind::null);
@@ -159,6 +157,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
 };
 
 JsonDocument::JsonDocument(std::string_view text, std::string source) : text_(text), source_(std::move(source)) {
+  if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);  // a byte-order mark
   JsonBuilder builder(*this);
   nlohmann::json::sax_parse(text_, &builder);
 }
@@ -215,7 +214,7 @@ double JsonValue::degrees() const {
   const std::string_view text = numberText();
   long double value = 0;
   std::from_chars(text.data(), text.data() + text.size(), value);
-  return static_cast<double>(value * (3.14159265358979323846264338327950288L / 180));
+  return static_cast<double>(value * (3.14159265358979323846 / 180.0L));
 }
 
 int JsonValue::integer() const {
@@ -335,7 +334,8 @@ void JsonValue::failUnknownField(const std::vector<std::string_view>& known) con
   const auto nearest = std::min_element(known.begin(), known.end(), [&](std::string_view a, std::string_view b) {
     return editDistance(name, a) < editDistance(name, b);
   });
-  const bool near = nearest != known.end() && editDistance(name, *nearest) <= std::max<std::size_t>(1, name.size() / 3);
+  const bool near =
+      nearest != known.end() && editDistance(name, *nearest) <= std::max<std::size_t>(1, (name.size() + 1) / 3);
   fail("unknown field" + (near ? "; did you mean '" + std::string(*nearest) + "'?" : "; known are " + joined(known)));
 }
 

@@ -10,7 +10,7 @@
 namespace umbrick {
 namespace {
 
-constexpr long double kDegree = 3.14159265358979323846264338327950288L / 180;
+constexpr long double kDegree = 3.14159265358979323846 / 180.0L;  // pi as a double, so that 60 is what pi / 3 gives
 
 template <typename T>
 std::string shortest(T number) {
@@ -55,8 +55,17 @@ std::string jsonNumber(double number) {
 std::string jsonDegrees(double radians) {
   checkFinite(radians);
   const long double degrees = radians / kDegree;
-  const double rounded = static_cast<double>(degrees);
-  return static_cast<double>(rounded * kDegree) == radians ? shortest(rounded) : shortest(degrees);
+  // 60 rather than 59.99999999999999, which is as close: as few digits as read back right, see JsonValue::degrees().
+  std::array<char, 64> text;
+  for (int digits = 15; digits <= 17; ++digits) {
+    const char* end =
+        std::to_chars(text.data(), text.data() + text.size(), degrees, std::chars_format::general, digits).ptr;
+    long double read = 0;
+    std::from_chars(text.data(), end, read);
+    if (static_cast<double>(read * kDegree) == radians)
+      return std::string(text.data(), static_cast<std::size_t>(end - text.data()));
+  }
+  return shortest(degrees);
 }
 
 std::string jsonString(const std::string& text) {

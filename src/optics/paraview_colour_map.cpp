@@ -12,12 +12,7 @@ namespace umbrick {
 namespace {
 
 constexpr double kMostOpacity = 0.999;  // what counts as opaque: a medium of 6.9 optical depths per unit distance
-constexpr int kPiecesOfAll = 256;       // a map is cut into about as many pieces as a display has levels,
-constexpr int kPiecesMost = 32;         // but one interval into no more than this
-
-int piecesPerInterval(std::size_t points) {
-  return std::clamp(kPiecesOfAll / static_cast<int>(std::max<std::size_t>(points, 2) - 1), 1, kPiecesMost);
-}
+constexpr double kLevel = 0.5 / 255;    // pieces of a curve are off by less than half a level of an 8-bit display
 
 // A curve through nodes in ascending order, two at one place for a step: linear between them, constant beyond.
 template <typename T>
@@ -39,6 +34,36 @@ struct Curve {
     return {y, y};
   }
 };
+
+// Appends pieces of a curve from `x1` (already there) to `x2`, halved until `close(approximation, truth)` holds at
+// places within each. `at` takes [0, 1].
+template <typename T, typename At, typename Close>
+void appendPieces(Curve<T>& curve, double x1, double x2, const At& at, const Close& close) {
+  struct Piece {
+    double begin, end;
+  };
+  constexpr double kShortest = 1.0 / 1024;
+  std::vector<Piece> pending;  // the next one last
+  for (int i = 3; i >= 0; --i) pending.push_back({0.25 * i, 0.25 * (i + 1)});
+  while (!pending.empty()) {
+    const auto [begin, end] = pending.back();
+    pending.pop_back();
+    const T y1 = at(begin), y2 = at(end);
+    bool fine = end - begin <= kShortest;
+    if (!fine) {
+      fine = true;
+      for (const double share : {0.2, 0.4, 0.6, 0.8})
+        fine = fine && close(y1 + (y2 - y1) * share, at(begin + (end - begin) * share));
+    }
+    if (fine) {
+      curve.nodes.emplace_back(end < 1 ? x1 + (x2 - x1) * end : x2, y2);
+    } else {
+      const double middle = 0.5 * (begin + end);
+      pending.push_back({middle, end});
+      pending.push_back({begin, middle});
+    }
+  }
+}
 
 ColourSpace readColourSpace(const JsonValue& map) {
   const auto name = map.find("ColorSpace");
@@ -84,18 +109,23 @@ Curve<glm::dvec3> readColours(const JsonValue& map) {
     display.emplace_back(readPlace(items[i], display),
                          glm::dvec3(readShare(items[i + 1]), readShare(items[i + 2]), readShare(items[i + 3])));
   const ColourSpace space = readColourSpace(map);
-  const int pieces = space == ColourSpace::step ? 1 : piecesPerInterval(display.size());
+  const auto close = [](const glm::dvec3& a, const glm::dvec3& b) {
+    bool same = true;
+    for (int c = 0; c < 3; ++c) same = same && std::abs(linearToSrgb(a[c]) - linearToSrgb(b[c])) < kLevel;
+    return same;
+  };
   Curve<glm::dvec3> curve;
   curve.nodes.emplace_back(display[0].first, linear(display[0].second));
   for (std::size_t i = 1; i < display.size(); ++i) {
     const auto& [x1, from] = display[i - 1];
     const auto& [x2, to] = display[i];
-    if (space == ColourSpace::step) curve.nodes.emplace_back(x1, linear(to));
-    for (int k = 1; k < pieces && x1 < x2; ++k) {
-      const double t = static_cast<double>(k) / pieces;
-      curve.nodes.emplace_back(x1 + (x2 - x1) * t, linear(mixColours(from, to, t, space)));
+    if (x1 == x2 || space == ColourSpace::step) {
+      curve.nodes.emplace_back(x1, linear(to));
+      curve.nodes.emplace_back(x2, linear(to));
+    } else {
+      const auto at = [&, a = from, b = to](double t) { return linear(mixColours(a, b, t, space)); };
+      appendPieces(curve, x1, x2, at, close);
     }
-    curve.nodes.emplace_back(x2, linear(to));
   }
   return curve;
 }
@@ -135,7 +165,9 @@ Curve<double> readExtinction(const JsonValue& map, double first, double last) {
       points.emplace_back(readPlace(items[i], points),
                           OpacityPoint{readShare(items[i + 1]), readShare(items[i + 2]), readShare(items[i + 3])});
   }
-  const int pieces = piecesPerInterval(points.size());
+  const auto close = [&](double a, double b) {
+    return std::abs(std::exp(-a * unitDistance) - std::exp(-b * unitDistance)) < kLevel;
+  };
   Curve<double> curve;
   curve.nodes.emplace_back(points[0].first, extinction(points[0].second.opacity, unitDistance));
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -146,14 +178,15 @@ Curve<double> readExtinction(const JsonValue& map, double first, double last) {
       const double middle = x1 + (x2 - x1) * from.midpoint;
       curve.nodes.emplace_back(middle, extinction(from.opacity, unitDistance));
       curve.nodes.emplace_back(middle, extinction(to.opacity, unitDistance));
-    } else if (from.opacity != to.opacity && x1 < x2) {
-      for (int k = 1; k < pieces; ++k) {
-        const double t = static_cast<double>(k) / pieces;
-        const double opacity = mixOpacities(from.opacity, to.opacity, t, from.midpoint, from.sharpness);
-        curve.nodes.emplace_back(x1 + (x2 - x1) * t, extinction(opacity, unitDistance));
-      }
     }
-    curve.nodes.emplace_back(x2, extinction(to.opacity, unitDistance));
+    if (from.sharpness > 0.99 || x1 == x2 || from.opacity == to.opacity) {
+      curve.nodes.emplace_back(x2, extinction(to.opacity, unitDistance));
+    } else {
+      const auto at = [&, a = from, b = to](double t) {
+        return extinction(mixOpacities(a.opacity, b.opacity, t, a.midpoint, a.sharpness), unitDistance);
+      };
+      appendPieces(curve, x1, x2, at, close);
+    }
   }
   return curve;
 }

@@ -77,7 +77,7 @@ class TransferFunction {
 /// shows them; they are interpolated in the colour space that is named (CIEDE2000 as Lab) and become linear albedo.
 /// Opacity a per ScalarOpacityUnitDistance u (1 when it is missing) becomes sigma_t = -ln(1 - a) / u, where opacity
 /// above 0.999 counts as 0.999 (6.9 / u), since 1 would be no finite medium; without "Points" it rises from 0 to 1 over
-/// the colours. Both are curves between ParaView's points, replaced by pieces fine enough for 8-bit display.
+/// the colours. Both are curves between ParaView's points, replaced by linear pieces within half a level of 8 bits.
 /// @param source  what messages call the text, usually its file name
 /// @throw IoError  malformed: names source, line, column and field
 TransferFunction parseTransferFunction(std::string_view text, const std::string& source);
