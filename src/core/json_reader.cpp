@@ -214,7 +214,7 @@ double JsonValue::degrees() const {
   const std::string_view text = numberText();
   long double value = 0;
   std::from_chars(text.data(), text.data() + text.size(), value);
-  return static_cast<double>(value * (3.14159265358979323846264338327950288L / 180));
+  return static_cast<double>(value * (3.14159265358979323846 / 180.0L));
 }
 
 int JsonValue::integer() const {

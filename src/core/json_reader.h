@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -72,7 +73,7 @@ class JsonValue {
   const std::string& string() const;
   /// A string that is one of a few names.
   template <typename T>
-  T choice(std::initializer_list<std::pair<std::string_view, T>> names) const {
+  T choice(std::span<const std::pair<std::string_view, T>> names) const {
     const std::string& text = string();
     std::vector<std::string_view> known;
     for (const auto& [name, value] : names) {

@@ -68,13 +68,11 @@ void appendPieces(Curve<T>& curve, double x1, double x2, const At& at, const Clo
 ColourSpace readColourSpace(const JsonValue& map) {
   const auto name = map.find("ColorSpace");
   if (!name) return ColourSpace::diverging;  // ParaView's default
-  const ColourSpace space = name->choice<ColourSpace>({{"RGB", ColourSpace::rgb},
-                                                       {"HSV", ColourSpace::hsv},
-                                                       {"Lab", ColourSpace::lab},
-                                                       {"CIELAB", ColourSpace::lab},
-                                                       {"Lab/CIEDE2000", ColourSpace::lab},
-                                                       {"Diverging", ColourSpace::diverging},
-                                                       {"Step", ColourSpace::step}});
+  static constexpr std::pair<std::string_view, ColourSpace> kSpaces[]{
+      {"RGB", ColourSpace::rgb},    {"HSV", ColourSpace::hsv},           {"Lab", ColourSpace::lab},
+      {"CIELAB", ColourSpace::lab}, {"Lab/CIEDE2000", ColourSpace::lab}, {"Diverging", ColourSpace::diverging},
+      {"Step", ColourSpace::step}};
+  const auto space = name->choice<ColourSpace>(kSpaces);
   const auto wrap = map.find("HSVWrap");
   return space == ColourSpace::hsv && wrap && wrap->number() != 0 ? ColourSpace::hsvWrap : space;
 }

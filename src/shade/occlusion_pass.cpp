@@ -6,9 +6,13 @@
 
 #include "shade/footprint.h"
 #include "shade/frame.h"
+#include "shade/light_need.h"
 
 namespace umbrick {
 namespace {
+
+// Slices between two looks at which pixels are needed.
+constexpr std::int64_t kNeedInterval = 16;
 
 class OcclusionPass : public SlicePass {
  public:
@@ -28,8 +32,13 @@ class OcclusionPass : public SlicePass {
     carry_.get(gl, {{"kTaps", constants["kTaps"]}, {"kAlgorithm", options.algorithm}});
     if (!nothing_) nothing_ = GlVertexArray(gl);
     planRegions(frame);
+    if (frame.scene.sampling.saturation > 0) {
+      if (!need_) need_.emplace(gl);
+      need_->begin(frame, steps_, deviations());
+    }
     previous_ = 0;
     stencil_ = 0;
+    sinceNeed_ = 0;
   }
 
   void draw(Frame& frame, std::int64_t first, std::int64_t last) override {
@@ -64,10 +73,20 @@ class OcclusionPass : public SlicePass {
     covered_.resize(count);
     steps_.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
-      covered_[i] = coveredRegion(frame.slices, static_cast<std::int64_t>(i), frame.size());
+      covered_[i] = coveredRegion(frame.slices, frame.slices.start[i], frame.slices.start[i + 1], frame.size());
       steps_[i] = step(frame, static_cast<std::int64_t>(i));
     }
     regions_ = occlusionRegions(covered_, steps_, frame.size());
+  }
+
+  // Standard deviation of one step of the walk along an axis, pixels.
+  std::vector<double> deviations() const {
+    double square = 0;
+    for (const glm::dvec2& point : disk_) square += 0.5 * glm::dot(point, point) / static_cast<double>(disk_.size());
+    std::vector<double> all;
+    // Linear interpolation adds up to a quarter of a squared pixel.
+    for (const SliceStep& step : steps_) all.push_back(std::sqrt(square * step.radius * step.radius + 0.25));
+    return all;
   }
 
   void setFootprint(GlProgram& program, const Frame& frame, const SliceStep& step) const {
@@ -87,6 +106,10 @@ class OcclusionPass : public SlicePass {
     const ScreenRegion& region = regions_[static_cast<std::size_t>(slice)];
     const SliceStep& step = steps_[static_cast<std::size_t>(slice)];
     if (draws.empty() && region.empty()) return;
+    if (need_ && ++sinceNeed_ >= kNeedInterval) {
+      need_->run(frame, slice);
+      sinceNeed_ = 0;
+    }
     const int target = 1 - previous_;
     if (++stencil_ > 255) {
       const RenderTargets& targets = frame.targets;
@@ -110,7 +133,8 @@ class OcclusionPass : public SlicePass {
 
   void setCommonState(const Frame& frame) const {
     const GlFunctions& gl = frame.gl;
-    gl.Disable(GL_DEPTH_TEST);
+    gl.Enable(GL_DEPTH_TEST);  // pixels that nothing needs any more have depth 0
+    gl.DepthFunc(GL_LESS);
     gl.DepthMask(GL_FALSE);
     gl.Disable(GL_SCISSOR_TEST);
     gl.Enable(GL_STENCIL_TEST);
@@ -192,11 +216,13 @@ class OcclusionPass : public SlicePass {
   SpecialisedProgram eye_{"shade/slice.vert", "shade/occlusion_eye.frag"};
   SpecialisedProgram light_{"shade/slice.vert", "shade/occlusion_light.frag"};
   SpecialisedProgram carry_{"shade/full_screen.vert", "shade/occlusion_carry.frag"};
+  std::optional<LightNeed> need_;
   GlVertexArray nothing_;
   std::vector<glm::dvec2> disk_;
   std::vector<ScreenRegion> covered_, regions_;
   std::vector<SliceStep> steps_;
   int previous_ = 0;  // occlusion buffer that holds the slice before
+  std::int64_t sinceNeed_ = 0;
   int stencil_ = 0;   // number of the slice in the stencil buffer, 1 to 255
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace umbrick {
 
@@ -67,11 +68,9 @@ void PolygonBuffer::draw(std::int32_t firstIndex, std::int32_t indices) const {
                    reinterpret_cast<const void*>(static_cast<std::size_t>(firstIndex) * sizeof(std::uint32_t)));
 }
 
-ScreenRegion coveredRegion(const ProxySlices& slices, std::int64_t i, const glm::ivec2& size) {
-  glm::vec2 low(1), high(-1);
-  const int firstPolygon = slices.start[static_cast<std::size_t>(i)],
-            last = slices.start[static_cast<std::size_t>(i) + 1];
-  for (int p = firstPolygon; p < last; ++p) {
+ScreenRegion coveredRegion(const ProxySlices& slices, std::int32_t first, std::int32_t last, const glm::ivec2& size) {
+  glm::vec2 low(std::numeric_limits<float>::infinity()), high(-std::numeric_limits<float>::infinity());
+  for (int p = first; p < last; ++p) {
     const ProxyPolygon& polygon = slices.polygons[static_cast<std::size_t>(p)];
     for (int v = 0; v < polygon.vertices; ++v) {
       const glm::vec2 device = slices.vertices[static_cast<std::size_t>(polygon.firstVertex + v)];
@@ -79,7 +78,7 @@ ScreenRegion coveredRegion(const ProxySlices& slices, std::int64_t i, const glm:
       high = {std::max(high.x, device.x), std::max(high.y, device.y)};
     }
   }
-  if (firstPolygon == last) return {};
+  if (first >= last) return {};
   ScreenRegion region;
   for (int axis = 0; axis < 2; ++axis) {
     const auto toPixels = [&](float device) {

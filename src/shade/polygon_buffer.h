@@ -44,7 +44,7 @@ class PolygonBuffer {
   std::vector<std::uint32_t> indexData_;
 };
 
-/// Pixels that the polygons of slice i may cover.
-ScreenRegion coveredRegion(const ProxySlices& slices, std::int64_t i, const glm::ivec2& size);
+/// Pixels that polygons [first, last) may cover.
+ScreenRegion coveredRegion(const ProxySlices& slices, std::int32_t first, std::int32_t last, const glm::ivec2& size);
 
 }  // namespace umbrick

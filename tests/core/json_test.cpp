@@ -39,7 +39,8 @@ TEST_CASE("Unknown fields and names suggest what was meant", "[core]") {
                     "f:1:11: theat: unknown field; did you mean 'theta'?");
   CHECK_THROWS_WITH(document.root().allowFields({"theat", "mode", "size"}),
                     "f:1:41: colour: unknown field; known are theat, mode, size");
-  CHECK_THROWS_WITH(document.root().at("mode").choice<int>({{"cone", 1}, {"emission", 2}}),
+  const std::pair<std::string_view, int> names[]{{"cone", 1}, {"emission", 2}};
+  CHECK_THROWS_WITH(document.root().at("mode").choice<int>(names),
                     "f:1:22: mode: expected one of cone, emission, found 'konus'");
 }
 

@@ -1,0 +1,1 @@
+umbrick_tests(image exr_test.cpp png_test.cpp)

@@ -1,0 +1,1 @@
+umbrick_tests(scene scene_test.cpp)

@@ -32,6 +32,7 @@ struct Box {
     min = glm::min(min, point);
     max = glm::max(max, point);
   }
+  bool operator==(const Box&) const = default;
 };
 
 }  // namespace umbrick

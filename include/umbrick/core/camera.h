@@ -19,6 +19,7 @@ struct Camera {
   double nearDistance = 0;          // nothing nearer than this depth is seen, world units
   int width = 512;                  // pixels
   int height = 512;                 // pixels
+  bool operator==(const Camera&) const = default;
 };
 
 /// Orthonormal axes of the view. Depth is measured along `forward`, from the eye.

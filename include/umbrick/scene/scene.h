@@ -85,20 +85,35 @@ struct Scene {
   std::vector<ClipPlane> clipPlanes;
   std::optional<Box> clipBox;  // world
   BrickSettings bricks;
+  bool operator==(const Scene&) const = default;
 };
 
 /// Reads a scene; what it leaves out keeps its default, what it does not know is an error. File names are relative to
-/// the scene's folder.
+/// the scene's folder. Fields, all optional, angles in degrees:
+///   volume     file, grid
+///   camera     projection ("perspective", "orthographic"), size [width, height], fov, near, and either azimuth and
+///              elevation around the volume, or eye, lookAt, up and viewHeight
+///   transfer   name of a preset, name of a file, or the function itself (also ParaView's array);
+///   window [low, high], sigmaScale    applied to it
+///   model      "emission", "cone"
+///   method     "dos"
+///   light      ambient [r, g, b], background [r, g, b]
+///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), bits, saturation, tableSize
+///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits
+///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]
+///   bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16", "half", "float32"), budgetMiB
 /// @param source  what messages call the text, usually its file name
 /// @throw IoError  malformed JSON, or a field of the wrong kind or out of range: names source, line, column and field
 Scene parseScene(std::string_view text, const std::string& source, const std::filesystem::path& folder = {});
 /// @throw IoError
 Scene readScene(const std::filesystem::path& path);
-/// JSON that parses back to an equal scene.
+/// JSON that parses back to an equal scene, to the last bit. With an orbit, what follows from the volume (eye, lookAt,
+/// up and viewHeight) is left out.
+/// @throw InvalidArgument  a number that is not finite, a name that is not UTF-8
 std::string printScene(const Scene& scene);
 
 /// Checks every field against its range, however the scene was made.
-/// @throw InvalidArgument  names the field, what it is and what it may be
+/// @throw InvalidArgument  names the field as in the JSON, what it is and what it may be
 void validateScene(const Scene& scene);
 
 }  // namespace umbrick

@@ -1,0 +1,136 @@
+#include "scene/scene_check.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/json_writer.h"
+#include "scene/names.h"
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace {
+constexpr double kPi = 3.14159265358979323846;
+
+std::string print(double number) { return std::isfinite(number) ? jsonNumber(number) : std::to_string(number); }
+std::string print(const glm::dvec3& v) { return "[" + print(v.x) + ", " + print(v.y) + ", " + print(v.z) + "]"; }
+std::string printDegrees(double radians) { return print(radians * 180 / kPi) + " degrees"; }
+
+bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// Collects the first complaint; the checks read as a table of fields and ranges.
+class Checker {
+ public:
+  void require(bool holds, const std::string& field, const std::string& is, const std::string& range) {
+    if (!holds && !complaint_) complaint_ = {field, "is " + is + ", must be " + range};
+  }
+  void requireFinite(const glm::dvec3& v, const std::string& field) {
+    require(isFinite(v), field, print(v), "three finite numbers");
+  }
+  void requireRadiance(const glm::dvec3& v, const std::string& field) {
+    require(isFinite(v) && v.r >= 0 && v.g >= 0 && v.b >= 0, field, print(v), "three finite numbers of 0 or more");
+  }
+  void requireWithin(int value, int low, int high, const std::string& field) {
+    require(value >= low && value <= high, field, std::to_string(value),
+            std::to_string(low) + " to " + std::to_string(high));
+  }
+  void requireEither(int value, int a, int b, const std::string& field) {
+    require(value == a || value == b, field, std::to_string(value), std::to_string(a) + " or " + std::to_string(b));
+  }
+  void complain(const std::string& field, const std::string& message) {
+    if (!complaint_) complaint_ = {field, message};
+  }
+  const std::optional<Complaint>& complaint() const { return complaint_; }
+
+ private:
+  std::optional<Complaint> complaint_;
+};
+
+void checkCamera(Checker& check, const Camera& camera, const std::optional<Orbit>& orbit) {
+  check.require(camera.width >= 1 && camera.height >= 1, "camera.size",
+                std::to_string(camera.width) + " x " + std::to_string(camera.height), "at least 1 x 1");
+  check.require(camera.fov > 0 && camera.fov < kPi, "camera.fov", printDegrees(camera.fov), "in (0, 180)");
+  check.require(camera.nearDistance >= 0 && std::isfinite(camera.nearDistance), "camera.near",
+                print(camera.nearDistance), "0 or more");
+  if (orbit) {
+    check.require(std::isfinite(orbit->azimuth), "camera.azimuth", print(orbit->azimuth), "finite");
+    check.require(std::isfinite(orbit->elevation), "camera.elevation", print(orbit->elevation), "finite");
+    return;
+  }
+  check.require(camera.viewHeight > 0 && std::isfinite(camera.viewHeight), "camera.viewHeight",
+                print(camera.viewHeight), "above 0");
+  check.requireFinite(camera.eye, "camera.eye");
+  check.requireFinite(camera.lookAt, "camera.lookAt");
+  check.requireFinite(camera.up, "camera.up");
+  if (check.complaint()) return;
+  try {
+    cameraFrame(camera);
+  } catch (const InvalidArgument& error) {
+    std::string message = error.what();
+    if (message.starts_with("camera: ")) message.erase(0, 8);
+    check.complain("camera", message);
+  }
+}
+
+void checkClip(Checker& check, const Scene& scene) {
+  for (std::size_t i = 0; i < scene.clipPlanes.size(); ++i) {
+    const ClipPlane& plane = scene.clipPlanes[i];
+    const glm::dvec3 normal(plane);
+    const std::string field = "clip.planes[" + std::to_string(i) + "]";
+    const std::string is =
+        "[" + print(plane.x) + ", " + print(plane.y) + ", " + print(plane.z) + ", " + print(plane.w) + "]";
+    check.require(isFinite(normal) && std::isfinite(plane.w), field, is, "four finite numbers");
+    check.require(glm::length(normal) > 0, field, is, "a plane whose normal, the first three numbers, is not 0");
+  }
+  if (!scene.clipBox) return;
+  const Box& box = *scene.clipBox;
+  check.require(
+      isFinite(box.min) && isFinite(box.max) && box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z,
+      "clip.box", print(box.min) + " to " + print(box.max), "two corners, each number of the first smaller");
+}
+
+}  // namespace
+
+std::optional<Complaint> findComplaint(const Scene& scene) {
+  Checker check;
+  checkCamera(check, scene.camera, scene.orbit);
+  check.requireRadiance(scene.ambient, "light.ambient");
+  if (scene.background) check.requireRadiance(*scene.background, "light.background");
+
+  const SamplingOptions& sampling = scene.sampling;
+  check.require(sampling.spacing > 0 && std::isfinite(sampling.spacing), "sampling.spacing", print(sampling.spacing),
+                "above 0");
+  check.requireEither(sampling.bits, 16, 32, "sampling.bits");
+  check.require(sampling.saturation >= 0 && sampling.saturation < 1, "sampling.saturation", print(sampling.saturation),
+                "in [0, 1)");
+  check.requireWithin(sampling.tableSize, 2, 4096, "sampling.tableSize");
+
+  const OcclusionOptions& occlusion = scene.occlusion;
+  check.require(occlusion.aperture >= 0 && occlusion.aperture < kPi / 2, "occlusion.theta",
+                printDegrees(occlusion.aperture), "in [0, 90)");
+  check.requireWithin(occlusion.footprint, 1, 16, "occlusion.footprint");
+  check.requireEither(occlusion.passes, 1, 2, "occlusion.passes");
+  check.requireEither(occlusion.algorithm, 2, 3, "occlusion.algorithm");
+  check.requireEither(occlusion.bits, 16, 32, "occlusion.bits");
+
+  checkClip(check, scene);
+
+  const BrickSettings& bricks = scene.bricks;
+  check.require(bricks.interior >= 8 && bricks.interior <= 256 && bricks.interior % 8 == 0, "bricks.interior",
+                std::to_string(bricks.interior), "a multiple of 8 from 8 to 256");
+  bool known = false;
+  std::string formats;
+  for (const std::string_view format : kTexelFormats) {
+    known = known || format == bricks.format;
+    formats.append(formats.empty() ? "" : ", ").append(format);
+  }
+  check.require(known, "bricks.format", "'" + bricks.format + "'", "one of " + formats);
+  check.require(bricks.budgetMiB >= 1 && bricks.budgetMiB <= (std::uint64_t(1) << 40), "bricks.budgetMiB",
+                std::to_string(bricks.budgetMiB), "1 to 2^40");
+  return check.complaint();
+}
+
+void validateScene(const Scene& scene) {
+  if (const auto complaint = findComplaint(scene)) throw InvalidArgument(complaint->field + ": " + complaint->message);
+}
+
+}  // namespace umbrick

@@ -1,0 +1,209 @@
+#include "umbrick/scene/scene.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include "support/random_transfer.h"
+#include "support/temporary_folder.h"
+#include "umbrick/core/error.h"
+
+using namespace umbrick;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+Scene parse(const std::string& text) { return parseScene(text, "s.json"); }
+
+// A valid scene in which every field differs from its default.
+Scene randomScene(std::mt19937& random) {
+  std::mt19937_64 wide(random());
+  const auto number = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(wide); };
+  const auto vector = [&](double low, double high) {
+    const double x = number(low, high), y = number(low, high);
+    return glm::dvec3(x, y, number(low, high));
+  };
+  Scene scene;
+  scene.volume = {"some folder/vol\"1.vdb", "density[1]"};
+  scene.transfer = random() % 2 ? randomTransferFunction(random, 5) : randomTransferFunction2d(random, 3);
+  scene.camera.projection = Projection::orthographic;
+  scene.camera.fov = number(0.01, 3.1);
+  scene.camera.nearDistance = number(0, 9);
+  scene.camera.width = 1 + static_cast<int>(random() % 2000);
+  scene.camera.height = 1 + static_cast<int>(random() % 2000);
+  if (random() % 2) {
+    scene.orbit = Orbit{number(-7, 7), number(-2, 2)};
+  } else {
+    scene.orbit.reset();
+    scene.camera.eye = vector(-1e5, 1e5);
+    scene.camera.lookAt = vector(-1, 1);
+    scene.camera.up = vector(-1e-5, 1e-5);
+    scene.camera.viewHeight = number(1e-6, 1e6);
+  }
+  scene.model = Model::cone;
+  scene.ambient = vector(0, 5);
+  scene.background = vector(0, 1);
+  scene.sampling = {number(1e-4, 5), false, Quadrature::midpoint, 16, number(0, 0.1), 1024};
+  scene.occlusion = {number(0, 1.57), 5, 2, 2, false, 16};
+  scene.clipPlanes = {ClipPlane(vector(-1, 1), number(-9, 9)), ClipPlane(vector(-1, 1), number(-9, 9))};
+  scene.clipBox = Box{vector(-9, -1), vector(0, 9)};
+  scene.bricks = {false, 64, false, "half", 123'456'789'012};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("A printed scene parses back to an equal one, to the last bit", "[scene]") {
+  std::mt19937 random(31);
+  for (int i = 0; i < 200; ++i) {
+    const Scene scene = randomScene(random);
+    validateScene(scene);
+    const Scene again = parse(printScene(scene));
+    REQUIRE(again == scene);
+  }
+  CHECK(parse(printScene(Scene{})) == Scene{});
+}
+
+TEST_CASE("What a scene leaves out keeps its default", "[scene]") {
+  CHECK(parse("{}") == Scene{});
+  const Scene scene = parse(R"({"camera": {"azimuth": 90}, "occlusion": {"theta": 45}})");
+  CHECK(scene.orbit->azimuth == Approx(kPi / 2).epsilon(1e-15));
+  CHECK(scene.orbit->elevation == 0);
+  CHECK(scene.occlusion.aperture == Approx(kPi / 4).epsilon(1e-15));
+  CHECK(scene.occlusion.footprint == OcclusionOptions{}.footprint);
+  CHECK_FALSE(scene.background);
+}
+
+TEST_CASE("An eye replaces the orbit", "[scene]") {
+  const Scene scene = parse(R"({"camera": {"eye": [1, 2, 3], "up": [0, 0, 1], "viewHeight": 7,
+                                           "projection": "orthographic"}})");
+  CHECK_FALSE(scene.orbit);
+  CHECK(scene.camera.eye == glm::dvec3(1, 2, 3));
+  CHECK(scene.camera.viewHeight == 7);
+  CHECK_THROWS_WITH(parse(R"({"camera": {"eye": [1, 2, 3], "azimuth": 7}})"),
+                    "s.json:1:42: camera.azimuth: places the camera, but so does 'eye': give one of them");
+  CHECK_THROWS_WITH(parse(R"({"camera": {"up": [1, 2, 3]}})"), Contains("camera.up: needs 'eye'"));
+}
+
+TEST_CASE("A transfer function comes from a preset, a file or the scene itself", "[scene]") {
+  const TemporaryFolder folder;
+  const std::string inlined = R"({"points": [{"value": 1, "albedo": [1, 1, 1], "sigma_t": 2}]})";
+  std::ofstream(folder.path() / "mine.json") << inlined;
+  std::ofstream(folder.path() / "bad.json") << "{\"points\":\n 7}";
+  const auto read = [&](const std::string& text) {
+    std::ofstream(folder.path() / "scene.json") << text;
+    return readScene(folder.path() / "scene.json");
+  };
+  CHECK(read(R"({"transfer": "ct-head"})").transfer == loadTransferFunction("ct-head"));
+  CHECK(read(R"({"transfer": "mine.json"})").transfer == parseTransferFunction(inlined, ""));
+  CHECK(read("{\"transfer\": " + inlined + "}").transfer == parseTransferFunction(inlined, ""));
+  CHECK(read(R"({"transfer": [{"RGBPoints": [0, 0, 0, 0, 1, 1, 1, 1], "ColorSpace": "RGB"}]})")
+            .transfer->values()
+            .back() == 1);
+  CHECK(read(R"({"transfer": "smoke", "window": [1, 5], "sigmaScale": 2})").transfer ==
+        loadTransferFunction("smoke").windowed(1, 5).scaled(2));
+  CHECK(read(R"({"volume": {"file": "a.vdb"}})").volume.file == folder.path() / "a.vdb");
+  CHECK(read(R"({"volume": {"file": "/a.vdb"}})").volume.file == "/a.vdb");
+  CHECK_THROWS_WITH(read("{\n\"transfer\": \"smoek\"}"),
+                    Contains("scene.json:2:13: transfer: expected a file or one of the presets ct-bone"));
+  CHECK_THROWS_WITH(read(R"({"transfer": "bad.json"})"), Contains("bad.json:2:2: points: expected an array, found 7"));
+  CHECK_THROWS_WITH(read(R"({"transfer": {"points": [{"value": 0}]}})"),
+                    Contains("scene.json:1:26: transfer.points[0]: the field 'albedo' is missing"));
+  CHECK_THROWS_WITH(read(R"({"window": [0, 1]})"), Contains("window: there is no 'transfer'"));
+}
+
+TEST_CASE("Malformed scenes are refused with line, column and field", "[scene]") {
+  CHECK_THROWS_WITH(parse("{\n  \"occlusion\": {\"theta\": 90}\n}"),
+                    "s.json:2:26: occlusion.theta: is 90 degrees, must be in [0, 90)");
+  CHECK_THROWS_WITH(parse(R"({"oclusion": {}})"), "s.json:1:14: oclusion: unknown field; did you mean 'occlusion'?");
+  CHECK_THROWS_WITH(parse(R"({"occlusion": {"Theta": 3}})"), Contains("did you mean 'theta'?"));
+  CHECK_THROWS_WITH(parse(R"({"camera": {"size": [512]}})"),
+                    Contains("camera.size: expected an array of 2, found an array of 1"));
+  CHECK_THROWS_WITH(parse(R"({"camera": {"size": [512, 3.5]}})"),
+                    Contains("camera.size[1]: expected a whole number, found 3.5"));
+  CHECK_THROWS_WITH(parse(R"({"camera": {"size": [512, 0]}})"),
+                    Contains("camera.size: is 512 x 0, must be at least 1 x 1"));
+  CHECK_THROWS_WITH(parse(R"({"camera": {"eye": [0, 0, 0]}})"), Contains("camera: eye and look-at are the same point"));
+  CHECK_THROWS_WITH(parse(R"({"camera": {"projection": "fisheye"}})"),
+                    Contains("camera.projection: expected one of perspective, orthographic, found 'fisheye'"));
+  CHECK_THROWS_WITH(parse(R"({"model": 7})"), Contains("model: expected a string, found 7"));
+  CHECK_THROWS_WITH(parse(R"({"sampling": {"spacing": 0}})"), Contains("sampling.spacing: is 0, must be above 0"));
+  CHECK_THROWS_WITH(parse(R"({"clip": {"planes": [[0, 0, 1, 0], [0, 0, 0, 1]]}})"),
+                    Contains("s.json:1:36: clip.planes[1]: is [0, 0, 0, 1], must be a plane"));
+  CHECK_THROWS_WITH(parse(R"({"clip": {"box": [[0, 0, 0], [1, 0, 1]]}})"),
+                    Contains("clip.box: is [0, 0, 0] to [1, 0, 1]"));
+  CHECK_THROWS_WITH(parse(R"({"bricks": {"format": "rgb"}})"),
+                    Contains("bricks.format: is 'rgb', must be one of auto, "));
+  CHECK_THROWS_WITH(parse(R"({"bricks": {"budgetMiB": -1}})"), Contains("bricks.budgetMiB: expected a whole number"));
+  CHECK_THROWS_WITH(parse("[1, 2"), Contains("not JSON"));
+  CHECK_THROWS_WITH(parse("[1, 2]"), Contains("s.json:1:1: expected an object, found an array of 2"));
+  CHECK_THROWS_WITH(readScene("/nowhere/scene.json"), Contains("/nowhere/scene.json: cannot read: No such file"));
+}
+
+TEST_CASE("Every field of a scene has its range, however the scene was made", "[scene]") {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  struct Case {
+    const char* field;
+    std::function<void(Scene&)> change;
+  };
+  const Case cases[] = {
+      {"camera.size", [](Scene& s) { s.camera.width = 0; }},
+      {"camera.fov", [](Scene& s) { s.camera.fov = 0; }},
+      {"camera.fov", [](Scene& s) { s.camera.fov = kPi; }},
+      {"camera.near", [=](Scene& s) { s.camera.nearDistance = infinity; }},
+      {"camera.near", [](Scene& s) { s.camera.nearDistance = -1; }},
+      {"camera.azimuth", [=](Scene& s) { s.orbit->azimuth = nan; }},
+      {"camera.elevation", [=](Scene& s) { s.orbit->elevation = nan; }},
+      {"camera.eye", [=](Scene& s) { s.orbit.reset(), s.camera.eye.x = nan; }},
+      {"camera.viewHeight", [](Scene& s) { s.orbit.reset(), s.camera.viewHeight = 0; }},
+      {"camera: up is parallel",
+       [](Scene& s) {
+         s.orbit.reset(), s.camera.up = {0, 0, 2};
+       }},
+      {"light.ambient", [](Scene& s) { s.ambient.g = -0.1; }},
+      {"light.background", [=](Scene& s) { s.background = glm::dvec3(infinity); }},
+      {"sampling.spacing", [](Scene& s) { s.sampling.spacing = -1; }},
+      {"sampling.spacing", [=](Scene& s) { s.sampling.spacing = nan; }},
+      {"sampling.bits", [](Scene& s) { s.sampling.bits = 24; }},
+      {"sampling.saturation", [](Scene& s) { s.sampling.saturation = 1; }},
+      {"sampling.tableSize", [](Scene& s) { s.sampling.tableSize = 1; }},
+      {"sampling.tableSize", [](Scene& s) { s.sampling.tableSize = 4097; }},
+      {"occlusion.theta", [](Scene& s) { s.occlusion.aperture = kPi / 2; }},
+      {"occlusion.theta", [](Scene& s) { s.occlusion.aperture = -1e-9; }},
+      {"occlusion.footprint", [](Scene& s) { s.occlusion.footprint = 17; }},
+      {"occlusion.passes", [](Scene& s) { s.occlusion.passes = 0; }},
+      {"occlusion.algorithm", [](Scene& s) { s.occlusion.algorithm = 1; }},
+      {"occlusion.bits", [](Scene& s) { s.occlusion.bits = 8; }},
+      {"clip.planes[0]", [](Scene& s) { s.clipPlanes = {ClipPlane(0, 0, 0, 1)}; }},
+      {"clip.planes[1]",
+       [=](Scene& s) {
+         s.clipPlanes = {ClipPlane(1, 0, 0, 1), ClipPlane(1, 0, 0, nan)};
+       }},
+      {"clip.box", [](Scene& s) { s.clipBox = Box{}; }},
+      {"bricks.interior", [](Scene& s) { s.bricks.interior = 12; }},
+      {"bricks.interior", [](Scene& s) { s.bricks.interior = 264; }},
+      {"bricks.format", [](Scene& s) { s.bricks.format = "R8"; }},
+      {"bricks.budgetMiB", [](Scene& s) { s.bricks.budgetMiB = 0; }},
+  };
+  for (const Case& c : cases) {
+    Scene scene;
+    validateScene(scene);
+    c.change(scene);
+    INFO(c.field);
+    CHECK_THROWS_WITH(validateScene(scene), Catch::Matchers::StartsWith(c.field));
+  }
+}
+
+TEST_CASE("The bundled scenes are valid", "[scene]") {
+  for (const auto& entry : fs::directory_iterator(fs::path(UMBRICK_ASSETS) / "scenes"))
+    if (entry.path().extension() == ".json") CHECK_NOTHROW(readScene(entry.path()));
+  const Scene head = readScene(fs::path(UMBRICK_ASSETS) / "scenes" / "head.json");
+  CHECK(head.model == Model::cone);
+  CHECK(head.transfer == loadTransferFunction("ct-head"));
+}
