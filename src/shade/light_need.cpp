@@ -6,18 +6,17 @@
 namespace umbrick {
 namespace {
 
-// What a Gaussian walk carries beyond 5 standard deviations is 6e-7: less than a float resolves beside 1.
-constexpr double kDeviations = 5;
-
 // The last slice that may cover each tile.
-std::vector<float> lastSlices(const ProxySlices& slices, const glm::ivec2& tiles, const glm::ivec2& size, int tileEdge) {
+std::vector<float> lastSlices(const ProxySlices& slices, const glm::ivec2& tiles, const glm::ivec2& size,
+                              int tileEdge) {
   std::vector<float> last(static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y), -1.0f);
   for (std::int64_t i = 0; i < slices.count(); ++i)
     for (int p = slices.start[static_cast<std::size_t>(i)]; p < slices.start[static_cast<std::size_t>(i) + 1]; ++p) {
       const ScreenRegion covered = coveredRegion(slices, p, p + 1, size);
       for (int y = covered.min.y / tileEdge; y * tileEdge < covered.max.y; ++y)
         for (int x = covered.min.x / tileEdge; x * tileEdge < covered.max.x; ++x)
-          last[static_cast<std::size_t>(y) * static_cast<std::size_t>(tiles.x) + static_cast<std::size_t>(x)] = static_cast<float>(i);
+          last[static_cast<std::size_t>(y) * static_cast<std::size_t>(tiles.x) + static_cast<std::size_t>(x)] =
+              static_cast<float>(i);
     }
   return last;
 }
@@ -30,7 +29,7 @@ LightNeed::LightNeed(const GlFunctions& gl)
       mark_(gl, "shade/full_screen.vert", "shade/unneeded.frag", {{"kTileEdge", kTileEdge}}),
       nothing_(gl) {}
 
-void LightNeed::begin(const Frame& frame, std::span<const SliceStep> steps, std::span<const double> stepDeviation) {
+void LightNeed::begin(const Frame& frame, std::span<const SliceStep> steps) {
   const GlFunctions& gl = frame.gl;
   const glm::ivec2 tiles = (frame.size() + kTileEdge - 1) / kTileEdge;
   if (tiles != tileCount_) {
@@ -50,8 +49,8 @@ void LightNeed::begin(const Frame& frame, std::span<const SliceStep> steps, std:
   growth_.assign(count, 1);
   double variance = 0;
   for (std::size_t i = count; i-- > 1;) {
-    variance = variance * steps[i].scale * steps[i].scale + stepDeviation[i] * stepDeviation[i];
-    reach_[i - 1] = kDeviations * std::sqrt(variance) + 2 * (steps[i].radius + 1);
+    variance = variance * steps[i].scale * steps[i].scale + steps[i].deviation * steps[i].deviation;
+    reach_[i - 1] = kWalkReach * std::sqrt(variance) + 2 * (steps[i].radius + 1);
     growth_[i - 1] = growth_[i] * steps[i].scale;
   }
 }

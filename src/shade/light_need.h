@@ -5,15 +5,15 @@
 
 namespace umbrick {
 
-/// A saturated pixel is not done when light is carried: its occlusion spreads to neighbours that still see. But it spreads as a
-/// random walk, so that what lies many standard deviations of the remaining walk away from every unsaturated pixel
-/// with bricks to come cannot matter. That is decided by tiles, on the graphics side, without waiting for it.
+/// A saturated pixel is not done when light is carried: its occlusion spreads to neighbours that still see. But it
+/// spreads as a random walk, so that what lies many standard deviations of the remaining walk away from every
+/// unsaturated pixel with bricks to come cannot matter. That is decided by tiles, on the graphics side, without waiting
+/// for it.
 class LightNeed {
  public:
   explicit LightNeed(const GlFunctions& gl);
   /// Before the first slice. @param steps  by slice, see occlusionRegions
-  /// @param stepDeviation  of the walk in one slice along an axis, by slice, pixels
-  void begin(const Frame& frame, std::span<const SliceStep> steps, std::span<const double> stepDeviation);
+  void begin(const Frame& frame, std::span<const SliceStep> steps);
   /// Marks what slices from `slice` on do not need.
   void run(const Frame& frame, std::int64_t slice);
 

@@ -34,7 +34,7 @@ class OcclusionPass : public SlicePass {
     planRegions(frame);
     if (frame.scene.sampling.saturation > 0) {
       if (!need_) need_.emplace(gl);
-      need_->begin(frame, steps_, deviations());
+      need_->begin(frame, steps_);
     }
     previous_ = 0;
     stencil_ = 0;
@@ -58,14 +58,14 @@ class OcclusionPass : public SlicePass {
     const double depth = frame.slices.depth(i);
     const double extent = d * std::tan(frame.scene.occlusion.aperture);  // Eq. 11
     const double pixel = 2 * frame.view.halfExtent.y / frame.camera.height;
-    if (frame.view.projection == Projection::orthographic) return {1, extent / pixel};
+    if (frame.view.projection == Projection::orthographic) return {1, extent / pixel, 0};
     if (!frame.scene.occlusion.perspectiveCorrection) {
       // As if the view were parallel: the footprint keeps the size it has at the point looked at.
-      return {1, extent / (pixel * glm::length(frame.camera.lookAt - frame.camera.eye))};
+      return {1, extent / (pixel * glm::length(frame.camera.lookAt - frame.camera.eye)), 0};
     }
     // The first slab has nothing before it: all is unoccluded, wherever it is read.
-    if (depth - d <= 0) return {1, 0};
-    return {depth / (depth - d), extent / (pixel * (depth - d))};
+    if (depth - d <= 0) return {1, 0, 0};
+    return {depth / (depth - d), extent / (pixel * (depth - d)), 0};
   }
 
   void planRegions(const Frame& frame) {
@@ -75,18 +75,16 @@ class OcclusionPass : public SlicePass {
     for (std::size_t i = 0; i < count; ++i) {
       covered_[i] = coveredRegion(frame.slices, frame.slices.start[i], frame.slices.start[i + 1], frame.size());
       steps_[i] = step(frame, static_cast<std::int64_t>(i));
+      steps_[i].deviation = deviation(steps_[i]);
     }
     regions_ = occlusionRegions(covered_, steps_, frame.size());
   }
 
-  // Standard deviation of one step of the walk along an axis, pixels.
-  std::vector<double> deviations() const {
+  double deviation(const SliceStep& step) const {
     double square = 0;
     for (const glm::dvec2& point : disk_) square += 0.5 * glm::dot(point, point) / static_cast<double>(disk_.size());
-    std::vector<double> all;
-    // Linear interpolation adds up to a quarter of a squared pixel.
-    for (const SliceStep& step : steps_) all.push_back(std::sqrt(square * step.radius * step.radius + 0.25));
-    return all;
+    // Linear interpolation at a fraction f adds f (1 - f), a sixth of a squared pixel in the mean.
+    return std::sqrt(square * step.radius * step.radius + 1.0 / 6);
   }
 
   void setFootprint(GlProgram& program, const Frame& frame, const SliceStep& step) const {
@@ -223,7 +221,7 @@ class OcclusionPass : public SlicePass {
   std::vector<SliceStep> steps_;
   int previous_ = 0;  // occlusion buffer that holds the slice before
   std::int64_t sinceNeed_ = 0;
-  int stencil_ = 0;   // number of the slice in the stencil buffer, 1 to 255
+  int stencil_ = 0;  // number of the slice in the stencil buffer, 1 to 255
 };
 
 }  // namespace

@@ -6,41 +6,47 @@
 namespace umbrick {
 namespace {
 
-// Linear interpolation reads half a texel further, rounding a little more.
+// Linear interpolation reads half a texel farther, rounding a little more.
 constexpr double kFilterReach = 1.0;
 
 int toPixel(double x, int size) { return static_cast<int>(std::clamp(x, 0.0, static_cast<double>(size))); }
 
-// Pixels of a slice that read something of `region` of the slice before.
-ScreenRegion readersOf(const ScreenRegion& region, const SliceStep& step, const glm::ivec2& size) {
-  if (region.empty()) return {};
-  ScreenRegion readers;
-  for (int axis = 0; axis < 2; ++axis) {
-    const double centre = 0.5 * size[axis], reach = step.radius + kFilterReach;
-    // A read beyond the screen gives its edge: what touches the edge is read from all the way out.
-    const double low = region.min[axis] <= 0 ? 0 : centre + (region.min[axis] - reach - centre) / step.scale;
-    const double high =
-        region.max[axis] >= size[axis] ? size[axis] : centre + (region.max[axis] + reach - centre) / step.scale;
-    readers.min[axis] = toPixel(std::floor(low), size[axis]);
-    readers.max[axis] = toPixel(std::ceil(high), size[axis]);
-  }
-  return readers;
-}
+// A rectangle of pixels as light spreads from it: its core stays sharp, variances of the steps add around it.
+struct Spread {
+  ScreenRegion core;
+  double variance = 0, lastRadius = 0;
 
-// Pixels of the slice before that `region` of a slice reads.
-ScreenRegion readBy(const ScreenRegion& region, const SliceStep& step, const glm::ivec2& size) {
-  if (region.empty()) return {};
-  ScreenRegion read;
-  for (int axis = 0; axis < 2; ++axis) {
-    const double centre = 0.5 * size[axis], reach = step.radius + kFilterReach;
-    const double low = centre + (region.min[axis] - centre) * step.scale - reach;
-    const double high = centre + (region.max[axis] - centre) * step.scale + reach;
-    // At least the edge pixel, which stands for all beyond it.
-    read.min[axis] = std::min(toPixel(std::floor(low), size[axis]), size[axis] - 1);
-    read.max[axis] = std::max(toPixel(std::ceil(high), size[axis]), 1);
+  // Where the core is seen from one slice farther back, `inwards`, or one nearer.
+  void step(const SliceStep& s, bool inwards, const glm::ivec2& size) {
+    if (core.empty()) return;
+    const double scale = inwards ? 1 / s.scale : s.scale;
+    for (int axis = 0; axis < 2; ++axis) {
+      const double centre = 0.5 * size[axis];
+      // A read beyond the screen gives its edge: what touches the edge is read from all the way out.
+      const bool lowEdge = inwards && core.min[axis] <= 0, highEdge = inwards && core.max[axis] >= size[axis];
+      const double low = lowEdge ? 0 : centre + (core.min[axis] - centre) * scale;
+      const double high = highEdge ? size[axis] : centre + (core.max[axis] - centre) * scale;
+      // At least the edge pixel, which stands for all beyond it.
+      core.min[axis] = std::min(toPixel(std::floor(low), size[axis]), size[axis] - 1);
+      core.max[axis] = std::max(toPixel(std::ceil(high), size[axis]), 1);
+    }
+    variance = (variance + (inwards ? s.deviation * s.deviation : 0)) * scale * scale +
+               (inwards ? 0 : s.deviation * s.deviation);
+    lastRadius = s.radius;
   }
-  return read;
-}
+
+  ScreenRegion region(const glm::ivec2& size) const {
+    if (core.empty()) return {};
+    // The first steps are no Gaussian: two of them in full.
+    const double reach = kWalkReach * std::sqrt(variance) + 2 * (lastRadius + kFilterReach);
+    ScreenRegion grown;
+    for (int axis = 0; axis < 2; ++axis) {
+      grown.min[axis] = toPixel(std::floor(core.min[axis] - reach), size[axis]);
+      grown.max[axis] = toPixel(std::ceil(core.max[axis] + reach), size[axis]);
+    }
+    return grown;
+  }
+};
 
 }  // namespace
 
@@ -67,22 +73,22 @@ void ScreenRegion::intersect(const ScreenRegion& other) {
 std::vector<ScreenRegion> occlusionRegions(std::span<const ScreenRegion> covered, std::span<const SliceStep> steps,
                                            const glm::ivec2& size) {
   const std::size_t count = covered.size();
-  // Forwards: what has been darkened so far. It never shrinks, since a buffer still holds what was written two slices
-  // ago.
+  // Forwards: what has been darkened so far. A region never shrinks, since a buffer still holds what was written two
+  // slices ago.
   std::vector<ScreenRegion> regions(count);
-  ScreenRegion darkened;
+  Spread darkened;
   for (std::size_t i = 0; i < count; ++i) {
-    if (i > 0) darkened.include(readersOf(darkened, steps[i], size));
-    darkened.include(covered[i]);
-    regions[i] = darkened;
+    if (i > 0) darkened.step(steps[i], true, size);
+    darkened.core.include(covered[i]);
+    regions[i] = darkened.region(size);
+    if (i > 0) regions[i].include(regions[i - 1]);
   }
   // Backwards: what later slices look at.
-  ScreenRegion wanted;
+  Spread wanted;
   for (std::size_t i = count; i-- > 0;) {
-    regions[i].intersect(wanted);
-    ScreenRegion readers = covered[i];
-    readers.include(wanted);
-    wanted = readBy(readers, steps[i], size);
+    regions[i].intersect(wanted.region(size));
+    wanted.core.include(covered[i]);
+    wanted.step(steps[i], false, size);
   }
   return regions;
 }

@@ -20,9 +20,15 @@ struct ScreenRegion {
 struct SliceStep {
   double scale = 1;
   double radius = 0;
+  double deviation = 0;  // standard deviation of what it reads, along an axis, pixels
 };
 
-/// For every slice the smallest rectangle found outside of which its occlusion is 1 or never read again.
+/// What a walk of many steps carries farther than so many standard deviations does not matter: 3e-5 of a Gaussian, of
+/// light that is between 0 and 1.
+inline constexpr double kWalkReach = 4;
+
+/// For every slice a rectangle outside of which its occlusion is 1 or never read again, but for what light carries
+/// farther than kWalkReach.
 /// @param covered  pixels that bricks cover, by slice
 /// @param steps    by slice; the first is never used
 std::vector<ScreenRegion> occlusionRegions(std::span<const ScreenRegion> covered, std::span<const SliceStep> steps,
