@@ -2,11 +2,16 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <stdexcept>
+#include <utility>
 
 namespace umbrick::tools {
 
 /// What a sub-command does once its options are parsed; the exit status.
 using Run = std::function<int()>;
+
+/// A sub-command and what it does.
+using Command = std::pair<CLI::App*, Run>;
 
 /// Wrong usage that CLI11 cannot see, such as options that exclude each other: exit status 2.
 struct UsageError : std::runtime_error {
@@ -14,4 +19,7 @@ struct UsageError : std::runtime_error {
 };
 
 // Each in the file of its name. Adds a sub-command with its options to `app`.
+Command addConvert(CLI::App& app);
+Command addRender(CLI::App& app);
+
 }  // namespace umbrick::tools

@@ -1,7 +1,6 @@
 // The umbrick program: one sub-command per file beside this one.
 #include <exception>
 #include <iostream>
-#include <utility>
 #include <vector>
 
 #include "command.h"
@@ -14,7 +13,10 @@ int runProgram(int argc, char** argv) {
   CLI::App app{"Sparse volumes: convert, inspect, render, check.", "umbrick"};
   app.set_version_flag("--version", "umbrick " UMBRICK_VERSION);
   app.require_subcommand(1);
-  std::vector<std::pair<CLI::App*, Run>> commands;
+  const std::vector<Command> commands{
+      addConvert(app),
+      addRender(app),
+  };
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,1 @@
+umbrick_tests(brick brick_voxels_test.cpp brick_ranges_test.cpp)

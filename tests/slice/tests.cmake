@@ -1,0 +1,1 @@
+umbrick_tests(slice proxy_slices_test.cpp)

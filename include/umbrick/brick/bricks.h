@@ -46,14 +46,18 @@ class Bricks {
 
   BrickLayout layout;
   glm::dmat4 indexToWorld{1};  // affine
-  IndexBox domain;             // active voxels grown by one: the medium is defined in [domain.min, domain.max]
-  Range value;                 // over all voxels, the background included
-  Range gradient;              // {0, 0} without gradients
+  // Active voxels, and others that differ from the background, grown by one: the medium is defined in [domain.min,
+  // domain.max].
+  IndexBox domain;
+  Range value;     // over all voxels, the background included
+  Range gradient;  // {0, 0} without gradients
   float background = 0;
   bool hasGradients = false;
   VoxelFormat exactFormat = VoxelFormat::float32;
   std::uint64_t nonFiniteVoxels = 0;  // active NaN or infinite voxels, read as background
-  std::vector<Brick> bricks;          // that hold anything but background, ascending in z, then y, then x
+  // Of the cells that meet the domain, those that hold anything but background in interior or apron, or a gradient;
+  // ascending in z, then y, then x.
+  std::vector<Brick> bricks;
 
   /// Voxels of the cell whose first owned voxel is `origin` (any lattice cell, also one not in `bricks`), x fastest,
   /// edge() voxels along each axis beginning at origin - apron. Safe to call from several threads.

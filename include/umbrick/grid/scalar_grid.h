@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <glm/mat4x4.hpp>
 #include <string>
+#include <vector>
 
 #include "umbrick/core/box.h"
 
@@ -16,6 +17,7 @@ struct ScalarGrid {
   std::string name;
   double conversionError = 0;  // largest |stored - float| when the file held double or integers beyond 24 bits
 
+  /// @throw InvalidArgument  the transform is not affine
   glm::dmat4 indexToWorld() const;
   /// Bounds of the active voxels' centres; tiles included. Empty for an empty grid.
   IndexBox activeBox() const;
@@ -25,11 +27,27 @@ struct ScalarGrid {
 
 /// Reads a grid of a .vdb file.
 /// @param selector  empty: the only scalar grid, or else the one called "density"; "name"; "name[1]": the second of
-/// that name
+///                  that name
 /// @throw IoError          missing, a directory, truncated, corrupt or not a .vdb file
 /// @throw InvalidArgument  no such grid (lists those there are), not a scalar grid (names its type), or a transform
-/// that
-///                         is not affine (frustum)
+///                         that is not affine (frustum)
 ScalarGrid readScalarGrid(const std::filesystem::path& path, const std::string& selector = {});
+
+/// What a .vdb file holds, told without reading voxels.
+struct GridListing {
+  struct Row {
+    std::string
+        label;         // what readScalarGrid takes: the name, with "[k]" behind it when several share it or it is empty
+    std::string type;  // "float", "vec3s", ...
+    bool scalar = false;
+  };
+  std::vector<Row> grids;
+  openvdb::MetaMap metadata;  // of the file
+};
+/// @throw IoError
+GridListing listGrids(const std::filesystem::path& path);
+
+/// As readScalarGrid, but takes any transform: to copy a grid, not to render it.
+ScalarGrid readScalarGridAnyTransform(const std::filesystem::path& path, const std::string& selector);
 
 }  // namespace umbrick

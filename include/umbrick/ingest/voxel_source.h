@@ -4,12 +4,21 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace umbrick {
 
 enum class VoxelType { u8, i8, u16, i16, u32, i32, f32, f64 };
+
+/// "u8" ... "f64"
+std::string_view voxelTypeName(VoxelType type);
+/// The type of that name, or nothing.
+std::optional<VoxelType> voxelTypeFromName(std::string_view name);
+/// Bytes of one voxel.
+int voxelBytes(VoxelType type);
 
 struct VolumeInfo {
   std::string name;            // what messages call the source, usually its file name
@@ -17,6 +26,7 @@ struct VolumeInfo {
   glm::dmat4 indexToWorld{1};  // voxel centres at integers
   VoxelType type = VoxelType::u8;
   std::map<std::string, std::string> metadata;
+  std::int64_t fileBytes = 0;  // of the files that hold it, packed as they are
 };
 
 /// Slabs of a dense volume, read in order of z.
@@ -25,8 +35,9 @@ class VoxelSource {
   virtual ~VoxelSource() = default;
   const VolumeInfo& info() const { return info_; }
   /// The next `count` slices, x fastest, as 32-bit float: out.size() == dims.x * dims.y * count.
+  /// With the last slice the source also checks that nothing is left over.
   /// @return the largest error of the conversion to float in this slab (0 but for 32-bit integers and f64)
-  /// @throw IoError  the file ends early (expected and found bytes) or cannot be decoded
+  /// @throw IoError  the file ends early or late (expected and found bytes) or cannot be decoded
   virtual double readSlab(std::int64_t count, std::span<float> out) = 0;
 
  protected:

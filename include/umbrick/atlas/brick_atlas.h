@@ -1,0 +1,92 @@
+// Bricks as blocks of 3D textures.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <map>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "umbrick/brick/bricks.h"
+#include "umbrick/gl/context.h"
+#include "umbrick/gl/objects.h"
+
+namespace umbrick {
+
+struct AtlasOptions {
+  VoxelFormat format = VoxelFormat::float32;
+  std::uint64_t budgetBytes = std::uint64_t{2} << 30;        // of all textures together
+  std::uint64_t maxTextureBytes = std::uint64_t{512} << 20;  // of one texture; software drivers refuse more than 1 GiB
+  int maxTextureEdge = 0;                                    // texels; 0: what the driver allows
+};
+
+/// Texels to grid values: value = offset + texel * scale, where a texel is what a shader reads.
+struct TexelScale {
+  double scale = 1, offset = 0;
+};
+
+/// A pool of slots, all in textures of one size, filled as bricks are required. When every brick fits, each is uploaded
+/// once; else the caller releases bricks that the sweep has left behind. Bricks of one value share a slot.
+class BrickAtlas {
+ public:
+  struct Slot {
+    int texture = 0;
+    glm::ivec3 origin{0};  // texels, of the first apron voxel
+  };
+
+  /// @param bricks  those that may be required, by their position in the list
+  /// @throw InvalidArgument  not even one brick fits the budget or a texture: says what is needed and what there is
+  /// @throw GlError
+  BrickAtlas(const GlContext& context, const Bricks& volume, std::vector<Brick> bricks, const AtlasOptions& options);
+
+  /// Makes bricks resident, those that are not yet.
+  /// @throw InvalidArgument  more slots are needed than the budget allows: names both sizes
+  void require(std::span<const std::int32_t> bricks);
+  /// Gives the brick's slot back.
+  void release(std::int32_t brick);
+
+  bool isResident(std::int32_t brick) const { return slotOf_[static_cast<std::size_t>(brick)] >= 0; }
+  Slot slot(std::int32_t brick) const;  // of a resident brick
+  GLuint texture(int index) const { return textures_[static_cast<std::size_t>(index)].name(); }
+  int textureCount() const { return static_cast<int>(textures_.size()); }
+  glm::ivec3 textureSize() const { return size_; }
+  TexelScale valueScale() const { return valueScale_; }
+  const std::vector<Brick>& bricks() const { return bricks_; }
+  const BrickLayout& layout() const { return volume_.layout; }
+  std::size_t slots() const { return slots_; }
+  bool holdsAll() const { return holdsAll_; }
+  std::uint64_t textureBytes() const;
+  std::uint64_t uploadedBricks() const { return uploaded_; }
+  /// Largest difference between a voxel and its texel so far; 0 for an exact format.
+  double formatError() const { return formatError_; }
+
+ private:
+  using UniformKey = std::tuple<float, float>;
+  void planTextures(const AtlasOptions& options, int maxEdge);
+  void upload(std::span<const std::pair<std::int32_t, std::int32_t>> brickAndSlot);
+  double encode(std::span<const float> values, std::span<const float> gradients, std::byte* texels) const;
+
+  const GlFunctions& gl_;
+  const Bricks& volume_;
+  std::vector<Brick> bricks_;
+  VoxelFormat format_;
+  TexelScale valueScale_;
+  glm::ivec3 slotGrid_{1}, size_{0};  // slots along each axis of a texture, and its texels
+  std::size_t slots_ = 0;
+  bool holdsAll_ = false;
+  std::vector<GlTexture> textures_;
+  std::vector<std::int32_t> slotOf_;            // by brick, -1 when not resident
+  std::vector<std::int32_t> users_;             // by slot
+  std::vector<std::int32_t> free_;              // slots
+  std::map<UniformKey, std::int32_t> uniform_;  // slots of bricks of one value
+  std::uint64_t uploaded_ = 0;
+  double formatError_ = 0;
+};
+
+/// "auto" takes what the volume needs. @throw InvalidArgument  an unknown name
+VoxelFormat parseVoxelFormat(const std::string& name, const Bricks& volume);
+std::string voxelFormatName(VoxelFormat format);
+
+}  // namespace umbrick

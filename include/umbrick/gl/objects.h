@@ -1,0 +1,75 @@
+// Owners of OpenGL objects: made in the constructor, deleted in the destructor, moved but never copied.
+#pragma once
+#include <cstddef>
+#include <initializer_list>
+#include <utility>
+
+#include "umbrick/gl/functions.h"
+
+namespace umbrick {
+
+/// A name and who deletes it; `Kind` makes and deletes one. The context must be current for both.
+template <class Kind>
+class GlObject {
+ public:
+  GlObject() = default;
+  template <class... Arguments>
+  explicit GlObject(const GlFunctions& gl, Arguments... arguments) : gl_(&gl), name_(Kind::create(gl, arguments...)) {}
+  ~GlObject() {
+    if (gl_) Kind::destroy(*gl_, name_);
+  }
+  GlObject(GlObject&& other) noexcept : gl_(std::exchange(other.gl_, nullptr)), name_(std::exchange(other.name_, 0)) {}
+  GlObject& operator=(GlObject&& other) noexcept {
+    std::swap(gl_, other.gl_);
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  GLuint name() const { return name_; }
+  explicit operator bool() const { return gl_ != nullptr; }
+
+ private:
+  const GlFunctions* gl_ = nullptr;
+  GLuint name_ = 0;
+};
+
+struct GlTextureKind {
+  static GLuint create(const GlFunctions& gl, GLenum target);
+  static void destroy(const GlFunctions& gl, GLuint name);
+};
+struct GlBufferKind {
+  static GLuint create(const GlFunctions& gl);
+  static void destroy(const GlFunctions& gl, GLuint name);
+};
+struct GlVertexArrayKind {
+  static GLuint create(const GlFunctions& gl);
+  static void destroy(const GlFunctions& gl, GLuint name);
+};
+struct GlFramebufferKind {
+  static GLuint create(const GlFunctions& gl);
+  static void destroy(const GlFunctions& gl, GLuint name);
+};
+struct GlQueryKind {
+  static GLuint create(const GlFunctions& gl, GLenum target);
+  static void destroy(const GlFunctions& gl, GLuint name);
+};
+
+using GlTexture = GlObject<GlTextureKind>;
+using GlBuffer = GlObject<GlBufferKind>;
+using GlVertexArray = GlObject<GlVertexArrayKind>;
+using GlFramebuffer = GlObject<GlFramebufferKind>;
+using GlQuery = GlObject<GlQueryKind>;
+
+/// A 2D texture of one level with clamped edges; `filter` GL_NEAREST or GL_LINEAR.
+/// @throw GlError  the driver has no room for it: says size and format
+GlTexture makeTexture2d(const GlFunctions& gl, GLenum format, int width, int height, GLenum filter);
+/// A 3D texture of one level with clamped edges and linear filter. @throw GlError
+GlTexture makeTexture3d(const GlFunctions& gl, GLenum format, int width, int height, int depth);
+
+/// A framebuffer that draws into `colours` (attachments 0, 1, ...) and, if not 0, into a depth-stencil texture.
+/// @throw GlError  the driver refuses the combination
+GlFramebuffer makeFramebuffer(const GlFunctions& gl, std::initializer_list<GLuint> colours, GLuint depthStencil = 0);
+
+/// @throw GlError  an error is pending: names it and `where`
+void checkGl(const GlFunctions& gl, const char* where);
+
+}  // namespace umbrick

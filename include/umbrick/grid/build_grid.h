@@ -1,0 +1,63 @@
+// Dense volumes and dense-ish grids to sparse grids, with the error that it costs.
+#pragma once
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbrick/grid/scalar_grid.h"
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+struct BuildOptions {
+  std::string name = "density";     // of the grid, buildGrid only
+  std::optional<float> background;  // value of what is left out; else 0, or what the grid has
+  float tolerance = 0;              // grid units: voxels this close to the background are left out, and leaves whose
+                                    // values lie this close to one value become a tile
+  std::optional<float> clipBelow;   // grid units: voxels below become background
+  bool half = false;                // round to 16-bit floats and save as such; so is a grid that is so marked already
+  std::function<void(double)> progress;  // called now and then with the share done, 0 to 1; may be empty
+};
+
+/// What a grid holds after it was built, and what was lost. Exact, not sampled.
+struct BuildReport {
+  std::uint64_t voxels = 0;        // looked at: all of a dense volume, the active ones of a grid
+  std::uint64_t activeVoxels = 0;  // after; those in tiles included
+  std::uint64_t activeTiles = 0, leaves = 0;
+  double maxError = 0;         // largest |source - stored| by tolerance and half, of voxels neither clipped nor NaN/Inf
+  double conversionError = 0;  // largest error of the step to 32-bit float, before; add both for a bound of the total
+  std::uint64_t clippedVoxels = 0;  // below clipBelow and not background already
+  double maxClipChange = 0;         // largest |source - background| among them
+  std::uint64_t nonFinite = 0;      // NaN and infinite voxels, stored as background
+  double backgroundChange = 0;      // |new - old| background of a grid: what the outside changes by
+};
+
+struct BuiltGrid {
+  openvdb::FloatGrid::Ptr grid;
+  BuildReport report;
+};
+
+/// Reads a source to its end, slab by slab: only active leaves stay in memory. A fog volume whose transform is the
+/// source's indexToWorld; metadata is kept. Leaves are built on all cores while the next slab is read.
+/// @throw IoError          the source fails
+/// @throw InvalidArgument  tolerance negative, a limit not finite, values that half floats cannot hold, or a transform
+///                         that OpenVDB refuses (voxels of less than 3e-15 cubed world units)
+BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options = {});
+
+/// The same for a grid: class, transform and metadata stay. Active voxels and tiles are treated like the voxels of a
+/// dense volume; inactive ones keep their value and state, except that those that hold the old background follow it.
+/// A level set is only rounded to half where that is asked for: its surface stands and falls with both sides of it.
+/// @throw InvalidArgument  as above
+BuiltGrid sparsifyGrid(const ScalarGrid& grid, const BuildOptions& options = {});
+
+/// Writes grids to a new .vdb file, whole or not at all: Blosc, inactive values left out.
+/// @throw IoError  not writable, disk full
+void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
+                const openvdb::MetaMap& metadata = {});
+
+}  // namespace umbrick

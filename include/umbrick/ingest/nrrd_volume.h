@@ -1,0 +1,20 @@
+// NRRD volumes: attached (.nrrd) and detached (.nhdr) headers.
+#pragma once
+#include <filesystem>
+#include <memory>
+
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+/// Opens a scalar volume of three axes, or of two as one slice; axes of size 1 beyond that are dropped. Encodings raw,
+/// gzip, text and hex; data in the file itself, in one other file, in a list of files or in numbered files.
+///
+/// World space is the space of the file (`space`: LPS, RAS, ...), not converted; its name and the other fields of the
+/// header that do not change voxels are kept as metadata. Format: https://teem.sourceforge.net/nrrd/format.html
+///
+/// @throw IoError  a file is missing, short, long or malformed, or it holds what is not read: several components per
+///                 voxel, 64-bit integers, bzip2
+std::unique_ptr<VoxelSource> openNrrd(const std::filesystem::path& path);
+
+}  // namespace umbrick

@@ -1,0 +1,29 @@
+// Headerless raw volumes: the caller says what the bytes mean.
+#pragma once
+#include <bit>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+struct RawOptions {
+  glm::i64vec3 dims{0};  // voxels along x (fastest), y, z
+  VoxelType type = VoxelType::u8;
+  std::endian endian = std::endian::little;
+  std::int64_t headerBytes = 0;   // skipped at the start, after unpacking
+  std::optional<int> bitsStored;  // of integers; bits above them are flags and masked off, signed types sign-extended
+  glm::dvec3 spacing{1};          // world units between voxel centres
+  glm::dvec3 origin{0};           // world position of the centre of voxel (0, 0, 0)
+};
+
+/// Opens a raw file, plain or gzip'd (told by its first bytes, unless the plain size fits). The size of a plain file is
+/// checked at once, that of a gzip'd one as it is read.
+/// @throw InvalidArgument  dims outside [1, 2^31), spacing not positive and finite, origin not finite, headerBytes < 0,
+///                         bitsStored outside [1, width of the type] or for floats
+/// @throw IoError          missing, a directory, or not of the expected size
+std::unique_ptr<VoxelSource> openRaw(const std::filesystem::path& path, const RawOptions& options);
+
+}  // namespace umbrick

@@ -1,0 +1,83 @@
+// Renders bricks of a volume by proxy slices, nearest first.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "umbrick/brick/bricks.h"
+#include "umbrick/gl/context.h"
+#include "umbrick/image/image.h"
+#include "umbrick/scene/scene.h"
+
+namespace umbrick {
+
+struct RenderOptions {
+  bool visibilityAndDepth = false;  // also make the layers of Picture
+  bool countFragments = true;
+  bool reverseBricks = false;  // draw the bricks of a slice in the opposite order: must change nothing
+  std::uint64_t maxTextureBytes = std::uint64_t{512} << 20;  // see AtlasOptions
+  int maxTextureEdge = 0;
+};
+
+struct RenderStats {
+  std::int64_t slices = 0;        // planes between the nearest and the farthest visible brick
+  std::size_t bricks = 0;         // of the volume
+  std::size_t visibleBricks = 0;  // after culling
+  std::size_t polygons = 0;
+  std::uint64_t fragments = 0;       // of bricks that passed the depth test, all passes; 0 when not counted
+  std::uint64_t uploadedBricks = 0;  // in this picture
+  std::uint64_t textureBytes = 0;    // of bricks
+  int textures = 0;                  // that hold bricks
+  std::uint64_t bufferBytes = 0;     // eye, occlusion, depth and layers
+  double formatError = 0;            // largest |voxel - texel|, grid units
+  double geometryMs = 0;             // cutting slices into polygons
+  double uploadMs = 0;               // bricks and polygons to textures and buffers
+  double sweepMs = 0;                // drawing, until the last fragment is done
+  double readMs = 0;                 // picture back to memory
+};
+
+struct Picture {
+  Image colour;      // linear premultiplied RGBA
+  Image visibility;  // 1 channel: V weighted by opacity, so that V / A is the mean visibility along the ray
+  Image depth;  // 1 channel: mean depth along the view axis, world units, weighted by opacity; infinite where A is 0
+  RenderStats stats;
+};
+
+/// For every slab with mean medium (sigma_s, sigma_t), eye path d_e and slice distance d, front to back, from O = 1, C
+/// = A = 0:
+///   alpha = 1 - exp(-sigma_t d_e)
+///   C += (1 - A) (sigma_s / sigma_t) alpha O L_a        emission: O = 1
+///   A += (1 - A) alpha
+///   O  = exp(-sigma_t d) * mean of O over the cone's footprint on the slice before   (Algorithm 3; 2 as in the paper)
+/// and in the end C + (1 - A) L_b. O is read straight before a point along the slice normal.
+/// Sources: Max 1995, doi:10.1109/2945.468400; Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
+class SliceRenderer {
+ public:
+  /// Culls, plans the atlas and compiles what the scene needs; bricks are uploaded by the first render().
+  /// @param scene  resolved, see resolveScene; `volume` must have the apron and the gradients it needs and outlive this
+  /// @throw InvalidArgument  an image beyond the driver's limit, a volume with a too narrow apron, a budget too small
+  /// @throw GlError
+  /// @pre `context` is current and outlives this
+  SliceRenderer(const GlContext& context, const Bricks& volume, const Scene& scene, const RenderOptions& options = {});
+  ~SliceRenderer();
+
+  /// One picture. Bricks that fit the budget stay for the next one.
+  /// @throw GlError, InvalidArgument
+  Picture render();
+  /// The same scene from another camera of the same image size and projection.
+  /// @throw InvalidArgument  another size or projection, or slabs that reach beyond the apron
+  Picture render(const Camera& camera);
+
+  /// What slice i (of those in the last picture) samples: channel 0 the interpolated value, grid units, at the middle
+  /// of the slab, channel 1 how many bricks shade the pixel.
+  /// @throw InvalidArgument  no such slice
+  Image probe(std::int64_t slice);
+  /// Depths of the slices of the last picture, world units.
+  std::vector<double> sliceDepths() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace umbrick

@@ -1,0 +1,12 @@
+// A polygon of a proxy slice, already in device coordinates.
+// Reads   position  normalised device coordinates
+//         slab      xyz: atlas coordinates of the slice plane at the centre of the image, for the polygon's brick;
+//                   w: depth of the slice's middle, world units
+layout(location = 0) in vec2 position;
+layout(location = 1) in vec4 slab;
+flat out vec4 slab_centre;
+
+void main() {
+  gl_Position = vec4(position, 0.0, 1.0);  // depth 1/2: behind the 0 that saturated pixels get
+  slab_centre = slab;
+}

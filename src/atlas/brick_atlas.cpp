@@ -1,0 +1,227 @@
+#include "umbrick/atlas/brick_atlas.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <Imath/half.h>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "atlas/texel_format.h"
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace {
+
+std::string mebibytes(std::uint64_t bytes) {
+  const double size = static_cast<double>(bytes) / (1 << 20);
+  return std::to_string(static_cast<std::uint64_t>(std::ceil(size))) + " MiB";
+}
+
+bool isUniform(const Brick& brick) { return brick.uniform() && brick.gradient.min == brick.gradient.max; }
+
+// Slots that hold all bricks: uniform ones of equal value share one.
+std::size_t slotsForAll(const std::vector<Brick>& bricks) {
+  std::map<std::tuple<float, float>, int> values;
+  std::size_t slots = 0;
+  for (const Brick& brick : bricks)
+    if (!isUniform(brick) || values.emplace(std::tuple(brick.value.min, brick.gradient.min), 0).second) ++slots;
+  return slots;
+}
+
+// Whole numbers are stored as they are when they fit; otherwise the range is spread over the codes.
+TexelScale unormScale(const Bricks& volume, VoxelFormat format) {
+  const double codes = format == VoxelFormat::unorm8 ? 255 : 65535;
+  const double extent = static_cast<double>(volume.value.max) - static_cast<double>(volume.value.min);
+  const bool wholeNumbers = volume.exactFormat == VoxelFormat::unorm8 || volume.exactFormat == VoxelFormat::unorm16;
+  const double step = wholeNumbers && extent <= codes ? 1 : extent > 0 ? extent / codes : 1;
+  return {step * codes, static_cast<double>(volume.value.min)};
+}
+
+}  // namespace
+
+BrickAtlas::BrickAtlas(const GlContext& context, const Bricks& volume, std::vector<Brick> bricks,
+                       const AtlasOptions& options)
+    : gl_(context.gl()), volume_(volume), bricks_(std::move(bricks)), format_(options.format) {
+  if (format_ == VoxelFormat::unorm8 || format_ == VoxelFormat::unorm16) valueScale_ = unormScale(volume, format_);
+  const int edge = options.maxTextureEdge > 0 ? std::min(options.maxTextureEdge, context.maxTextureEdge3d())
+                                              : context.maxTextureEdge3d();
+  planTextures(options, edge);
+  const TexelFormat texel = texelFormat(format_, volume.hasGradients);
+  const std::size_t perTexture = static_cast<std::size_t>(slotGrid_.x) * static_cast<std::size_t>(slotGrid_.y) *
+                                 static_cast<std::size_t>(slotGrid_.z);
+  for (std::size_t held = 0; held < slots_; held += perTexture)
+    textures_.push_back(makeTexture3d(gl_, texel.internal, size_.x, size_.y, size_.z));
+  slotOf_.assign(bricks_.size(), -1);
+  users_.assign(slots_, 0);
+  for (std::size_t slot = slots_; slot-- > 0;) free_.push_back(static_cast<std::int32_t>(slot));
+}
+
+void BrickAtlas::planTextures(const AtlasOptions& options, int maxEdge) {
+  const glm::ivec3 edge = volume_.layout.edge();
+  const std::uint64_t slotBytes = volume_.layout.voxels() * texelFormat(format_, volume_.hasGradients).bytes;
+  if (std::max({edge.x, edge.y, edge.z}) > maxEdge)
+    throw InvalidArgument("bricks: one of " + std::to_string(edge.x) + " x " + std::to_string(edge.y) + " x " +
+                          std::to_string(edge.z) + " voxels does not fit a 3D texture, whose edge is at most " +
+                          std::to_string(maxEdge) + " texels");
+  const std::size_t wanted = std::max<std::size_t>(1, slotsForAll(bricks_));
+  const std::size_t affordable = static_cast<std::size_t>(options.budgetBytes / slotBytes);
+  if (affordable == 0)
+    throw InvalidArgument("bricks: one takes " + mebibytes(slotBytes) + ", the memory budget is " +
+                          mebibytes(options.budgetBytes));
+  slots_ = std::min(wanted, affordable);
+  holdsAll_ = slots_ == wanted;
+
+  // Slots are stacked along z first, then y, then x: a driver that stores texels row by row (all software ones) then
+  // keeps a brick in few pages of memory.
+  const glm::ivec3 most = maxEdge / edge;
+  std::uint64_t perTexture = std::uint64_t(most.x) * std::uint64_t(most.y) * std::uint64_t(most.z);
+  perTexture = std::max<std::uint64_t>(1, std::min(perTexture, options.maxTextureBytes / slotBytes));
+  // Textures of one size share all uniforms: spread the slots evenly.
+  const std::uint64_t textures = (slots_ + perTexture - 1) / perTexture;
+  auto rest = static_cast<int>((slots_ + textures - 1) / textures);
+  const auto divideUp = [](int a, int b) { return (a + b - 1) / b; };
+  // Divide what is left evenly over each axis, so that no axis is filled up by slots nobody needs.
+  const int columns = divideUp(rest, most.z);
+  slotGrid_.x = divideUp(columns, most.y);
+  slotGrid_.y = divideUp(columns, slotGrid_.x);
+  slotGrid_.z = divideUp(rest, slotGrid_.x * slotGrid_.y);
+  size_ = slotGrid_ * edge;
+}
+
+BrickAtlas::Slot BrickAtlas::slot(std::int32_t brick) const {
+  const int slot = slotOf_[static_cast<std::size_t>(brick)];
+  const int perTexture = slotGrid_.x * slotGrid_.y * slotGrid_.z;
+  const int place = slot % perTexture;
+  const glm::ivec3 cell(place / (slotGrid_.z * slotGrid_.y), place / slotGrid_.z % slotGrid_.y, place % slotGrid_.z);
+  return {slot / perTexture, cell * volume_.layout.edge()};
+}
+
+std::uint64_t BrickAtlas::textureBytes() const {
+  return textures_.size() * std::uint64_t(size_.x) * std::uint64_t(size_.y) * std::uint64_t(size_.z) *
+         texelFormat(format_, volume_.hasGradients).bytes;
+}
+
+void BrickAtlas::require(std::span<const std::int32_t> bricks) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> uploads;
+  for (const std::int32_t brick : bricks) {
+    if (isResident(brick)) continue;
+    const Brick& wanted = bricks_[static_cast<std::size_t>(brick)];
+    const UniformKey key{wanted.value.min, wanted.gradient.min};
+    const auto shared = isUniform(wanted) ? uniform_.find(key) : uniform_.end();
+    std::int32_t slot;
+    if (shared != uniform_.end()) {
+      slot = shared->second;
+    } else {
+      if (free_.empty()) {
+        const std::uint64_t slotBytes = volume_.layout.voxels() * texelFormat(format_, volume_.hasGradients).bytes;
+        throw InvalidArgument("bricks: one slice needs more than the " + std::to_string(slots_) + " bricks (" +
+                              mebibytes(slots_ * slotBytes) + ") that the memory budget holds");
+      }
+      slot = free_.back();
+      free_.pop_back();
+      if (isUniform(wanted)) uniform_[key] = slot;
+      uploads.emplace_back(brick, slot);
+    }
+    slotOf_[static_cast<std::size_t>(brick)] = slot;
+    ++users_[static_cast<std::size_t>(slot)];
+  }
+  upload(uploads);
+}
+
+void BrickAtlas::release(std::int32_t brick) {
+  std::int32_t& slot = slotOf_[static_cast<std::size_t>(brick)];
+  if (slot < 0) return;
+  if (--users_[static_cast<std::size_t>(slot)] == 0) {
+    const Brick& held = bricks_[static_cast<std::size_t>(brick)];
+    if (isUniform(held)) uniform_.erase({held.value.min, held.gradient.min});
+    free_.push_back(slot);
+  }
+  slot = -1;
+}
+
+double BrickAtlas::encode(std::span<const float> values, std::span<const float> gradients, std::byte* texels) const {
+  // 8-bit whole numbers fit every format; everything fits itself and float.
+  const bool exact = format_ == volume_.exactFormat || format_ == VoxelFormat::float32 ||
+                     volume_.exactFormat == VoxelFormat::unorm8;
+  double error = 0;
+  const auto store = [&](auto codeOf, auto valueOf) {
+    using Code = decltype(codeOf(0.0f));
+    auto* out = reinterpret_cast<Code*>(texels);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const Code code = codeOf(values[i]);
+      *out++ = code;
+      if (!gradients.empty()) *out++ = codeOf(gradients[i]);
+      if (!exact) error = std::max(error, std::abs(valueOf(code) - static_cast<double>(values[i])));
+    }
+  };
+  const auto storeUnorm = [&]<class Code>(Code most) {
+    const double step = valueScale_.scale / most;
+    const double perStep = 1 / step;
+    store(
+        [&](float v) {
+          return static_cast<Code>(std::clamp((static_cast<double>(v) - valueScale_.offset) * perStep + 0.5, 0.0,
+                                              static_cast<double>(most)));
+        },
+        [&](Code code) { return valueScale_.offset + code * step; });
+  };
+  switch (format_) {
+    case VoxelFormat::unorm8:
+      storeUnorm(std::uint8_t{255});
+      break;
+    case VoxelFormat::unorm16:
+      storeUnorm(std::uint16_t{65535});
+      break;
+    case VoxelFormat::half:
+      store([](float v) { return Imath::half(std::clamp(v, -65504.0f, 65504.0f)); },
+            [](Imath::half code) { return static_cast<double>(static_cast<float>(code)); });
+      break;
+    case VoxelFormat::float32:
+      store([](float v) { return v; }, [](float code) { return static_cast<double>(code); });
+      break;
+  }
+  return error;
+}
+
+void BrickAtlas::upload(std::span<const std::pair<std::int32_t, std::int32_t>> brickAndSlot) {
+  const TexelFormat texel = texelFormat(format_, volume_.hasGradients);
+  const std::size_t voxels = volume_.layout.voxels();
+  const glm::ivec3 edge = volume_.layout.edge();
+  // Bricks are read and encoded by all cores, some at a time to bound the memory, then handed over by this thread.
+  const std::size_t batch = std::clamp<std::size_t>((std::size_t{64} << 20) / (voxels * texel.bytes), 1, 256);
+  std::vector<std::byte> staging(std::min(batch, brickAndSlot.size()) * voxels * texel.bytes);
+  struct Scratch {
+    std::vector<float> values, gradients;
+    double error = 0;
+  };
+  tbb::enumerable_thread_specific<Scratch> scratches;
+  gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  for (std::size_t first = 0; first < brickAndSlot.size(); first += batch) {
+    const std::size_t count = std::min(batch, brickAndSlot.size() - first);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1), [&](const auto& range) {
+      Scratch& scratch = scratches.local();
+      scratch.values.resize(voxels);
+      if (volume_.hasGradients) scratch.gradients.resize(voxels);
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        const Brick& brick = bricks_[static_cast<std::size_t>(brickAndSlot[first + i].first)];
+        volume_.read(brick.origin, scratch.values, scratch.gradients);
+        const double error = encode(scratch.values, scratch.gradients, staging.data() + i * voxels * texel.bytes);
+        scratch.error = std::max(scratch.error, error);
+      }
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      const Slot place = slot(brickAndSlot[first + i].first);
+      gl_.TextureSubImage3D(textures_[static_cast<std::size_t>(place.texture)].name(), 0, place.origin.x,
+                            place.origin.y, place.origin.z, edge.x, edge.y, edge.z, texel.layout, texel.type,
+                            staging.data() + i * voxels * texel.bytes);
+    }
+  }
+  uploaded_ += brickAndSlot.size();
+  for (const Scratch& scratch : scratches) formatError_ = std::max(formatError_, scratch.error);
+  checkGl(gl_, "upload of bricks");
+}
+
+}  // namespace umbrick

@@ -1,0 +1,55 @@
+#include "atlas/texel_format.h"
+
+#include "umbrick/atlas/brick_atlas.h"
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+
+TexelFormat texelFormat(VoxelFormat format, bool gradients) {
+  const GLenum layout = gradients ? GL_RG : GL_RED;
+  const std::size_t channels = gradients ? 2 : 1;
+  switch (format) {
+    case VoxelFormat::unorm8:
+      return {gradients ? GLenum{GL_RG8} : GLenum{GL_R8}, layout, GL_UNSIGNED_BYTE, channels};
+    case VoxelFormat::unorm16:
+      return {gradients ? GLenum{GL_RG16} : GLenum{GL_R16}, layout, GL_UNSIGNED_SHORT, 2 * channels};
+    case VoxelFormat::half:
+      return {gradients ? GLenum{GL_RG16F} : GLenum{GL_R16F}, layout, GL_HALF_FLOAT, 2 * channels};
+    case VoxelFormat::float32:
+      break;
+  }
+  return {gradients ? GLenum{GL_RG32F} : GLenum{GL_R32F}, layout, GL_FLOAT, 4 * channels};
+}
+
+VoxelFormat parseVoxelFormat(const std::string& name, const Bricks& volume) {
+  if (name == "auto") {
+    // Whole numbers never describe gradient magnitudes.
+    if (volume.hasGradients) return VoxelFormat::float32;
+    // Software and hardware alike filter 8-bit texels with 8-bit weights: exact voxels, but steps between them.
+    return volume.exactFormat == VoxelFormat::unorm8 ? VoxelFormat::unorm16 : volume.exactFormat;
+  }
+  for (const VoxelFormat format : {VoxelFormat::unorm8, VoxelFormat::unorm16, VoxelFormat::half, VoxelFormat::float32})
+    if (name == voxelFormatName(format)) {
+      if (volume.hasGradients && (format == VoxelFormat::unorm8 || format == VoxelFormat::unorm16))
+        throw InvalidArgument("format: " + name +
+                              " cannot hold gradient magnitudes of a 2D transfer function; use half or float32");
+      return format;
+    }
+  throw InvalidArgument("format: '" + name + "' is not one of auto, unorm8, unorm16, half, float32");
+}
+
+std::string voxelFormatName(VoxelFormat format) {
+  switch (format) {
+    case VoxelFormat::unorm8:
+      return "unorm8";
+    case VoxelFormat::unorm16:
+      return "unorm16";
+    case VoxelFormat::half:
+      return "half";
+    case VoxelFormat::float32:
+      break;
+  }
+  return "float32";
+}
+
+}  // namespace umbrick

@@ -1,0 +1,236 @@
+#include "umbrick/brick/brick_grid.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/vector_relational.hpp>
+#include <limits>
+#include <string>
+
+#include "brick/gradient.h"
+#include "brick/voxel_reader.h"
+#include "brick/voxel_survey.h"
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace {
+
+using openvdb::Coord;
+using openvdb::CoordBBox;
+
+std::string print(const glm::i64vec3& v) {
+  return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + ")";
+}
+
+// Voxels first to last, both included, if 32 bits hold their coordinates.
+CoordBBox checkedBox(const glm::i64vec3& first, const glm::i64vec3& last, const char* what) {
+  using Limits = std::numeric_limits<std::int32_t>;
+  for (int axis = 0; axis < 3; ++axis)
+    if (first[axis] < Limits::min() || last[axis] > Limits::max())
+      throw InvalidArgument(std::string(what) + " needs voxels " + print(first) + " to " + print(last) +
+                            ": coordinate " + "xyz"[axis] + " = " +
+                            std::to_string(first[axis] < Limits::min() ? first[axis] : last[axis]) +
+                            " is beyond the limits of 32-bit indices");
+  const auto coord = [](const glm::i64vec3& v) {
+    return Coord(static_cast<int>(v.x), static_cast<int>(v.y), static_cast<int>(v.z));
+  };
+  return {coord(first), coord(last)};
+}
+
+/// The bricks of a grid: what both lattices, the regular one and that of a single cell, have in common.
+class GridBricks final : public Bricks {
+ public:
+  GridBricks(const ScalarGrid& grid, const BrickOptions& options)
+      : grid_(grid.grid),
+        name_(grid.name),
+        reader_(grid_->tree(), finiteOrZero(grid_->background())),
+        worldGradient_(grid.indexToWorld()) {
+    layout.interior = glm::ivec3(options.interior);
+    layout.apron = options.apron;
+    indexToWorld = grid.indexToWorld();
+    background = finiteOrZero(grid_->background());
+    hasGradients = options.gradients;
+    gradient = {0, 0};
+    // A gradient sees one voxel further.
+    const int reach = options.apron + (options.gradients ? 1 : 0);
+    VoxelSurvey survey = surveyVoxels(grid_->tree(), background, options.interior, reach);
+    value = survey.value;
+    exactFormat = survey.exactFormat;
+    nonFiniteVoxels = survey.nonFiniteVoxels;
+    if (!survey.hasNonFinite) reader_.setAllFinite();
+    if (survey.extent.empty()) return;
+    setDomain(survey.extent, reach);
+    collectBricks(survey.cells);
+  }
+
+  // Makes one brick of the domain.
+  void unite() {
+    if (domain.empty()) return;
+    const glm::i64vec3 extent = domain.extent();
+    const glm::dvec3 edge = glm::dvec3(extent) + 2.0 * layout.apron;
+    if (edge.x * edge.y * edge.z > 2147483648.0)
+      throw InvalidArgument("one brick of the whole grid would have " + print(glm::i64vec3(edge)) +
+                            " voxels, more than 2^31 = 2147483648");
+    layout.interior = glm::ivec3(extent);
+    // The domain begins and ends with a layer of background, so it sees each value and a gradient of zero.
+    bricks = {{domain.min, value, gradient}};
+  }
+
+  void read(const glm::ivec3& origin, std::span<float> values, std::span<float> gradients) const override {
+    const std::size_t voxels = layout.voxels();
+    if (values.size() != voxels)
+      throw InvalidArgument("brick: " + std::to_string(values.size()) + " values to fill, must be " +
+                            std::to_string(voxels));
+    if (!gradients.empty() && !hasGradients) throw InvalidArgument("brick: made without gradients");
+    if (!gradients.empty() && gradients.size() != voxels)
+      throw InvalidArgument("brick: " + std::to_string(gradients.size()) + " gradients to fill, must be " +
+                            std::to_string(voxels));
+    withGridErrors([&] {
+      if (gradients.empty()) return reader_.copy(brickBox(origin, layout.apron), values.data());
+      std::vector<float> slab;
+      float *nextValue = values.data(), *nextGradient = gradients.data();
+      forEachRow(brickBox(origin, layout.apron), slab,
+                 [&](const float* row, std::ptrdiff_t y, std::ptrdiff_t z, int n) {
+                   nextValue = std::copy_n(row, n, nextValue);
+                   worldGradient_.magnitudes(row, y, z, n, nextGradient);
+                   nextGradient += n;
+                 });
+    });
+  }
+
+  /// Turns OpenVDB's errors, as from a file whose voxels are loaded late, into ours.
+  template <class Work>
+  void withGridErrors(const Work& work) const {
+    try {
+      work();
+    } catch (const openvdb::Exception& error) {
+      throw IoError("grid \"" + name_ + "\": " + error.what());
+    }
+  }
+
+ private:
+  static float finiteOrZero(float value) { return std::isfinite(value) ? value : 0.0f; }
+
+  CoordBBox brickBox(const glm::ivec3& origin, int margin) const {
+    const glm::i64vec3 first(origin);
+    return checkedBox(first - std::int64_t(margin), first + glm::i64vec3(layout.interior) + std::int64_t(margin - 1),
+                      "a brick with its apron");
+  }
+
+  void setDomain(const IndexBox& extent, int reach) {
+    const glm::i64vec3 first = glm::i64vec3(extent.min) - std::int64_t(1);
+    const glm::i64vec3 last = glm::i64vec3(extent.max) + std::int64_t(1);
+    checkedBox(first, last, "the grid, grown by one voxel,");
+    domain = {glm::ivec3(first), glm::ivec3(last)};
+    // Every cell that meets the domain must be readable.
+    const std::int64_t interior = layout.interior.x;
+    glm::i64vec3 lowest, highest;
+    for (int axis = 0; axis < 3; ++axis) {
+      lowest[axis] = cellOf(first[axis], interior) * interior - reach;
+      highest[axis] = (cellOf(last[axis], interior) + 1) * interior - 1 + reach;
+    }
+    checkedBox(lowest, highest, "the lattice of bricks with their aprons");
+  }
+
+  // Keeps the cells that meet the domain and hold anything but background, with their ranges.
+  void collectBricks(const std::vector<glm::ivec3>& cells) {
+    std::vector<Brick> found(cells.size());
+    std::vector<char> keep(cells.size(), 0);
+    tbb::enumerable_thread_specific<std::vector<float>> slabs;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size(), 4), [&](const auto& range) {
+      std::vector<float>& slab = slabs.local();
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        // 64 bits: the cell may lie beyond the domain, and then beyond the last coordinate.
+        const glm::i64vec3 first = glm::i64vec3(cells[i]) * glm::i64vec3(layout.interior);
+        const glm::i64vec3 last = first + glm::i64vec3(layout.interior - 1);
+        if (glm::any(glm::lessThan(last, glm::i64vec3(domain.min))) ||
+            glm::any(glm::greaterThan(first, glm::i64vec3(domain.max))))
+          continue;
+        const glm::ivec3 origin(first);
+        found[i] = {origin, reader_.range(brickBox(origin, layout.apron)), gradientRange(origin, slab)};
+        keep[i] = found[i].value != Range{background, background} || found[i].gradient.max > 0;
+      }
+    });
+    bricks.reserve(static_cast<std::size_t>(std::count(keep.begin(), keep.end(), 1)));
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (keep[i]) {
+        bricks.push_back(found[i]);
+        gradient.include(found[i].gradient);
+      }
+  }
+
+  Range gradientRange(const glm::ivec3& origin, std::vector<float>& slab) const {
+    if (!hasGradients) return {0, 0};
+    const Range seen = reader_.range(brickBox(origin, layout.apron + 1));
+    if (seen.min == seen.max) return {0, 0};
+    Range range;
+    std::vector<float> magnitudes(static_cast<std::size_t>(layout.edge().x));
+    forEachRow(brickBox(origin, layout.apron), slab, [&](const float* row, std::ptrdiff_t y, std::ptrdiff_t z, int n) {
+      worldGradient_.magnitudes(row, y, z, n, magnitudes.data());
+      for (const float magnitude : magnitudes) range.include(magnitude);
+    });
+    return range;
+  }
+
+  // Calls visit(row, strideY, strideZ, count) for each row of voxels along x in `box`, y then z ascending; each voxel
+  // has all its neighbours. Works in slabs, so that a huge box needs little memory.
+  template <class Visit>
+  void forEachRow(const CoordBBox& box, std::vector<float>& slab, const Visit& visit) const {
+    const glm::i64vec3 first(box.min().x(), box.min().y(), box.min().z());
+    const glm::i64vec3 last(box.max().x(), box.max().y(), box.max().z());
+    const std::int64_t one = 1;
+    checkedBox(first - one, last + one, "the gradient at a brick's apron");
+    const std::int64_t width = last.x - first.x + 3, height = last.y - first.y + 3;
+    const std::int64_t planes = std::max<std::int64_t>(8, (1 << 18) / (width * height));
+    for (std::int64_t z = first.z; z <= last.z; z += planes) {
+      const std::int64_t end = std::min(z + planes - 1, last.z);
+      slab.resize(static_cast<std::size_t>(width * height * (end - z + 3)));
+      reader_.copy(checkedBox({first.x - 1, first.y - 1, z - 1}, {last.x + 1, last.y + 1, end + 1}, "a brick"),
+                   slab.data());
+      for (std::int64_t k = 1; k <= end - z + 1; ++k)
+        for (std::int64_t j = 1; j < height - 1; ++j)
+          visit(slab.data() + (k * height + j) * width + 1, width, width * height, static_cast<int>(width - 2));
+    }
+  }
+
+  openvdb::FloatGrid::ConstPtr grid_;
+  std::string name_;
+  VoxelReader reader_;
+  WorldGradient worldGradient_;
+};
+
+void checkOptions(const ScalarGrid& grid, const BrickOptions& options) {
+  if (!grid.grid) throw InvalidArgument("bricks: there is no grid");
+  if (options.interior < 8 || options.interior > 256 || options.interior % 8 != 0)
+    throw InvalidArgument("brick interior is " + std::to_string(options.interior) +
+                          " voxels, must be a multiple of 8 from 8 to 256");
+  if (options.apron < 1 || options.apron > options.interior)
+    throw InvalidArgument("brick apron is " + std::to_string(options.apron) +
+                          " voxels, must be from 1 to the interior, " + std::to_string(options.interior));
+}
+
+std::unique_ptr<GridBricks> makeBricks(const ScalarGrid& grid, const BrickOptions& options) {
+  checkOptions(grid, options);
+  try {
+    return std::make_unique<GridBricks>(grid, options);
+  } catch (const openvdb::Exception& error) {
+    throw IoError("grid \"" + grid.name + "\": " + error.what());
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Bricks> brickGrid(const ScalarGrid& grid, const BrickOptions& options) {
+  return makeBricks(grid, options);
+}
+
+std::unique_ptr<Bricks> unbrickedGrid(const ScalarGrid& grid, const BrickOptions& options) {
+  std::unique_ptr<GridBricks> bricks = makeBricks(grid, options);
+  bricks->unite();
+  return bricks;
+}
+
+}  // namespace umbrick

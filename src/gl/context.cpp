@@ -1,0 +1,50 @@
+#include "umbrick/gl/context.h"
+
+#include "gl/backends.h"
+#include "umbrick/core/error.h"
+#include "umbrick/gl/functions.h"
+
+namespace umbrick {
+
+GlContext::GlContext() = default;
+GlContext::~GlContext() = default;
+
+void GlContext::initialise(Backend backend, std::unique_ptr<GlFunctions> functions) {
+  functions_ = std::move(functions);
+  backend_ = backend;
+  const auto text = [&](GLenum name) {
+    const GLubyte* bytes = gl().GetString(name);
+    return std::string(bytes ? reinterpret_cast<const char*>(bytes) : "unknown");
+  };
+  renderer_ = text(GL_RENDERER);
+  description_ =
+      std::string(backend == Backend::osmesa ? "OSMesa: " : "EGL: ") + renderer_ + ", OpenGL " + text(GL_VERSION);
+  gl().GetIntegerv(GL_MAX_TEXTURE_SIZE, &maxTextureEdge2d_);
+  gl().GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &maxTextureEdge3d_);
+}
+
+std::unique_ptr<GlContext> createGlContext(Backend backend) {
+  std::string reasons;
+  const auto attempt = [&](const char* name, auto create) -> std::unique_ptr<GlContext> {
+    try {
+      return create();
+    } catch (const GlError& error) {
+      reasons += (reasons.empty() ? "" : "; ") + std::string(name) + " (" + error.what() + ")";
+      return nullptr;
+    }
+  };
+  if (backend != Backend::egl)
+    if (auto context = attempt("OSMesa", createOsmesaContext)) return context;
+  if (backend != Backend::osmesa)
+    if (auto context = attempt("EGL", createEglContext)) return context;
+  throw GlError("no OpenGL context: tried " + reasons);
+}
+
+Backend parseBackend(const std::string& name) {
+  if (name == "auto") return Backend::automatic;
+  if (name == "osmesa") return Backend::osmesa;
+  if (name == "egl") return Backend::egl;
+  throw InvalidArgument("backend: '" + name + "' is not one of auto, osmesa, egl");
+}
+
+}  // namespace umbrick

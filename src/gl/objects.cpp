@@ -1,0 +1,110 @@
+#include "umbrick/gl/objects.h"
+
+#include <string>
+#include <vector>
+
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace {
+
+std::string hex(GLenum value) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string text = "0x";
+  for (int shift = 12; shift >= 0; shift -= 4) text += kDigits[(value >> shift) & 15];
+  return text;
+}
+
+void checkStorage(const GlFunctions& gl, GLenum format, int width, int height, int depth) {
+  const GLenum error = gl.GetError();
+  if (error == GL_NO_ERROR) return;
+  throw GlError("no texture of " + std::to_string(width) + " x " + std::to_string(height) + " x " +
+                std::to_string(depth) + " texels of format " + hex(format) +
+                (error == GL_OUT_OF_MEMORY ? ": out of memory" : ": error " + hex(error)));
+}
+
+void setSampling(const GlFunctions& gl, GLuint texture, GLenum filter) {
+  gl.TextureParameteri(texture, GL_TEXTURE_MIN_FILTER, static_cast<GLint>(filter));
+  gl.TextureParameteri(texture, GL_TEXTURE_MAG_FILTER, static_cast<GLint>(filter));
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+    gl.TextureParameteri(texture, axis, GL_CLAMP_TO_EDGE);
+}
+
+}  // namespace
+
+GLuint GlTextureKind::create(const GlFunctions& gl, GLenum target) {
+  GLuint name = 0;
+  gl.CreateTextures(target, 1, &name);
+  return name;
+}
+void GlTextureKind::destroy(const GlFunctions& gl, GLuint name) { gl.DeleteTextures(1, &name); }
+
+GLuint GlBufferKind::create(const GlFunctions& gl) {
+  GLuint name = 0;
+  gl.CreateBuffers(1, &name);
+  return name;
+}
+void GlBufferKind::destroy(const GlFunctions& gl, GLuint name) { gl.DeleteBuffers(1, &name); }
+
+GLuint GlVertexArrayKind::create(const GlFunctions& gl) {
+  GLuint name = 0;
+  gl.CreateVertexArrays(1, &name);
+  return name;
+}
+void GlVertexArrayKind::destroy(const GlFunctions& gl, GLuint name) { gl.DeleteVertexArrays(1, &name); }
+
+GLuint GlFramebufferKind::create(const GlFunctions& gl) {
+  GLuint name = 0;
+  gl.CreateFramebuffers(1, &name);
+  return name;
+}
+void GlFramebufferKind::destroy(const GlFunctions& gl, GLuint name) { gl.DeleteFramebuffers(1, &name); }
+
+GLuint GlQueryKind::create(const GlFunctions& gl, GLenum target) {
+  GLuint name = 0;
+  gl.CreateQueries(target, 1, &name);
+  return name;
+}
+void GlQueryKind::destroy(const GlFunctions& gl, GLuint name) { gl.DeleteQueries(1, &name); }
+
+GlTexture makeTexture2d(const GlFunctions& gl, GLenum format, int width, int height, GLenum filter) {
+  GlTexture texture(gl, static_cast<GLenum>(GL_TEXTURE_2D));
+  gl.TextureStorage2D(texture.name(), 1, format, width, height);
+  checkStorage(gl, format, width, height, 1);
+  setSampling(gl, texture.name(), filter);
+  return texture;
+}
+
+GlTexture makeTexture3d(const GlFunctions& gl, GLenum format, int width, int height, int depth) {
+  GlTexture texture(gl, static_cast<GLenum>(GL_TEXTURE_3D));
+  gl.TextureStorage3D(texture.name(), 1, format, width, height, depth);
+  checkStorage(gl, format, width, height, depth);
+  setSampling(gl, texture.name(), GL_LINEAR);
+  return texture;
+}
+
+GlFramebuffer makeFramebuffer(const GlFunctions& gl, std::initializer_list<GLuint> colours, GLuint depthStencil) {
+  GlFramebuffer framebuffer(gl);
+  std::vector<GLenum> buffers;
+  for (const GLuint colour : colours) {
+    buffers.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(buffers.size()));
+    gl.NamedFramebufferTexture(framebuffer.name(), buffers.back(), colour, 0);
+  }
+  if (buffers.empty()) buffers.push_back(GL_NONE);
+  gl.NamedFramebufferDrawBuffers(framebuffer.name(), static_cast<GLsizei>(buffers.size()), buffers.data());
+  if (depthStencil) gl.NamedFramebufferTexture(framebuffer.name(), GL_DEPTH_STENCIL_ATTACHMENT, depthStencil, 0);
+  const GLenum status = gl.CheckNamedFramebufferStatus(framebuffer.name(), GL_DRAW_FRAMEBUFFER);
+  if (status != GL_FRAMEBUFFER_COMPLETE)
+    throw GlError("the driver refuses a render target with " + std::to_string(colours.size()) +
+                  " colour buffers: status " + hex(status));
+  return framebuffer;
+}
+
+void checkGl(const GlFunctions& gl, const char* where) {
+  const GLenum error = gl.GetError();
+  if (error != GL_NO_ERROR)
+    throw GlError(std::string(where) +
+                  (error == GL_OUT_OF_MEMORY ? ": out of graphics memory" : ": OpenGL error " + hex(error)));
+}
+
+}  // namespace umbrick

@@ -1,0 +1,149 @@
+#include "umbrick/gl/program.h"
+
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+
+std::string_view shaderText(std::string_view path);  // embedded by the build
+
+namespace {
+
+// Appends a file with its includes. `files` lists the files in order of first use: a driver names a file by its number.
+void appendSource(const std::string& path, std::vector<std::string>& files, std::vector<std::string>& open,
+                  std::string& out) {
+  for (const std::string& outer : open)
+    if (outer == path) throw GlError("shader " + path + " includes itself");
+  for (const std::string& known : files)
+    if (known == path) return;  // each file once, as with include guards
+  const std::string_view text = shaderText(path);
+  if (text.empty()) throw GlError("no shader " + path);
+  const std::size_t number = files.size();
+  files.push_back(path);
+  open.push_back(path);
+  out += "#line 1 " + std::to_string(number) + "\n";
+  constexpr std::string_view kInclude = "#include \"";
+  int line = 1;
+  for (std::size_t at = 0; at < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view row = text.substr(at, end - at);
+    at = end + 1;
+    if (row.starts_with(kInclude)) {
+      const std::string_view rest = row.substr(kInclude.size());
+      appendSource(std::string(rest.substr(0, rest.find('"'))), files, open, out);
+      out += "#line " + std::to_string(line + 1) + " " + std::to_string(number) + "\n";
+    } else {
+      out.append(row);
+      out += '\n';
+    }
+  }
+  open.pop_back();
+}
+
+std::string expand(const std::string& path, const ShaderConstants& constants, std::vector<std::string>& files) {
+  std::string out = "#version 450 core\n";
+  for (const auto& [name, value] : constants) out += "const int " + name + " = " + std::to_string(value) + ";\n";
+  std::vector<std::string> open;
+  appendSource(path, files, open, out);
+  return out;
+}
+
+std::string fileList(const std::vector<std::string>& files) {
+  std::string list;
+  for (std::size_t i = 0; i < files.size(); ++i) list += (i ? ", " : "") + std::to_string(i) + ": " + files[i];
+  return list;
+}
+
+GLuint compile(const GlFunctions& gl, GLenum stage, const std::string& path, const ShaderConstants& constants) {
+  std::vector<std::string> files;
+  const std::string source = expand(path, constants, files);
+  const char* text = source.c_str();
+  const GLuint shader = gl.CreateShader(stage);
+  gl.ShaderSource(shader, 1, &text, nullptr);
+  gl.CompileShader(shader);
+  GLint compiled = 0;
+  gl.GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+  if (compiled) return shader;
+  std::string log(4096, '\0');
+  GLsizei length = 0;
+  gl.GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  gl.DeleteShader(shader);
+  throw GlError("shader " + path + " (files " + fileList(files) + "): " + log);
+}
+
+}  // namespace
+
+std::string shaderSource(const std::string& path, const ShaderConstants& constants) {
+  std::vector<std::string> files;
+  return expand(path, constants, files);
+}
+
+GlProgram::GlProgram(const GlFunctions& gl, const std::string& vertex, const std::string& fragment,
+                     const ShaderConstants& constants)
+    : gl_(&gl) {
+  const GLuint vertexShader = compile(gl, GL_VERTEX_SHADER, vertex, {});
+  GLuint fragmentShader = 0;
+  try {
+    fragmentShader = compile(gl, GL_FRAGMENT_SHADER, fragment, constants);
+  } catch (...) {
+    gl.DeleteShader(vertexShader);
+    throw;
+  }
+  name_ = gl.CreateProgram();
+  gl.AttachShader(name_, vertexShader);
+  gl.AttachShader(name_, fragmentShader);
+  gl.LinkProgram(name_);
+  gl.DeleteShader(vertexShader);  // kept alive by the program
+  gl.DeleteShader(fragmentShader);
+  GLint linked = 0;
+  gl.GetProgramiv(name_, GL_LINK_STATUS, &linked);
+  if (linked) return;
+  std::string log(4096, '\0');
+  GLsizei length = 0;
+  gl.GetProgramInfoLog(name_, static_cast<GLsizei>(log.size()), &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  gl.DeleteProgram(name_);
+  throw GlError("shaders " + vertex + " and " + fragment + " do not link: " + log);
+}
+
+GlProgram::~GlProgram() {
+  if (name_) gl_->DeleteProgram(name_);
+}
+GlProgram::GlProgram(GlProgram&& other) noexcept
+    : gl_(other.gl_), name_(std::exchange(other.name_, 0)), locations_(std::move(other.locations_)) {}
+GlProgram& GlProgram::operator=(GlProgram&& other) noexcept {
+  std::swap(gl_, other.gl_);
+  std::swap(name_, other.name_);
+  std::swap(locations_, other.locations_);
+  return *this;
+}
+
+void GlProgram::use() const { gl_->UseProgram(name_); }
+
+GLint GlProgram::location(const char* name) {
+  const auto [entry, isNew] = locations_.try_emplace(name, -1);
+  if (isNew) entry->second = gl_->GetUniformLocation(name_, name);
+  return entry->second;
+}
+
+void GlProgram::set(const char* name, int value) { gl_->ProgramUniform1i(name_, location(name), value); }
+void GlProgram::set(const char* name, float value) { gl_->ProgramUniform1f(name_, location(name), value); }
+void GlProgram::set(const char* name, const glm::vec2& v) { gl_->ProgramUniform2f(name_, location(name), v.x, v.y); }
+void GlProgram::set(const char* name, const glm::vec3& v) {
+  gl_->ProgramUniform3f(name_, location(name), v.x, v.y, v.z);
+}
+void GlProgram::set(const char* name, const glm::vec4& v) {
+  gl_->ProgramUniform4f(name_, location(name), v.x, v.y, v.z, v.w);
+}
+void GlProgram::set(const char* name, std::span<const glm::vec3> values) {
+  if (!values.empty()) gl_->ProgramUniform3fv(name_, location(name), static_cast<GLsizei>(values.size()), &values[0].x);
+}
+void GlProgram::set(const char* name, std::span<const glm::vec4> values) {
+  if (!values.empty()) gl_->ProgramUniform4fv(name_, location(name), static_cast<GLsizei>(values.size()), &values[0].x);
+}
+
+}  // namespace umbrick

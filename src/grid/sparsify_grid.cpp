@@ -1,0 +1,127 @@
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/Prune.h>
+#include <openvdb/tree/LeafManager.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "grid/sparse_rule.h"
+#include "umbrick/core/error.h"
+#include "umbrick/grid/build_grid.h"
+
+namespace umbrick {
+namespace {
+
+using openvdb::FloatTree;
+
+SparseTally joined(SparseTally a, const SparseTally& b) {
+  a.add(b);
+  return a;
+}
+
+SparseTally sparsifyLeaves(FloatTree& tree, const SparseRule& rule) {
+  openvdb::tree::LeafManager<FloatTree> leaves(tree);
+  std::vector<std::optional<float>> tiles(leaves.leafCount());
+  const SparseTally tally = tbb::parallel_reduce(
+      leaves.leafRange(), SparseTally{},
+      [&](const auto& range, SparseTally sum) {
+        for (auto leaf = range.begin(); leaf; ++leaf) {
+          LeafVoxels voxels;
+          std::copy_n(leaf->buffer().data(), Leaf::SIZE, voxels.value);
+          voxels.active = leaf->valueMask();
+          tiles[leaf.pos()] = rule.apply(voxels, sum);
+          std::copy_n(voxels.value, Leaf::SIZE, leaf->buffer().data());
+          leaf->setValueMask(voxels.active);
+        }
+        return sum;
+      },
+      joined);
+  std::vector<std::pair<openvdb::Coord, float>> places;
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    if (tiles[i]) places.emplace_back(leaves.leaf(i).origin(), *tiles[i]);
+  for (const auto& [origin, value] : places) tree.addTile(1, origin, value, true);
+  return tally;
+}
+
+SparseTally sparsifyTiles(FloatTree& tree, const SparseRule& rule) {
+  SparseTally tally;
+  auto tile = tree.beginValueOn();
+  tile.setMaxDepth(FloatTree::ValueOnIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    float value = *tile;
+    const bool keep = rule.apply(value, tile.getVoxelCount(), tally);
+    tile.setValue(value);
+    if (!keep) tile.setActiveState(false);
+  }
+  return tally;
+}
+
+// Rounds values to half and tallies the loss: of all of them, or of the inactive ones where the rest is done.
+SparseTally roundToHalf(FloatTree& tree, const SparseRule& rule, bool onlyInactive) {
+  const auto round = [&](float value, SparseTally& tally) {
+    const float stored = rule.stored(value);
+    if (std::isfinite(value) && !std::isfinite(stored)) tally.tooLarge = value;
+    if (std::isfinite(value)) tally.maxError = std::max(tally.maxError, std::abs(double(value) - double(stored)));
+    return stored;
+  };
+  openvdb::tree::LeafManager<FloatTree> leaves(tree);
+  SparseTally tally = tbb::parallel_reduce(
+      leaves.leafRange(), SparseTally{},
+      [&](const auto& range, SparseTally sum) {
+        for (auto leaf = range.begin(); leaf; ++leaf)
+          for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
+            if (!onlyInactive || !leaf->isValueOn(i)) leaf->setValueOnly(i, round(leaf->getValue(i), sum));
+        return sum;
+      },
+      joined);
+  auto tile = tree.beginValueAll();
+  tile.setMaxDepth(FloatTree::ValueAllIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile)
+    if (!onlyInactive || !tile.isValueOn()) {
+      const bool active = tile.isValueOn();
+      tile.setValue(round(*tile, tally));
+      tile.setActiveState(active);
+    }
+  tree.root().setBackground(round(tree.background(), tally), /*updateChildNodes=*/false);
+  return tally;
+}
+
+}  // namespace
+
+BuiltGrid sparsifyGrid(const ScalarGrid& source, const BuildOptions& asked) {
+  openvdb::initialize();
+  BuildOptions options = asked;
+  // A grid that is marked for half floats is going to be saved as such: what that costs belongs in the report.
+  options.half = options.half || source.grid->saveFloatAsHalf();
+  const std::string name = "grid \"" + source.name + '"';
+  BuiltGrid built{source.grid->deepCopy(), {}};
+  FloatTree& tree = built.grid->tree();
+  built.report.voxels = tree.activeVoxelCount();
+  built.report.conversionError = source.conversionError;
+  const bool levelSet = built.grid->getGridClass() == openvdb::GRID_LEVEL_SET;
+  const float oldBackground = tree.background();
+
+  const SparseRule rule(name, options, oldBackground);
+  SparseTally tally;
+  if (!levelSet) {
+    if (rule.background() != oldBackground) {
+      openvdb::tools::changeBackground(tree, rule.background());
+      built.report.backgroundChange = std::abs(double(rule.background()) - double(oldBackground));
+    }
+    tally.add(sparsifyTiles(tree, rule));
+    tally.add(sparsifyLeaves(tree, rule));
+  }
+  if (rule.half()) {
+    tally.add(roundToHalf(tree, rule, /*onlyInactive=*/!levelSet));
+    built.grid->setSaveFloatAsHalf(true);
+  }
+  checkTally(name, tally);
+  openvdb::tools::prune(tree);
+
+  describe(tree, tally, built.report);
+  return built;
+}
+
+}  // namespace umbrick

@@ -1,0 +1,45 @@
+#include <openvdb/io/Archive.h>
+#include <openvdb/io/Compression.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "umbrick/core/error.h"
+#include "umbrick/core/pending_file.h"
+#include "umbrick/grid/build_grid.h"
+
+namespace umbrick {
+namespace {
+
+// openvdb::io::File does not notice a full disk: write through a stream that does.
+class Writer : public openvdb::io::Archive {
+ public:
+  using Archive::write;
+};
+
+}  // namespace
+
+void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
+                const openvdb::MetaMap& metadata) {
+  openvdb::initialize();
+  PendingFile pending(path);
+  try {
+    std::ofstream out;
+    out.exceptions(std::ios::failbit | std::ios::badbit);
+    out.open(pending.path(), std::ios::binary | std::ios::trunc);
+    Writer writer;
+    writer.setCompression(
+        (openvdb::io::Archive::hasBloscCompression() ? openvdb::io::COMPRESS_BLOSC : openvdb::io::COMPRESS_ZIP) |
+        openvdb::io::COMPRESS_ACTIVE_MASK);
+    writer.write(out, openvdb::GridCPtrVec(grids.begin(), grids.end()), /*seekable=*/true, metadata);
+    out.close();
+  } catch (const std::ios_base::failure&) {
+    throw IoError(path.string() + ": cannot write: " + std::strerror(errno));
+  } catch (const openvdb::Exception& error) {
+    throw IoError(path.string() + ": cannot write: " + error.what());
+  }
+  pending.commit();
+}
+
+}  // namespace umbrick

@@ -1,0 +1,193 @@
+#include "ingest/byte_stream.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kChunkBytes = std::size_t(1) << 30;  // zlib and read() count in 32 bits
+
+IoError systemError(const fs::path& path, const char* what) {
+  return IoError(path.string() + ": " + what + ": " + std::strerror(errno));
+}
+
+// An open file, closed with its owner.
+class Descriptor {
+ public:
+  Descriptor(const fs::path& path, std::int64_t offset) : file_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (file_ < 0) throw systemError(path, "cannot read");
+    if (offset > 0 && lseek(file_, offset, SEEK_SET) < 0) {
+      close(file_);
+      throw systemError(path, "cannot read");
+    }
+  }
+  ~Descriptor() {
+    if (file_ >= 0) close(file_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return file_; }
+  int release() { return std::exchange(file_, -1); }
+
+ private:
+  int file_;
+};
+
+class PlainStream : public ByteStream {
+ public:
+  PlainStream(const fs::path& path, std::int64_t offset) : path_(path), file_(path, offset) {}
+  std::size_t read(std::span<std::byte> out) override {
+    std::size_t done = 0;
+    while (done < out.size()) {
+      const ssize_t got = ::read(file_.get(), out.data() + done, std::min(out.size() - done, kChunkBytes));
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) throw systemError(path_, "cannot read");
+      if (got == 0) break;
+      done += static_cast<std::size_t>(got);
+    }
+    return done;
+  }
+
+ private:
+  fs::path path_;
+  Descriptor file_;
+};
+
+class GzipStream : public ByteStream {
+ public:
+  GzipStream(const fs::path& path, std::int64_t offset) : path_(path) {
+    Descriptor file(path, offset);
+    file_ = gzdopen(file.get(), "rb");
+    if (!file_) throw IoError(path.string() + ": cannot unpack: out of memory");
+    file.release();
+    gzbuffer(file_, 1 << 18);
+  }
+  ~GzipStream() override { gzclose(file_); }
+  GzipStream(const GzipStream&) = delete;
+  GzipStream& operator=(const GzipStream&) = delete;
+
+  std::size_t read(std::span<std::byte> out) override {
+    std::size_t done = 0;
+    while (done < out.size()) {
+      const auto count = static_cast<unsigned>(std::min(out.size() - done, kChunkBytes));
+      const int got = gzread(file_, out.data() + done, count);
+      // A file cut short gives what there is, and an error beside it.
+      int status = Z_OK;
+      const char* message = gzerror(file_, &status);
+      if (got < 0 || (status != Z_OK && status != Z_STREAM_END))
+        throw IoError(path_.string() + ": cannot unpack gzip: " +
+                      (status == Z_BUF_ERROR ? "the packed data end early" : withoutName(message)) + ", after " +
+                      std::to_string(total_ + done + static_cast<std::size_t>(std::max(got, 0))) + " unpacked bytes");
+      if (got == 0) break;
+      done += static_cast<std::size_t>(got);
+    }
+    total_ += done;
+    return done;
+  }
+
+ private:
+  // zlib puts "<fd:3>: " before its message.
+  static std::string withoutName(const std::string& message) {
+    const std::size_t colon = message.find(": ");
+    return colon == std::string::npos ? message : message.substr(colon + 2);
+  }
+
+  fs::path path_;
+  gzFile file_ = nullptr;
+  std::size_t total_ = 0;
+};
+
+class JoinedStream : public ByteStream {
+ public:
+  explicit JoinedStream(std::vector<std::unique_ptr<ByteStream>> parts) : parts_(std::move(parts)) {}
+  std::size_t read(std::span<std::byte> out) override {
+    std::size_t done = 0;
+    while (done < out.size() && at_ < parts_.size()) {
+      const std::size_t got = parts_[at_]->read(out.subspan(done));
+      done += got;
+      if (done < out.size()) parts_[at_++].reset();
+    }
+    return done;
+  }
+
+ private:
+  std::vector<std::unique_ptr<ByteStream>> parts_;
+  std::size_t at_ = 0;
+};
+
+class LimitedStream : public ByteStream {
+ public:
+  LimitedStream(std::unique_ptr<ByteStream> stream, std::int64_t count) : stream_(std::move(stream)), left_(count) {}
+  std::size_t read(std::span<std::byte> out) override {
+    const std::size_t got = stream_->read(out.first(std::min(out.size(), static_cast<std::size_t>(left_))));
+    left_ -= static_cast<std::int64_t>(got);
+    return got;
+  }
+
+ private:
+  std::unique_ptr<ByteStream> stream_;
+  std::int64_t left_;
+};
+
+}  // namespace
+
+std::int64_t ByteStream::skip(std::int64_t count) {
+  std::vector<std::byte> scratch(static_cast<std::size_t>(std::clamp<std::int64_t>(count, 0, 1 << 20)));
+  std::int64_t done = 0;
+  while (done < count) {
+    const auto want = static_cast<std::size_t>(std::min<std::int64_t>(count - done, 1 << 20));
+    const std::size_t got = read(std::span(scratch).first(want));
+    done += static_cast<std::int64_t>(got);
+    if (got < want) break;
+  }
+  return done;
+}
+
+std::int64_t checkedFileSize(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) throw IoError(path.string() + ": no such file");
+  if (status.type() == fs::file_type::directory) throw IoError(path.string() + ": expected a file, found a directory");
+  if (error) throw IoError(path.string() + ": cannot read: " + error.message());
+  if (status.type() != fs::file_type::regular) return -1;
+  const auto size = fs::file_size(path, error);
+  if (error) throw IoError(path.string() + ": cannot read: " + error.message());
+  return static_cast<std::int64_t>(size);
+}
+
+bool isGzip(const fs::path& path, std::int64_t offset) {
+  std::byte magic[2]{};
+  PlainStream(path, offset).read(magic);
+  return magic[0] == std::byte(0x1f) && magic[1] == std::byte(0x8b);
+}
+
+std::unique_ptr<ByteStream> openPlain(const fs::path& path, std::int64_t offset) {
+  return std::make_unique<PlainStream>(path, offset);
+}
+
+std::unique_ptr<ByteStream> openGzip(const fs::path& path, std::int64_t offset) {
+  return std::make_unique<GzipStream>(path, offset);
+}
+
+std::unique_ptr<ByteStream> joinStreams(std::vector<std::unique_ptr<ByteStream>> parts) {
+  if (parts.size() == 1) return std::move(parts.front());
+  return std::make_unique<JoinedStream>(std::move(parts));
+}
+
+std::unique_ptr<ByteStream> limitStream(std::unique_ptr<ByteStream> stream, std::int64_t count) {
+  return std::make_unique<LimitedStream>(std::move(stream), count);
+}
+
+}  // namespace umbrick

@@ -1,0 +1,93 @@
+#include "ingest/decode.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <type_traits>
+
+namespace umbrick {
+namespace {
+
+template <class T>
+T load(const std::byte* from, bool swap) {
+  std::array<std::byte, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), from, sizeof(T));
+  if (swap) std::reverse(bytes.begin(), bytes.end());
+  return std::bit_cast<T>(bytes);
+}
+
+// Moves the stored bits to the top and back: the flags fall off, and a signed type fills with its sign.
+template <class T>
+T onlyStoredBits(T value, int flagBits) {
+  using Unsigned = std::make_unsigned_t<T>;
+  const auto raised = static_cast<T>(static_cast<Unsigned>(static_cast<Unsigned>(value) << flagBits));
+  return static_cast<T>(raised >> flagBits);
+}
+
+template <class T>
+float toFloat(T value, double& error) {
+  if constexpr (std::is_same_v<T, double>) {
+    if (!std::isfinite(value)) return static_cast<float>(value);
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    const auto stored = static_cast<float>(std::clamp(value, -kLargest, kLargest));
+    error = std::max(error, std::abs(value - static_cast<double>(stored)));
+    return stored;
+  } else {
+    const auto stored = static_cast<float>(value);
+    if constexpr (std::is_integral_v<T> && sizeof(T) == 4)  // the others fit into the 24 bits of a float
+      error = std::max(error, std::abs(static_cast<double>(value) - static_cast<double>(stored)));
+    return stored;
+  }
+}
+
+template <class T>
+double decodeAs(const VoxelLayout& layout, std::span<const std::byte> in, std::span<float> out) {
+  const bool swap = layout.endian != std::endian::native;
+  const int flagBits = layout.bitsStored > 0 ? 8 * static_cast<int>(sizeof(T)) - layout.bitsStored : 0;
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, out.size(), 1 << 16), 0.0,
+      [&](const tbb::blocked_range<std::size_t>& range, double error) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          T value = load<T>(in.data() + i * sizeof(T), swap);
+          if constexpr (std::is_integral_v<T>) value = onlyStoredBits(value, flagBits);
+          out[i] = toFloat(value, error);
+        }
+        return error;
+      },
+      [](double a, double b) { return std::max(a, b); });
+}
+
+}  // namespace
+
+double decodeVoxels(const VoxelLayout& layout, std::span<const std::byte> in, std::span<float> out) {
+  assert(in.size() == out.size() * static_cast<std::size_t>(voxelBytes(layout.type)));
+  switch (layout.type) {
+    case VoxelType::u8:
+      return decodeAs<std::uint8_t>(layout, in, out);
+    case VoxelType::i8:
+      return decodeAs<std::int8_t>(layout, in, out);
+    case VoxelType::u16:
+      return decodeAs<std::uint16_t>(layout, in, out);
+    case VoxelType::i16:
+      return decodeAs<std::int16_t>(layout, in, out);
+    case VoxelType::u32:
+      return decodeAs<std::uint32_t>(layout, in, out);
+    case VoxelType::i32:
+      return decodeAs<std::int32_t>(layout, in, out);
+    case VoxelType::f32:
+      return decodeAs<float>(layout, in, out);
+    case VoxelType::f64:
+      return decodeAs<double>(layout, in, out);
+  }
+  return 0;
+}
+
+}  // namespace umbrick

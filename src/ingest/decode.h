@@ -1,0 +1,22 @@
+// Stored voxels to float.
+#pragma once
+#include <bit>
+#include <cstddef>
+#include <span>
+
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+/// How one voxel lies in the file.
+struct VoxelLayout {
+  VoxelType type = VoxelType::u8;
+  std::endian endian = std::endian::little;
+  int bitsStored = 0;  // 0: all; else bits above them are masked off, signed types sign-extended from the last one
+};
+
+/// Decodes out.size() voxels. Finite doubles beyond the range of float become the largest float.
+/// @return the largest |stored - float| of the finite values
+double decodeVoxels(const VoxelLayout& layout, std::span<const std::byte> in, std::span<float> out);
+
+}  // namespace umbrick

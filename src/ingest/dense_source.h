@@ -1,0 +1,37 @@
+// Slabs out of a stream of bytes, whatever file format they came from.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ingest/byte_stream.h"
+#include "ingest/decode.h"
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+/// Bytes of the voxels, or nothing when some dimension is outside [1, 2^31) or the bytes do not fit into 63 bits.
+std::optional<std::int64_t> volumeBytes(const glm::i64vec3& dims, VoxelType type);
+
+/// "256 x 256 x 94 u16 = 12320768 bytes"
+std::string describeBytes(const VolumeInfo& info);
+
+class DenseSource : public VoxelSource {
+ public:
+  /// @param bytes  stands at the first voxel
+  /// @param hint   added to the message when bytes are left over
+  DenseSource(VolumeInfo info, VoxelLayout layout, std::unique_ptr<ByteStream> bytes, std::string hint);
+  double readSlab(std::int64_t count, std::span<float> out) override;
+
+ private:
+  void checkEnd();
+
+  VoxelLayout layout_;
+  std::unique_ptr<ByteStream> bytes_;
+  std::string hint_;
+  std::vector<std::byte> slab_;
+  std::int64_t slicesRead_ = 0;
+};
+
+}  // namespace umbrick

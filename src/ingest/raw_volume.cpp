@@ -1,0 +1,77 @@
+#include "umbrick/ingest/raw_volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/ext/matrix_transform.hpp>
+#include <sstream>
+
+#include "ingest/dense_source.h"
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kHint = "; does it begin with a header (--header-bytes), or are the dims or the type wrong?";
+
+template <class Vector>
+std::string text(const Vector& v, const char* between) {
+  std::ostringstream out;
+  out << v.x << between << v.y << between << v.z;
+  return out.str();
+}
+
+void checkOptions(const std::string& name, const RawOptions& options) {
+  if (!volumeBytes(options.dims, options.type))
+    throw InvalidArgument(name + ": dims: expected each from 1 to 2147483647 and less than 2^63 bytes in all, found " +
+                          text(options.dims, " x "));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(options.spacing[axis] > 0) || !std::isfinite(options.spacing[axis]))
+      throw InvalidArgument(name + ": spacing: expected positive finite numbers, found " + text(options.spacing, " "));
+    if (!std::isfinite(options.origin[axis]))
+      throw InvalidArgument(name + ": origin: expected finite numbers, found " + text(options.origin, " "));
+  }
+  if (options.headerBytes < 0)
+    throw InvalidArgument(name + ": header bytes: expected 0 or more, found " + std::to_string(options.headerBytes));
+  if (!options.bitsStored) return;
+  const std::string type(voxelTypeName(options.type));
+  if (options.type == VoxelType::f32 || options.type == VoxelType::f64)
+    throw InvalidArgument(name + ": bits stored: only integers can have fewer, not " + type);
+  if (*options.bitsStored < 1 || *options.bitsStored > 8 * voxelBytes(options.type))
+    throw InvalidArgument(name + ": bits stored: expected 1 to " + std::to_string(8 * voxelBytes(options.type)) +
+                          " for " + type + ", found " + std::to_string(*options.bitsStored));
+}
+
+}  // namespace
+
+std::unique_ptr<VoxelSource> openRaw(const fs::path& path, const RawOptions& options) {
+  VolumeInfo info;
+  info.name = path.string();
+  checkOptions(info.name, options);
+  info.dims = options.dims;
+  info.type = options.type;
+  info.indexToWorld = glm::scale(glm::translate(glm::dmat4(1), options.origin), options.spacing);
+  const std::int64_t size = checkedFileSize(path);
+  info.fileBytes = std::max<std::int64_t>(size, 0);
+
+  // A plain file of the right size is plain, whatever its first bytes; else the gzip magic decides.
+  const std::int64_t expected = *volumeBytes(options.dims, options.type);
+  const bool fits = size >= options.headerBytes && size - options.headerBytes == expected;
+  const bool packed = size >= 0 && !fits && isGzip(path);
+  if (size >= 0 && !fits && !packed) {
+    std::string header;
+    if (options.headerBytes > 0) header = " after a header of " + std::to_string(options.headerBytes);
+    throw IoError(info.name + ": expected " + describeBytes(info) + header + ", found " +
+                  std::to_string(std::max<std::int64_t>(size - options.headerBytes, 0)) +
+                  (size - options.headerBytes > expected ? kHint : ""));
+  }
+  auto bytes = packed ? openGzip(path) : openPlain(path);
+  if (const std::int64_t skipped = bytes->skip(options.headerBytes); skipped < options.headerBytes)
+    throw IoError(info.name + ": expected a header of " + std::to_string(options.headerBytes) + " bytes, found " +
+                  std::to_string(skipped) + " bytes in all");
+  return std::make_unique<DenseSource>(std::move(info),
+                                       VoxelLayout{options.type, options.endian, options.bitsStored.value_or(0)},
+                                       std::move(bytes), kHint);
+}
+
+}  // namespace umbrick

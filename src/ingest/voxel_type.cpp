@@ -1,0 +1,34 @@
+#include <array>
+#include <utility>
+
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+namespace {
+
+struct TypeRow {
+  VoxelType type;
+  std::string_view name;
+  int bytes;
+};
+constexpr std::array kTypes{
+    TypeRow{VoxelType::u8, "u8", 1},   TypeRow{VoxelType::i8, "i8", 1},   TypeRow{VoxelType::u16, "u16", 2},
+    TypeRow{VoxelType::i16, "i16", 2}, TypeRow{VoxelType::u32, "u32", 4}, TypeRow{VoxelType::i32, "i32", 4},
+    TypeRow{VoxelType::f32, "f32", 4}, TypeRow{VoxelType::f64, "f64", 8},
+};
+
+const TypeRow& row(VoxelType type) { return kTypes[static_cast<std::size_t>(type)]; }
+
+}  // namespace
+
+std::string_view voxelTypeName(VoxelType type) { return row(type).name; }
+
+std::optional<VoxelType> voxelTypeFromName(std::string_view name) {
+  for (const TypeRow& each : kTypes)
+    if (each.name == name) return each.type;
+  return std::nullopt;
+}
+
+int voxelBytes(VoxelType type) { return row(type).bytes; }
+
+}  // namespace umbrick

@@ -1,0 +1,77 @@
+#include "shade/frame.h"
+
+#include <glm/vec4.hpp>
+
+namespace umbrick {
+
+void FragmentCounter::begin() {
+  if (!enabled_) return;
+  queries_.emplace_back(gl_, static_cast<GLenum>(GL_SAMPLES_PASSED));
+  gl_.BeginQuery(GL_SAMPLES_PASSED, queries_.back().name());
+}
+void FragmentCounter::end() {
+  if (enabled_) gl_.EndQuery(GL_SAMPLES_PASSED);
+}
+std::uint64_t FragmentCounter::total() const {
+  std::uint64_t sum = 0;
+  for (const GlQuery& query : queries_) {
+    GLuint64 passed = 0;
+    gl_.GetQueryObjectui64v(query.name(), GL_QUERY_RESULT, &passed);
+    sum += passed;
+  }
+  return sum;
+}
+
+ShaderConstants slabConstants(const Frame& frame) {
+  return {{"kPerspective", frame.camera.projection == Projection::perspective},
+          {"kClipPlanes", static_cast<int>(frame.planes.size())},
+          {"kQuadrature", frame.transfer.shaderMode()},
+          {"kAux", frame.targets.options.aux}};
+}
+
+void setSlabUniforms(GlProgram& program, const Frame& frame) {
+  const glm::dvec3 size(frame.atlas.textureSize());
+  const glm::dvec2 pixel = 2.0 * frame.view.halfExtent / glm::dvec2(frame.size());
+  program.set("screen_scale", glm::vec2(pixel));
+  program.set("screen_offset", glm::vec2(-frame.view.halfExtent));
+  program.set("across_x", glm::vec3(frame.view.toIndex[0] / size));
+  program.set("across_y", glm::vec3(frame.view.toIndex[1] / size));
+  program.set("half_forward", glm::vec3(0.5 * frame.slices.spacing * frame.view.toIndex[2] / size));
+  program.set("half_spacing", static_cast<float>(0.5 * frame.slices.spacing));
+  std::vector<glm::vec4> planes;
+  for (const glm::dvec4& plane : frame.planes) planes.emplace_back(plane);
+  program.set("clip_planes", planes);
+  frame.transfer.setUniforms(program, frame.atlas.valueScale());
+}
+
+void bindVolume(const Frame& frame, int texture) {
+  frame.gl.BindTextureUnit(0, frame.atlas.texture(texture));
+  frame.gl.BindTextureUnit(1, frame.transfer.texture());
+}
+
+SaturationTest::SaturationTest(const GlFunctions& gl)
+    : program_(gl, "shade/full_screen.vert", "shade/saturated.frag"), nothing_(gl) {}
+
+void SaturationTest::run(const Frame& frame) {
+  const GlFunctions& gl = frame.gl;
+  gl.BindFramebuffer(GL_FRAMEBUFFER, frame.targets.depthOnly.name());
+  gl.Enable(GL_DEPTH_TEST);
+  gl.DepthFunc(GL_LESS);
+  gl.DepthMask(GL_TRUE);
+  gl.Disable(GL_STENCIL_TEST);
+  gl.Disable(GL_SCISSOR_TEST);
+  gl.BindTextureUnit(3, frame.targets.eye.name());
+  program_.set("saturation", static_cast<float>(frame.scene.sampling.saturation));
+  program_.use();
+  gl.BindVertexArray(nothing_.name());
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  gl.DepthMask(GL_FALSE);
+}
+
+GlProgram& SpecialisedProgram::get(const GlFunctions& gl, const ShaderConstants& constants) {
+  if (!program_ || constants != constants_) program_ = std::make_unique<GlProgram>(gl, vertex_, fragment_, constants);
+  constants_ = constants;
+  return *program_;
+}
+
+}  // namespace umbrick

@@ -1,0 +1,207 @@
+// Directional occlusion shading: every slice reads the occlusion buffer of the slice before and writes its own.
+// Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "shade/footprint.h"
+#include "shade/frame.h"
+
+namespace umbrick {
+namespace {
+
+class OcclusionPass : public SlicePass {
+ public:
+  void begin(Frame& frame) override {
+    const GlFunctions& gl = frame.gl;
+    const OcclusionOptions& options = frame.scene.occlusion;
+    disk_ = diskGrid(options.footprint);
+    ShaderConstants constants = slabConstants(frame);
+    constants["kTaps"] = static_cast<int>(disk_.size());
+    constants["kAlgorithm"] = options.algorithm;
+    if (options.passes == 1) {
+      setSlabUniforms(both_.get(gl, constants), frame);
+    } else {
+      setSlabUniforms(eye_.get(gl, constants), frame);
+      setSlabUniforms(light_.get(gl, constants), frame);
+    }
+    carry_.get(gl, {{"kTaps", constants["kTaps"]}, {"kAlgorithm", options.algorithm}});
+    if (!nothing_) nothing_ = GlVertexArray(gl);
+    planRegions(frame);
+    previous_ = 0;
+    stencil_ = 0;
+  }
+
+  void draw(Frame& frame, std::int64_t first, std::int64_t last) override {
+    const std::vector<SliceDraw>& draws = frame.polygons.draws();
+    std::size_t next = 0;
+    for (std::int64_t slice = first; slice < last; ++slice) {
+      const std::size_t begin = next;
+      while (next < draws.size() && draws[next].slice == slice) ++next;
+      drawSlice(frame, slice, std::span(draws).subspan(begin, next - begin));
+    }
+  }
+
+ private:
+  // How slice i reads the slice before it: see footprint.glsl.
+  SliceStep step(const Frame& frame, std::int64_t i) const {
+    const double d = frame.slices.spacing;
+    const double depth = frame.slices.depth(i);
+    const double extent = d * std::tan(frame.scene.occlusion.aperture);  // Eq. 11
+    const double pixel = 2 * frame.view.halfExtent.y / frame.camera.height;
+    if (frame.view.projection == Projection::orthographic) return {1, extent / pixel};
+    if (!frame.scene.occlusion.perspectiveCorrection) {
+      // As if the view were parallel: the footprint keeps the size it has at the point looked at.
+      return {1, extent / (pixel * glm::length(frame.camera.lookAt - frame.camera.eye))};
+    }
+    // The first slab has nothing before it: all is unoccluded, wherever it is read.
+    if (depth - d <= 0) return {1, 0};
+    return {depth / (depth - d), extent / (pixel * (depth - d))};
+  }
+
+  void planRegions(const Frame& frame) {
+    const std::size_t count = static_cast<std::size_t>(frame.slices.count());
+    covered_.resize(count);
+    steps_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      covered_[i] = coveredRegion(frame.slices, static_cast<std::int64_t>(i), frame.size());
+      steps_[i] = step(frame, static_cast<std::int64_t>(i));
+    }
+    regions_ = occlusionRegions(covered_, steps_, frame.size());
+  }
+
+  void setFootprint(GlProgram& program, const Frame& frame, const SliceStep& step) const {
+    const glm::dvec2 texel = 1.0 / glm::dvec2(frame.size());
+    program.set("texel_size", glm::vec2(texel));
+    program.set("previous_scale", static_cast<float>(step.scale));
+    const double tangent = std::tan(frame.scene.occlusion.aperture), d = frame.slices.spacing;
+    std::vector<glm::vec4> taps;
+    for (const glm::dvec2& point : disk_)
+      taps.emplace_back(glm::vec2(point * step.radius * texel),
+                        static_cast<float>(d * std::hypot(1, tangent * glm::length(point))), 0.0f);
+    program.set("taps", taps);
+  }
+
+  void drawSlice(Frame& frame, std::int64_t slice, std::span<const SliceDraw> draws) {
+    const GlFunctions& gl = frame.gl;
+    const ScreenRegion& region = regions_[static_cast<std::size_t>(slice)];
+    const SliceStep& step = steps_[static_cast<std::size_t>(slice)];
+    if (draws.empty() && region.empty()) return;
+    const int target = 1 - previous_;
+    if (++stencil_ > 255) {
+      const RenderTargets& targets = frame.targets;
+      gl.Disable(GL_SCISSOR_TEST);
+      gl.StencilMask(0xff);
+      gl.DepthMask(GL_FALSE);
+      const GLint zero = 0;
+      gl.ClearNamedFramebufferiv(targets.depthOnly.name(), GL_STENCIL, 0, &zero);
+      stencil_ = 1;
+    }
+    gl.BindTextureUnit(2, frame.targets.occlusion[static_cast<std::size_t>(previous_)].name());
+    if (frame.scene.occlusion.passes == 1) {
+      if (!draws.empty()) drawBoth(frame, draws, step, target);
+    } else {
+      if (!draws.empty()) drawEye(frame, draws, step);
+      if (!draws.empty() && !region.empty()) drawLight(frame, draws, step, region, target);
+    }
+    if (!region.empty()) drawCarry(frame, step, region, target);
+    previous_ = target;
+  }
+
+  void setCommonState(const Frame& frame) const {
+    const GlFunctions& gl = frame.gl;
+    gl.Disable(GL_DEPTH_TEST);
+    gl.DepthMask(GL_FALSE);
+    gl.Disable(GL_SCISSOR_TEST);
+    gl.Enable(GL_STENCIL_TEST);
+    gl.StencilMask(0xff);
+    // Bricks mark their pixels with the slice's number; what is left unmarked is carried.
+    gl.StencilFunc(GL_ALWAYS, stencil_, 0xff);
+    gl.StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+    for (GLuint i = 0; i < 3; ++i) gl.ColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  }
+
+  void blendUnder(const Frame& frame, GLuint target) const {
+    frame.gl.Enablei(GL_BLEND, target);
+    frame.gl.BlendFunci(target, GL_ONE_MINUS_DST_ALPHA, GL_ONE);
+  }
+
+  void drawTriangles(Frame& frame, std::span<const SliceDraw> draws) const {
+    frame.polygons.bind();
+    frame.fragments.begin();
+    for (const SliceDraw& draw : draws) {
+      bindVolume(frame, draw.texture);
+      frame.polygons.draw(draw.firstIndex, draw.indices);
+    }
+    frame.fragments.end();
+  }
+
+  void drawBoth(Frame& frame, std::span<const SliceDraw> draws, const SliceStep& step, int target) {
+    frame.gl.BindFramebuffer(GL_FRAMEBUFFER, frame.targets.eyeAndLight[static_cast<std::size_t>(target)].name());
+    setCommonState(frame);
+    blendUnder(frame, 0);
+    frame.gl.Disablei(GL_BLEND, 1);
+    blendUnder(frame, 2);
+    setFootprint(both_.current(), frame, step);
+    both_.current().use();
+    drawTriangles(frame, draws);
+  }
+
+  void drawEye(Frame& frame, std::span<const SliceDraw> draws, const SliceStep& step) {
+    frame.gl.BindFramebuffer(GL_FRAMEBUFFER, frame.targets.eyeOnly.name());
+    setCommonState(frame);
+    frame.gl.Disable(GL_STENCIL_TEST);
+    blendUnder(frame, 0);
+    blendUnder(frame, 1);
+    setFootprint(eye_.current(), frame, step);
+    eye_.current().use();
+    drawTriangles(frame, draws);
+  }
+
+  void drawLight(Frame& frame, std::span<const SliceDraw> draws, const SliceStep& step, const ScreenRegion& region,
+                 int target) {
+    frame.gl.BindFramebuffer(GL_FRAMEBUFFER, frame.targets.lightOnly[static_cast<std::size_t>(target)].name());
+    setCommonState(frame);
+    setScissor(frame, region);
+    frame.gl.Disablei(GL_BLEND, 0);
+    setFootprint(light_.current(), frame, step);
+    light_.current().use();
+    drawTriangles(frame, draws);
+  }
+
+  void drawCarry(Frame& frame, const SliceStep& step, const ScreenRegion& region, int target) {
+    const GlFunctions& gl = frame.gl;
+    gl.BindFramebuffer(GL_FRAMEBUFFER, frame.targets.lightOnly[static_cast<std::size_t>(target)].name());
+    setCommonState(frame);
+    setScissor(frame, region);
+    gl.StencilFunc(GL_NOTEQUAL, stencil_, 0xff);
+    gl.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    gl.Disablei(GL_BLEND, 0);
+    setFootprint(carry_.current(), frame, step);
+    carry_.current().use();
+    gl.BindVertexArray(nothing_.name());
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+
+  static void setScissor(const Frame& frame, const ScreenRegion& region) {
+    frame.gl.Enable(GL_SCISSOR_TEST);
+    frame.gl.Scissor(region.min.x, region.min.y, region.extent().x, region.extent().y);
+  }
+
+  SpecialisedProgram both_{"shade/slice.vert", "shade/occlusion_slice.frag"};
+  SpecialisedProgram eye_{"shade/slice.vert", "shade/occlusion_eye.frag"};
+  SpecialisedProgram light_{"shade/slice.vert", "shade/occlusion_light.frag"};
+  SpecialisedProgram carry_{"shade/full_screen.vert", "shade/occlusion_carry.frag"};
+  GlVertexArray nothing_;
+  std::vector<glm::dvec2> disk_;
+  std::vector<ScreenRegion> covered_, regions_;
+  std::vector<SliceStep> steps_;
+  int previous_ = 0;  // occlusion buffer that holds the slice before
+  int stencil_ = 0;   // number of the slice in the stencil buffer, 1 to 255
+};
+
+}  // namespace
+
+std::unique_ptr<SlicePass> makeOcclusionPass() { return std::make_unique<OcclusionPass>(); }
+
+}  // namespace umbrick

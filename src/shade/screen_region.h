@@ -1,0 +1,31 @@
+// Where on the screen the occlusion of a slice differs from 1 and is still going to be read.
+#pragma once
+#include <glm/vec2.hpp>
+#include <span>
+#include <vector>
+
+namespace umbrick {
+
+/// Pixels [min, max) on both axes; empty when some max <= min.
+struct ScreenRegion {
+  glm::ivec2 min{0}, max{0};
+  bool empty() const { return max.x <= min.x || max.y <= min.y; }
+  glm::ivec2 extent() const { return empty() ? glm::ivec2(0) : max - min; }
+  void include(const ScreenRegion& other);
+  void intersect(const ScreenRegion& other);
+  bool operator==(const ScreenRegion&) const = default;
+};
+
+/// How a slice reads the one before: at centre + (pixel - centre) scale, give or take `radius` pixels.
+struct SliceStep {
+  double scale = 1;
+  double radius = 0;
+};
+
+/// For every slice the smallest rectangle found outside of which its occlusion is 1 or never read again.
+/// @param covered  pixels that bricks cover, by slice
+/// @param steps    by slice; the first is never used
+std::vector<ScreenRegion> occlusionRegions(std::span<const ScreenRegion> covered, std::span<const SliceStep> steps,
+                                           const glm::ivec2& size);
+
+}  // namespace umbrick

@@ -1,0 +1,21 @@
+// Runs of slices whose bricks fit the atlas together.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "umbrick/slice/proxy_slices.h"
+
+namespace umbrick {
+
+/// Slices [first, last) and the bricks they need, ascending.
+struct SweepRun {
+  std::int64_t first = 0, last = 0;
+  std::vector<std::int32_t> bricks;
+};
+
+/// Cuts the sweep into as few runs as the atlas allows. A run of one slice may still need more than `slots`; then the
+/// atlas says so. @param slots  bricks that fit at once; runs end before they need more
+std::vector<SweepRun> planSweep(const ProxySlices& slices, std::size_t bricks, std::size_t slots);
+
+}  // namespace umbrick

@@ -1,0 +1,74 @@
+#include "shade/transfer_lookup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "umbrick/optics/transfer_table.h"
+
+namespace umbrick {
+
+TransferLookup::Axis TransferLookup::makeAxis(const Range& values, double anchor, int nodes) {
+  const double low = std::min<double>(values.min, anchor), high = std::max<double>(values.max, anchor);
+  if (!(high > low)) return {anchor - 0.5, 1, 2};
+  // The anchor is node k; the step is the smallest that still reaches both ends.
+  const int k = std::clamp(static_cast<int>(std::lround((anchor - low) / (high - low) * (nodes - 1))),
+                           anchor > low ? 1 : 0, anchor < high ? nodes - 2 : nodes - 1);
+  const double below = k > 0 ? (anchor - low) / k : 0, above = k < nodes - 1 ? (high - anchor) / (nodes - 1 - k) : 0;
+  const double step = std::max(below, above);
+  return {anchor - k * step, step, nodes};
+}
+
+Range TransferLookup::Axis::around(const Range& values) const {
+  const auto node = [&](double i) { return static_cast<float>(first + std::clamp<double>(i, 0, nodes - 1) * step); };
+  Range nodeRange{node(std::floor((values.min - first) / step)), node(std::ceil((values.max - first) / step))};
+  // Rounding to float must not narrow it.
+  nodeRange.include(Range{std::min(nodeRange.min, values.min), std::max(nodeRange.max, values.max)});
+  return nodeRange;
+}
+
+TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& transfer, Quadrature quadrature,
+                               int nodes, const Bricks& volume)
+    : transfer_(transfer),
+      mode_(transfer.is2d()                           ? 2
+            : quadrature == Quadrature::preintegrated ? 0
+                                                      : 1) {
+  nodes = std::max(nodes, 3);  // an inner anchor needs a node on either side
+  value_ = makeAxis(volume.value, volume.background, nodes);
+  if (mode_ == 2) gradient_ = makeAxis(volume.gradient, 0, nodes);
+  std::vector<glm::vec4> entries;
+  int rows = 1;
+  if (mode_ == 0) {
+    const Range covered{static_cast<float>(value_.first),
+                        static_cast<float>(value_.first + (value_.nodes - 1) * value_.step)};
+    entries = preintegrate(transfer, covered, value_.nodes);
+    rows = value_.nodes;
+  } else {
+    rows = gradient_.nodes;
+    for (int j = 0; j < rows; ++j)
+      for (int i = 0; i < value_.nodes; ++i) {
+        const Medium medium = transfer(value_.first + i * value_.step, gradient_.first + j * gradient_.step);
+        entries.emplace_back(glm::vec3(medium.sigma_s()), static_cast<float>(medium.sigma_t));
+      }
+  }
+  texture_ = makeTexture2d(gl, GL_RGBA32F, value_.nodes, rows, GL_LINEAR);
+  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  gl.TextureSubImage2D(texture_.name(), 0, 0, 0, value_.nodes, rows, GL_RGBA, GL_FLOAT, entries.data());
+}
+
+bool TransferLookup::isVisible(const Range& value, const Range& gradient) const {
+  if (value.empty()) return false;
+  return !transfer_.isTransparent(value_.around(value), mode_ == 2 ? gradient_.around(gradient) : Range{0, 0});
+}
+
+void TransferLookup::setUniforms(GlProgram& program, const TexelScale& texels) const {
+  // Texture coordinates of node i are (i + 1/2) / nodes.
+  const double perTexel = texels.scale / (value_.step * value_.nodes);
+  const double offset = ((texels.offset - value_.first) / value_.step + 0.5) / value_.nodes;
+  const double gradientScale = 1 / (gradient_.step * gradient_.nodes);
+  const double gradientOffset = (-gradient_.first / gradient_.step + 0.5) / gradient_.nodes;
+  program.set("transfer_map", glm::vec4(perTexel, gradientScale, offset, gradientOffset));
+}
+
+}  // namespace umbrick

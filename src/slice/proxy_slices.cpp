@@ -1,0 +1,240 @@
+#include "umbrick/slice/proxy_slices.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "slice/plane_cut.h"
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace {
+
+using Corners = std::array<glm::dvec3, 8>;
+
+// View coordinates of a brick's corners. A sum of one term per axis, each monotone in its index, in the same order for
+// every brick: equal corners get equal numbers, and depth is monotone along each axis also after rounding.
+Corners brickCorners(const IndexView& view, const glm::ivec3& origin, const glm::ivec3& interior) {
+  const glm::dvec3 low = glm::dvec3(origin) - 0.5;
+  const glm::dvec3 high = glm::dvec3(origin) + glm::dvec3(interior) - 0.5;
+  const glm::dvec3 x[2] = {view.axis[0] * low.x, view.axis[0] * high.x};
+  const glm::dvec3 y[2] = {view.axis[1] * low.y, view.axis[1] * high.y};
+  const glm::dvec3 z[2] = {view.axis[2] * low.z, view.axis[2] * high.z};
+  Corners corners;
+  for (unsigned c = 0; c < 8; ++c) corners[c] = ((x[c & 1] + y[c >> 1 & 1]) + z[c >> 2 & 1]) + view.origin;
+  return corners;
+}
+
+struct SliceInterval {
+  std::int64_t first = 0, last = -1;  // both included
+};
+
+// Slices whose middle is in (nearest corner, farthest corner] and in front of the eye.
+SliceInterval slicesThrough(const Corners& corners, double spacing) {
+  double nearest = corners[0].z, farthest = corners[0].z;
+  for (const glm::dvec3& corner : corners) {
+    nearest = std::min(nearest, corner.z);
+    farthest = std::max(farthest, corner.z);
+  }
+  if (!(farthest > 0)) return {};
+  const auto middle = [&](std::int64_t i) { return (static_cast<double>(i) + 0.5) * spacing; };
+  // The quotient may be off by rounding: step to the exact answer.
+  std::int64_t first = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(nearest / spacing - 0.5)) - 1);
+  while (middle(first) <= nearest) ++first;
+  std::int64_t last = static_cast<std::int64_t>(std::ceil(farthest / spacing - 0.5)) + 1;
+  while (last >= first && middle(last) > farthest) --last;
+  return {first, last};
+}
+
+using Polygon = std::vector<glm::dvec2>;
+
+// Keeps the part with distance >= 0 (Sutherland-Hodgman). A crossing is computed from the lesser end to the greater,
+// so that two polygons that share an edge cut it at the same point.
+void clip(Polygon& polygon, Polygon& scratch, const glm::dvec3& line) {
+  scratch.clear();
+  const auto distance = [&](const glm::dvec2& p) { return line.x * p.x + line.y * p.y + line.z; };
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec2 a = polygon[i], b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    const double da = distance(a), db = distance(b);
+    if (da >= 0) scratch.push_back(a);
+    if ((da >= 0) != (db >= 0)) {
+      const bool ordered = a.x < b.x || (a.x == b.x && a.y < b.y);
+      const glm::dvec2 p = ordered ? a : b, q = ordered ? b : a;
+      const double dp = ordered ? da : db, dq = ordered ? db : da;
+      scratch.push_back(p + (q - p) * (dp / (dp - dq)));
+    }
+  }
+  std::swap(polygon, scratch);
+}
+
+// How far beyond a plane the middle of a slab may lie while the slab still reaches the kept side.
+double slack(const IndexView& view, const glm::dvec4& plane, double spacing) {
+  double rate = std::abs(plane.z);
+  if (view.projection == Projection::perspective)
+    rate += std::abs(plane.x) * view.halfExtent.x + std::abs(plane.y) * view.halfExtent.y;
+  return 0.5 * spacing * rate;
+}
+
+struct SlicePolygons {
+  std::vector<ProxyPolygon> polygons;
+  std::vector<glm::vec2> vertices;
+};
+
+// Cuts the bricks of one slice.
+class SliceCutter {
+ public:
+  SliceCutter(const IndexView& view, std::span<const Corners> corners, std::span<const glm::dvec4> planes,
+              double spacing)
+      : view_(view), corners_(corners), planes_(planes.begin(), planes.end()), cuts_(planeCuts()) {
+    for (glm::dvec4& plane : planes_) plane.w += slack(view, plane, spacing);
+  }
+
+  void cut(double depth, std::span<const std::int32_t> bricks, SlicePolygons& out) const {
+    Polygon polygon, scratch;
+    const glm::dvec2 scale =
+        1.0 / (view_.halfExtent * (view_.projection == Projection::perspective ? depth : 1.0));  // view to device
+    for (const std::int32_t brick : bricks) {
+      const Corners& corners = corners_[static_cast<std::size_t>(brick)];
+      crossSection(corners, depth, polygon);
+      for (const glm::dvec4& plane : planes_)
+        if (polygon.size() >= 3) clip(polygon, scratch, {plane.x, plane.y, plane.z * depth + plane.w});
+      if (polygon.size() < 3) continue;
+      emit(polygon, scale, brick, out);
+    }
+  }
+
+ private:
+  void crossSection(const Corners& corners, double depth, Polygon& polygon) const {
+    unsigned mask = 0;
+    for (unsigned c = 0; c < 8; ++c) mask |= static_cast<unsigned>(corners[c].z >= depth) << c;
+    const PlaneCut& cut = cuts_[mask];
+    polygon.clear();
+    for (unsigned i = 0; i < cut.count; ++i) {
+      const auto [lower, upper] = kEdgeCorners[cut.edges[i]];
+      const glm::dvec3 &a = corners[lower], &b = corners[upper];
+      const double t = (depth - a.z) / (b.z - a.z);
+      polygon.push_back(glm::dvec2(a) + (glm::dvec2(b) - glm::dvec2(a)) * t);
+    }
+  }
+
+  static void emit(const Polygon& polygon, const glm::dvec2& scale, std::int32_t brick, SlicePolygons& out) {
+    const auto firstVertex = static_cast<std::int32_t>(out.vertices.size());
+    glm::vec2 low(std::numeric_limits<float>::infinity()), high(-std::numeric_limits<float>::infinity());
+    for (const glm::dvec2& point : polygon) {
+      const glm::vec2 device(point * scale);
+      low = glm::min(low, device);
+      high = glm::max(high, device);
+      out.vertices.push_back(device);
+    }
+    const bool seen = low.x < 1 && low.y < 1 && high.x > -1 && high.y > -1;
+    if (seen)
+      out.polygons.push_back({brick, firstVertex, static_cast<std::int32_t>(polygon.size())});
+    else
+      out.vertices.resize(static_cast<std::size_t>(firstVertex));
+  }
+
+  const IndexView& view_;
+  std::span<const Corners> corners_;
+  std::vector<glm::dvec4> planes_;
+  std::array<PlaneCut, 256> cuts_;
+};
+
+// The bricks of each slice: bricks of slice i are list[start[i]] to list[start[i + 1]], in ascending order.
+struct Buckets {
+  std::vector<std::size_t> start;
+  std::vector<std::int32_t> list;
+};
+
+Buckets sortBySlice(std::span<const SliceInterval> intervals, std::int64_t first, std::int64_t count) {
+  Buckets buckets;
+  buckets.start.assign(static_cast<std::size_t>(count) + 1, 0);
+  for (const SliceInterval& interval : intervals)
+    for (std::int64_t i = interval.first; i <= interval.last; ++i)
+      ++buckets.start[static_cast<std::size_t>(i - first) + 1];
+  for (std::size_t i = 1; i < buckets.start.size(); ++i) buckets.start[i] += buckets.start[i - 1];
+  buckets.list.resize(buckets.start.back());
+  std::vector<std::size_t> next(buckets.start.begin(), buckets.start.end() - 1);
+  for (std::size_t brick = 0; brick < intervals.size(); ++brick)
+    for (std::int64_t i = intervals[brick].first; i <= intervals[brick].last; ++i)
+      buckets.list[next[static_cast<std::size_t>(i - first)]++] = static_cast<std::int32_t>(brick);
+  return buckets;
+}
+
+ProxySlices join(std::vector<SlicePolygons>& slices, std::int64_t first, double spacing) {
+  ProxySlices all;
+  all.spacing = spacing;
+  all.first = first;
+  std::size_t polygons = 0, vertices = 0;
+  for (const SlicePolygons& slice : slices) {
+    polygons += slice.polygons.size();
+    vertices += slice.vertices.size();
+  }
+  if (vertices > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+    throw InvalidArgument("slices: " + std::to_string(polygons) +
+                          " polygons are too many; use a larger spacing or larger bricks");
+  all.polygons.reserve(polygons);
+  all.vertices.reserve(vertices);
+  for (SlicePolygons& slice : slices) {
+    const auto base = static_cast<std::int32_t>(all.vertices.size());
+    for (ProxyPolygon polygon : slice.polygons) {
+      polygon.firstVertex += base;
+      all.polygons.push_back(polygon);
+    }
+    all.vertices.insert(all.vertices.end(), slice.vertices.begin(), slice.vertices.end());
+    all.start.push_back(static_cast<std::int32_t>(all.polygons.size()));
+    slice = {};
+  }
+  return all;
+}
+
+}  // namespace
+
+ProxySlices cutSlices(const IndexView& view, std::span<const glm::ivec3> origins, const glm::ivec3& interior,
+                      std::span<const glm::dvec4> viewPlanes, double spacing, std::int64_t maxSlices) {
+  if (!(spacing > 0) || !std::isfinite(spacing))
+    throw InvalidArgument("slices: spacing is " + std::to_string(spacing) + ", must be above 0");
+  std::vector<Corners> corners(origins.size());
+  std::vector<SliceInterval> intervals(origins.size());
+  std::int64_t first = std::numeric_limits<std::int64_t>::max(), last = -1;
+  double farthest = 0;
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    corners[i] = brickCorners(view, origins[i], interior);
+    for (const glm::dvec3& corner : corners[i]) farthest = std::max(farthest, corner.z);
+  }
+  // Checked on depths before slices are counted: beyond 2^53 their numbers would not be exact.
+  if (farthest / spacing > 9e15)
+    throw InvalidArgument("slices: spacing " + std::to_string(spacing) + " is too small for a volume at depth " +
+                          std::to_string(farthest));
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    intervals[i] = slicesThrough(corners[i], spacing);
+    if (intervals[i].last < intervals[i].first) continue;
+    first = std::min(first, intervals[i].first);
+    last = std::max(last, intervals[i].last);
+  }
+  ProxySlices none;
+  none.spacing = spacing;
+  if (last < first) return none;
+  const std::int64_t count = last - first + 1;
+  if (count > maxSlices)
+    throw InvalidArgument("slices: spacing " + std::to_string(spacing) + " makes " + std::to_string(count) +
+                          " slices, at most " + std::to_string(maxSlices) + " are allowed");
+
+  const Buckets buckets = sortBySlice(intervals, first, count);
+  const SliceCutter cutter(view, corners, viewPlanes, spacing);
+  std::vector<SlicePolygons> slices(static_cast<std::size_t>(count));
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, slices.size()), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const double depth = (static_cast<double>(first + static_cast<std::int64_t>(i)) + 0.5) * spacing;
+      cutter.cut(depth, std::span(buckets.list).subspan(buckets.start[i], buckets.start[i + 1] - buckets.start[i]),
+                 slices[i]);
+    }
+  });
+  return join(slices, first, spacing);
+}
+
+}  // namespace umbrick

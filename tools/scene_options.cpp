@@ -1,0 +1,232 @@
+#include "scene_options.h"
+
+#include <cmath>
+#include <iostream>
+
+#include "command.h"
+#include "umbrick/brick/brick_grid.h"
+#include "umbrick/core/error.h"
+#include "umbrick/core/stopwatch.h"
+#include "umbrick/shade/prepare.h"
+
+namespace umbrick::tools {
+namespace {
+constexpr double kRadians = 3.14159265358979323846 / 180;
+
+template <class T, class U>
+void apply(const std::optional<T>& option, U& field) {
+  if (option) field = *option;
+}
+
+glm::dvec3 toVector(const std::vector<double>& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+
+// "1024x768"
+void applySize(const std::string& text, Camera& camera) {
+  int used = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%n", &camera.width, &camera.height, &used) != 2 ||
+      used != static_cast<int>(text.size()))
+    throw UsageError("--size: expected WIDTHxHEIGHT in pixels, found '" + text + "'");
+}
+
+void applyCamera(const SceneOptions& options, Scene& scene) {
+  Camera& camera = scene.camera;
+  if (options.orthographic) camera.projection = Projection::orthographic;
+  if (options.fov) camera.fov = *options.fov * kRadians;
+  apply(options.nearDistance, camera.nearDistance);
+  if (options.size) applySize(*options.size, camera);
+  const bool angles = options.azimuth || options.elevation;
+  if (options.eye && angles) throw UsageError("--eye and --azimuth, --elevation exclude each other");
+  if (options.eye || (options.lookAt && !scene.orbit)) {
+    if (scene.orbit && !options.lookAt) throw UsageError("--eye needs --look-at");
+    if (scene.orbit) camera.up = {0, 0, 1};
+    scene.orbit.reset();
+  }
+  if (scene.orbit && (options.lookAt || options.up || options.viewHeight))
+    throw UsageError("--look-at, --up and --view-height need --eye");
+  if (angles) {
+    if (!scene.orbit) scene.orbit = Orbit{};
+    if (options.azimuth) scene.orbit->azimuth = *options.azimuth * kRadians;
+    if (options.elevation) scene.orbit->elevation = *options.elevation * kRadians;
+  }
+  if (options.eye) camera.eye = toVector(*options.eye);
+  if (options.lookAt) camera.lookAt = toVector(*options.lookAt);
+  if (options.up) camera.up = toVector(*options.up);
+  apply(options.viewHeight, camera.viewHeight);
+}
+
+void applyTransfer(const SceneOptions& options, Scene& scene) {
+  if (options.transfer) scene.transfer = loadTransferFunction(*options.transfer);
+  if (!scene.transfer) throw UsageError("no transfer function: give --tf (a preset or a file) or a scene that has one");
+  if (options.window) scene.transfer = scene.transfer->windowed((*options.window)[0], (*options.window)[1]);
+  if (options.sigmaScale) scene.transfer = scene.transfer->scaled(*options.sigmaScale);
+}
+
+void applyModel(const SceneOptions& options, Scene& scene) {
+  if (options.model) scene.model = *options.model == "cone" ? Model::cone : Model::emission;
+  OcclusionOptions& occlusion = scene.occlusion;
+  if (options.theta) occlusion.aperture = *options.theta * kRadians;
+  apply(options.footprint, occlusion.footprint);
+  apply(options.passes, occlusion.passes);
+  apply(options.algorithm, occlusion.algorithm);
+  apply(options.occlusionBits, occlusion.bits);
+  if (options.noPerspectiveCorrection) occlusion.perspectiveCorrection = false;
+  if (options.ambient) scene.ambient = toVector(*options.ambient);
+  if (options.background) scene.background = toVector(*options.background);
+}
+
+void applySampling(const SceneOptions& options, Scene& scene) {
+  SamplingOptions& sampling = scene.sampling;
+  apply(options.spacing, sampling.spacing);
+  if (options.spacingUnit) sampling.spacingInVoxels = *options.spacingUnit == "voxel";
+  if (options.quadrature)
+    sampling.quadrature = *options.quadrature == "midpoint" ? Quadrature::midpoint : Quadrature::preintegrated;
+  apply(options.eyeBits, sampling.bits);
+  apply(options.saturation, sampling.saturation);
+  apply(options.tableSize, sampling.tableSize);
+  if (options.unbricked) scene.bricks.bricked = false;
+  if (options.noCulling) scene.bricks.culling = false;
+  apply(options.interior, scene.bricks.interior);
+  apply(options.format, scene.bricks.format);
+  apply(options.budgetMiB, scene.bricks.budgetMiB);
+}
+
+void applyClipping(const SceneOptions& options, Scene& scene) {
+  if (!options.clipPlanes.empty()) scene.clipPlanes.clear();
+  for (const std::vector<double>& plane : options.clipPlanes)
+    scene.clipPlanes.emplace_back(plane[0], plane[1], plane[2], plane[3]);
+  if (options.clipBox) {
+    const std::vector<double>& box = *options.clipBox;
+    scene.clipBox = Box{{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
+  const auto options = std::make_shared<SceneOptions>();
+  SceneOptions& o = *options;
+  command.add_option("input", o.input, ".vdb file, or .json scene")->required();
+  command.add_option("--grid", o.grid,
+                     "grid of the file: name, or name[1] for the second of that name [the only one, or density]");
+
+  const std::string medium = "Medium";
+  command.add_option("--tf", o.transfer, "transfer function: a preset or a JSON file")->group(medium);
+  command.add_option("--window", o.window, "stretch the transfer function to these values, grid units")
+      ->expected(2)
+      ->group(medium);
+  command.add_option("--sigma-scale", o.sigmaScale, "multiply the extinction [1]")->group(medium);
+
+  const std::string camera = "Camera";
+  command.add_option("--azimuth", o.azimuth, "of the eye around the volume, degrees [0]")->group(camera);
+  command.add_option("--elevation", o.elevation, "of the eye above the volume, degrees [0]")->group(camera);
+  command.add_option("--eye", o.eye, "where the camera stands, world")->expected(3)->group(camera);
+  command.add_option("--look-at", o.lookAt, "where it looks, world")->expected(3)->group(camera);
+  command.add_option("--up", o.up, "what is up in the picture [0 0 1]")->expected(3)->group(camera);
+  command.add_option("--fov", o.fov, "full vertical angle of view, degrees [30]")->group(camera);
+  command.add_flag("--orthographic", o.orthographic, "parallel view");
+  command.get_option("--orthographic")->group(camera);
+  command.add_option("--view-height", o.viewHeight, "of a parallel view, world units, with --eye [1]")->group(camera);
+  command.add_option("--near", o.nearDistance, "nothing nearer than this is seen, world units [0]")->group(camera);
+  command.add_option("--size", o.size, "of the picture, pixels [512x512]")->group(camera);
+
+  const std::string light = "Light";
+  command.add_option("--model", o.model, "emission (no occlusion) or cone [emission]")
+      ->check(CLI::IsMember({"emission", "cone"}))
+      ->group(light);
+  command.add_option("--method", o.method, "of the cone model: dos [dos]")->check(CLI::IsMember({"dos"}))->group(light);
+  command.add_option("--theta", o.theta, "half-angle of the cone, degrees, in [0, 90) [60]")->group(light);
+  command.add_option("--footprint", o.footprint, "n: n x n samples over the cone's footprint, 1 to 16 [3]")
+      ->group(light);
+  command.add_option("--algorithm", o.algorithm, "2: exact distance per sample, 3: slice distance [3]")->group(light);
+  command.add_option("--passes", o.passes, "2: two passes per slice, 1: multiple render targets [1]")->group(light);
+  command.add_option("--occlusion-bits", o.occlusionBits, "of the occlusion buffer, 16 or 32 [32]")->group(light);
+  command.add_flag("--no-perspective-correction", o.noPerspectiveCorrection, "footprint as in a parallel view")
+      ->group(light);
+  command.add_option("--ambient", o.ambient, "radiance from every direction, linear RGB [1 1 1]")
+      ->expected(3)
+      ->group(light);
+  command
+      .add_option("--background", o.background,
+                  "radiance behind the volume, linear RGB; makes the picture opaque [none]")
+      ->expected(3)
+      ->group(light);
+
+  const std::string sampling = "Sampling";
+  command.add_option("--spacing", o.spacing, "distance of slices [0.5]")->group(sampling);
+  command.add_option("--spacing-unit", o.spacingUnit, "voxel (its shortest edge) or world [voxel]")
+      ->check(CLI::IsMember({"voxel", "world"}))
+      ->group(sampling);
+  command.add_option("--quadrature", o.quadrature, "of a slab: preintegrated or midpoint [preintegrated]")
+      ->check(CLI::IsMember({"preintegrated", "midpoint"}))
+      ->group(sampling);
+  command.add_option("--table-size", o.tableSize, "entries of the transfer table along an axis, 2 to 4096 [256]")
+      ->group(sampling);
+  command.add_option("--eye-bits", o.eyeBits, "of the eye buffer, 16 or 32 [32]")->group(sampling);
+  command.add_option("--saturation", o.saturation, "transmittance below which a pixel is done; 0: never [0.001]")
+      ->group(sampling);
+
+  const std::string clip = "Clipping";
+  command.add_option("--clip-plane", o.clipPlanes, "a b c d: keep a x + b y + c z + d >= 0, world; may be repeated")
+      ->type_size(4)
+      ->group(clip);
+  command.add_option("--clip-box", o.clipBox, "keep x0 y0 z0 x1 y1 z1, world")->expected(6)->group(clip);
+
+  const std::string bricks = "Bricks";
+  command.add_option("--brick-edge", o.interior, "owned voxels along an edge: 8 to 256, a multiple of 8 [32]")
+      ->group(bricks);
+  command.add_flag("--unbricked", o.unbricked, "the whole volume as one texture")->group(bricks);
+  command.add_flag("--no-culling", o.noCulling, "draw bricks that the transfer function makes invisible, too")
+      ->group(bricks);
+  command
+      .add_option("--texel-format", o.format, "auto, unorm8, unorm16, half or float32 [auto: the smallest exact one]")
+      ->group(bricks);
+  command.add_option("--memory-budget", o.budgetMiB, "of the bricks' textures, MiB [2048]")->group(bricks);
+
+  command.add_option("--backend", o.backend, "OpenGL: auto (OSMesa, else EGL), osmesa or egl")
+      ->check(CLI::IsMember({"auto", "osmesa", "egl"}))
+      ->capture_default_str();
+  return options;
+}
+
+Scene makeScene(const SceneOptions& options) {
+  Scene scene;
+  if (options.input.extension() == ".json")
+    scene = readScene(options.input);
+  else
+    scene.volume.file = options.input;
+  apply(options.grid, scene.volume.grid);
+  applyTransfer(options, scene);
+  applyCamera(options, scene);
+  applyModel(options, scene);
+  applySampling(options, scene);
+  applyClipping(options, scene);
+  validateScene(scene);
+  return scene;
+}
+
+std::unique_ptr<Bricks> cutBricks(const ScalarGrid& grid, const Scene& resolved) {
+  BrickOptions options;
+  options.interior = resolved.bricks.interior;
+  options.apron = requiredApron(resolved, grid.indexToWorld());
+  options.gradients = resolved.transfer->is2d();
+  return resolved.bricks.bricked ? brickGrid(grid, options) : unbrickedGrid(grid, options);
+}
+
+LoadedScene loadScene(const Scene& scene) {
+  LoadedScene loaded;
+  const Stopwatch load;
+  loaded.grid = readScalarGrid(scene.volume.file, scene.volume.grid);
+  loaded.loadMs = load.elapsedMs();
+  if (loaded.grid.activeBox().empty())
+    throw InvalidArgument(scene.volume.file.string() + ": grid \"" + loaded.grid.name + "\" has no active voxel");
+  loaded.scene = resolveScene(scene, loaded.grid.worldBounds(), loaded.grid.indexToWorld());
+  const Stopwatch brick;
+  loaded.bricks = cutBricks(loaded.grid, loaded.scene);
+  loaded.brickMs = brick.elapsedMs();
+  if (loaded.bricks->nonFiniteVoxels > 0)
+    std::cerr << scene.volume.file.string() << ": " << loaded.bricks->nonFiniteVoxels
+              << " voxels are not finite and count as background\n";
+  return loaded;
+}
+
+}  // namespace umbrick::tools

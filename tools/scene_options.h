@@ -1,0 +1,50 @@
+// The options that describe a scene, shared by the sub-commands that make pictures.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbrick/brick/bricks.h"
+#include "umbrick/gl/context.h"
+#include "umbrick/grid/scalar_grid.h"
+#include "umbrick/scene/scene.h"
+
+namespace umbrick::tools {
+
+/// What the command line says of a scene; what it leaves out comes from the scene file or keeps its default.
+struct SceneOptions {
+  std::filesystem::path input;
+  std::optional<std::string> grid, transfer, model, method, spacingUnit, quadrature, format;
+  std::optional<std::vector<double>> window, eye, lookAt, up, ambient, background, clipBox;
+  std::vector<std::vector<double>> clipPlanes;
+  std::optional<double> sigmaScale, azimuth, elevation, fov, viewHeight, nearDistance, spacing, saturation, theta;
+  std::optional<std::string> size;
+  std::optional<int> eyeBits, occlusionBits, tableSize, footprint, passes, algorithm, interior;
+  std::optional<std::uint64_t> budgetMiB;
+  bool orthographic = false, noPerspectiveCorrection = false, unbricked = false, noCulling = false;
+  std::string backend = "auto";
+};
+
+/// Adds the options to a sub-command.
+std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command);
+
+/// The scene of a file and the command line. @throw UsageError, IoError, InvalidArgument
+Scene makeScene(const SceneOptions& options);
+
+/// A scene with its volume in memory, cut into bricks.
+struct LoadedScene {
+  Scene scene;  // resolved
+  ScalarGrid grid;
+  std::unique_ptr<Bricks> bricks;
+  double loadMs = 0, brickMs = 0;
+};
+
+/// Reads the grid and cuts it as the scene wants. @throw IoError, InvalidArgument
+LoadedScene loadScene(const Scene& scene);
+/// Cuts a grid that is in memory already as the resolved scene wants.
+std::unique_ptr<Bricks> cutBricks(const ScalarGrid& grid, const Scene& resolved);
+
+}  // namespace umbrick::tools
