@@ -1,5 +1,7 @@
-// One triangle that covers the image, at the near end of the depth range.
+// One triangle that covers the image.
+uniform float depth;  // normalised device coordinate
+
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  gl_Position = vec4(corner, -1.0, 1.0);
+  gl_Position = vec4(corner, depth, 1.0);
 }

@@ -1,20 +1,23 @@
-// Spreads the need for light along one axis: a tile is needed when one within reach is.
-// Reads   need_before  by tile
-// Writes  need         by tile
-layout(binding = 3) uniform sampler2D need_before;
-uniform float reach;   // tiles
-uniform float shrink;  // a slice reads the one before farther from the image's centre: from here back to the last slice, at most
+// Spreads the state of tiles along one axis: what light can reach counts like the tile itself.
+// Reads   state_before  by tile, see tile_state.frag
+// Writes  state         by tile
+layout(binding = 3) uniform sampler2D state_before;
+uniform vec2 reach;    // of each channel, tiles
+uniform vec2 scale;    // how distances from the image's centre change on the way, from 1 to this
 uniform vec2 centre;   // of the image, tiles
 uniform vec2 axis;     // (1, 0) or (0, 1)
-layout(location = 0) out float need;
+layout(location = 0) out vec2 state;
 
 void main() {
-  ivec2 last = textureSize(need_before, 0) - 1, along = ivec2(axis);
-  float here = dot(gl_FragCoord.xy, axis), middle = dot(centre, axis);
-  float behind = middle + (here - middle) * shrink;  // where the last slice has what is straight behind this tile
-  int from = int(floor(min(here, behind) - reach)), to = int(floor(max(here, behind) + reach));
+  ivec2 count = textureSize(state_before, 0), along = ivec2(axis);
   ivec2 tile = ivec2(gl_FragCoord.xy) * (1 - along);
-  need = 0.0;
-  for (int i = max(from, 0); i <= min(to, last.x * along.x + last.y * along.y); ++i)
-    need = max(need, texelFetch(need_before, tile + i * along, 0).r);
+  float here = dot(gl_FragCoord.xy, axis), middle = dot(centre, axis);
+  for (int channel = 0; channel < 2; ++channel) {
+    float there = middle + (here - middle) * scale[channel];
+    int from = max(int(floor(min(here, there) - reach[channel])), 0);
+    int to = min(int(floor(max(here, there) + reach[channel])), count.x * along.x + count.y * along.y - 1);
+    float found = 0.0;
+    for (int i = from; i <= to; ++i) found = max(found, texelFetch(state_before, tile + i * along, 0)[channel]);
+    state[channel] = found;
+  }
 }

@@ -62,6 +62,7 @@ void SaturationTest::run(const Frame& frame) {
   gl.Disable(GL_SCISSOR_TEST);
   gl.BindTextureUnit(3, frame.targets.eye.name());
   program_.set("saturation", static_cast<float>(frame.scene.sampling.saturation));
+  program_.set("depth", -1.0f);
   program_.use();
   gl.BindVertexArray(nothing_.name());
   gl.DrawArrays(GL_TRIANGLES, 0, 3);

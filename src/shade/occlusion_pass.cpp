@@ -6,13 +6,10 @@
 
 #include "shade/footprint.h"
 #include "shade/frame.h"
-#include "shade/light_need.h"
+#include "shade/light_tiles.h"
 
 namespace umbrick {
 namespace {
-
-// Slices between two looks at which pixels are needed.
-constexpr std::int64_t kNeedInterval = 16;
 
 class OcclusionPass : public SlicePass {
  public:
@@ -33,12 +30,12 @@ class OcclusionPass : public SlicePass {
     if (!nothing_) nothing_ = GlVertexArray(gl);
     planRegions(frame);
     if (frame.scene.sampling.saturation > 0) {
-      if (!need_) need_.emplace(gl);
-      need_->begin(frame, steps_);
+      if (!tiles_) tiles_.emplace(gl);
+      tiles_->begin(frame, steps_);
     }
     previous_ = 0;
     stencil_ = 0;
-    sinceNeed_ = 0;
+    nextLook_ = 0;
   }
 
   void draw(Frame& frame, std::int64_t first, std::int64_t last) override {
@@ -104,9 +101,9 @@ class OcclusionPass : public SlicePass {
     const ScreenRegion& region = regions_[static_cast<std::size_t>(slice)];
     const SliceStep& step = steps_[static_cast<std::size_t>(slice)];
     if (draws.empty() && region.empty()) return;
-    if (need_ && ++sinceNeed_ >= kNeedInterval) {
-      need_->run(frame, slice);
-      sinceNeed_ = 0;
+    if (tiles_ && slice >= nextLook_) {
+      tiles_->look(frame, slice, frame.targets.occlusion[static_cast<std::size_t>(previous_)]);
+      nextLook_ = slice + LightTiles::kInterval;
     }
     const int target = 1 - previous_;
     if (++stencil_ > 255) {
@@ -214,13 +211,13 @@ class OcclusionPass : public SlicePass {
   SpecialisedProgram eye_{"shade/slice.vert", "shade/occlusion_eye.frag"};
   SpecialisedProgram light_{"shade/slice.vert", "shade/occlusion_light.frag"};
   SpecialisedProgram carry_{"shade/full_screen.vert", "shade/occlusion_carry.frag"};
-  std::optional<LightNeed> need_;
+  std::optional<LightTiles> tiles_;
   GlVertexArray nothing_;
   std::vector<glm::dvec2> disk_;
   std::vector<ScreenRegion> covered_, regions_;
   std::vector<SliceStep> steps_;
   int previous_ = 0;  // occlusion buffer that holds the slice before
-  std::int64_t sinceNeed_ = 0;
+  std::int64_t nextLook_ = 0;
   int stencil_ = 0;  // number of the slice in the stencil buffer, 1 to 255
 };
 
