@@ -80,6 +80,7 @@ void applySampling(const SceneOptions& options, Scene& scene) {
   if (options.spacingUnit) sampling.spacingInVoxels = *options.spacingUnit == "voxel";
   if (options.quadrature)
     sampling.quadrature = *options.quadrature == "midpoint" ? Quadrature::midpoint : Quadrature::preintegrated;
+  apply(options.segments, sampling.segments);
   apply(options.eyeBits, sampling.bits);
   apply(options.saturation, sampling.saturation);
   apply(options.tableSize, sampling.tableSize);
@@ -158,6 +159,8 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
       ->group(sampling);
   command.add_option("--quadrature", o.quadrature, "of a slab: preintegrated or midpoint [preintegrated]")
       ->check(CLI::IsMember({"preintegrated", "midpoint"}))
+      ->group(sampling);
+  command.add_option("--segments", o.segments, "of a slab, integrated one by one along the ray, 1 to 8 [1]")
       ->group(sampling);
   command.add_option("--table-size", o.tableSize, "entries of the transfer table along an axis, 2 to 4096 [256]")
       ->group(sampling);

@@ -22,7 +22,7 @@ struct SceneOptions {
   std::vector<std::vector<double>> clipPlanes;
   std::optional<double> sigmaScale, azimuth, elevation, fov, viewHeight, nearDistance, spacing, saturation, theta;
   std::optional<std::string> size;
-  std::optional<int> eyeBits, occlusionBits, tableSize, footprint, passes, algorithm, interior;
+  std::optional<int> eyeBits, occlusionBits, tableSize, segments, footprint, passes, algorithm, interior;
   std::optional<std::uint64_t> budgetMiB;
   bool orthographic = false, noPerspectiveCorrection = false, unbricked = false, noCulling = false;
   std::string backend = "auto";

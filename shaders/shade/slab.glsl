@@ -19,13 +19,23 @@ Slab evaluateSlab(vec4 slab_centre) {
     kept = keptInterval(p, slab_centre.w);
     kept.y = max(kept.x, kept.y);
   }
-  vec4 medium = slabMedium(middle + kept.x * half_step, middle + kept.y * half_step);
-  float ray = rayStretch(p) * half_spacing * (kept.y - kept.x);  // world length of the ray in the slab
-  float tau = medium.a * ray;
-  float factor = slabFactor(tau);
-  Slab slab;
-  slab.light = vec4(medium.rgb, medium.a) * (ray * factor);
-  slab.sigma_t = medium.a;
-  slab.share = 0.5 * (kept.y - kept.x);
+  float thickness = kept.y - kept.x;
+  float ray = rayStretch(p) * half_spacing * thickness / float(kSegments);  // world length of a segment
+  vec3 segment = half_step * (thickness / float(kSegments));
+  vec3 front = middle + kept.x * half_step;
+  float front_end = kQuadrature == 0 ? endCoordinate(front) : 0.0;
+  Slab slab = Slab(vec4(0.0), 0.0, 0.5 * thickness);
+  for (int i = 0; i < kSegments; ++i) {
+    vec4 medium;
+    if (kQuadrature == 0) {
+      float back_end = endCoordinate(front + float(i + 1) * segment);
+      medium = rampMedium(front_end, back_end);
+      front_end = back_end;
+    } else {
+      medium = pointMedium(front + (float(i) + 0.5) * segment);
+    }
+    slab.light += (1.0 - slab.light.a) * medium * (ray * slabFactor(medium.a * ray));
+    slab.sigma_t += medium.a * (1.0 / float(kSegments));
+  }
   return slab;
 }

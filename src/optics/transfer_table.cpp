@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -142,11 +143,65 @@ TransferTable sampleTransferFunction(const TransferFunction& transfer, const Ran
   return table;
 }
 
-std::vector<glm::vec4> preintegrate(const TransferFunction& transfer, const Range& value, int nodes) {
+namespace {
+
+// (1 - exp(-x)) / x in double precision; slab.glsl has it in single.
+double slabFactor(double x) { return x > 0 ? -std::expm1(-x) / x : 1; }
+
+// A slab with media in equal layers from front to back: what a slab of constant medium would have to scatter per length
+// to send the same light to the eye. Two at once, seen from either side.
+class LayeredSlab {
+ public:
+  // More layers than this are joined: a layer of mean medium then spans 1/64 of the slab.
+  static constexpr std::size_t kLayers = 64;
+
+  LayeredSlab(const glm::dvec4* binMeans, std::size_t bins, double thickness) : thickness_(thickness) {
+    const std::size_t perLayer = (bins + kLayers - 1) / kLayers;
+    for (std::size_t bin = 0; bin < bins; bin += perLayer) {
+      const std::size_t joined = std::min(perLayer, bins - bin);
+      glm::dvec4 sum{0};
+      for (std::size_t k = 0; k < joined; ++k) sum += binMeans[bin + k];
+      Layer& layer = layers_[count_++];
+      const double length = thickness * static_cast<double>(joined) / static_cast<double>(bins);
+      const double tau = sum.a / static_cast<double>(joined) * length;
+      layer.scattered = glm::dvec3(sum) / static_cast<double>(joined) * (length * slabFactor(tau));
+      layer.transmittance = std::exp(-tau);
+      tau_ += tau;
+    }
+  }
+
+  glm::dvec3 fromFront() const {
+    glm::dvec3 light{0};
+    for (std::size_t i = count_; i-- > 0;) light = layers_[i].scattered + layers_[i].transmittance * light;
+    return perLength(light);
+  }
+  glm::dvec3 fromBack() const {
+    glm::dvec3 light{0};
+    for (std::size_t i = 0; i < count_; ++i) light = layers_[i].scattered + layers_[i].transmittance * light;
+    return perLength(light);
+  }
+
+ private:
+  struct Layer {
+    glm::dvec3 scattered;  // to the front or back of the layer, for light of radiance 1
+    double transmittance;
+  };
+  glm::dvec3 perLength(const glm::dvec3& light) const { return light / (thickness_ * slabFactor(tau_)); }
+
+  double thickness_, tau_ = 0;
+  std::size_t count_ = 0;
+  std::array<Layer, kLayers> layers_;
+};
+
+}  // namespace
+
+std::vector<glm::vec4> preintegrate(const TransferFunction& transfer, const Range& value, int nodes, double thickness) {
   if (transfer.is2d()) throw InvalidArgument("preintegration: only a 1D transfer function has intervals of values");
   if (nodes < 2) throw InvalidArgument("preintegration: nodes is " + std::to_string(nodes) + ", must be above 1");
   if (!(value.min < value.max) || !std::isfinite(value.min) || !std::isfinite(value.max))
     throw InvalidArgument("preintegration: the range of values must be finite and have an extent");
+  if (!(thickness >= 0) || !std::isfinite(thickness))
+    throw InvalidArgument("preintegration: thickness is " + std::to_string(thickness) + ", must be 0 or more");
   const auto n = static_cast<std::size_t>(nodes);
   std::vector<glm::dvec4> binMeans(n - 1);
   for (int i = 0; i + 1 < nodes; ++i) {
@@ -164,7 +219,13 @@ std::vector<glm::vec4> preintegrate(const TransferFunction& transfer, const Rang
       glm::dvec4 sum{0};
       for (std::size_t j = i + 1; j < n; ++j) {
         sum += binMeans[j - 1];
+        // Front value fastest: (i in front, j behind) is in row j.
         means[i * n + j] = means[j * n + i] = glm::vec4(sum / static_cast<double>(j - i));
+        if (thickness == 0) continue;
+        const LayeredSlab slab(&binMeans[i], j - i, thickness);
+        const glm::vec3 front(slab.fromFront()), back(slab.fromBack());
+        means[j * n + i] = glm::vec4(front, means[j * n + i].a);
+        means[i * n + j] = glm::vec4(back, means[i * n + j].a);
       }
     }
   });

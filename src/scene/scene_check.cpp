@@ -99,6 +99,7 @@ std::optional<Complaint> findComplaint(const Scene& scene) {
   const SamplingOptions& sampling = scene.sampling;
   check.require(sampling.spacing > 0 && std::isfinite(sampling.spacing), "sampling.spacing", print(sampling.spacing),
                 "above 0");
+  check.requireWithin(sampling.segments, 1, 8, "sampling.segments");
   check.requireEither(sampling.bits, 16, 32, "sampling.bits");
   check.require(sampling.saturation >= 0 && sampling.saturation < 1, "sampling.saturation", print(sampling.saturation),
                 "in [0, 1)");

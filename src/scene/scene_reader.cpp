@@ -98,10 +98,11 @@ void readLight(const JsonValue& value, Scene& scene) {
 }
 
 void readSampling(const JsonValue& value, SamplingOptions& sampling) {
-  value.allowFields({"spacing", "unit", "quadrature", "bits", "saturation", "tableSize"});
+  value.allowFields({"spacing", "unit", "quadrature", "segments", "bits", "saturation", "tableSize"});
   read(value, "spacing", sampling.spacing);
   read(value, "unit", kSpacingUnits, sampling.spacingInVoxels);
   read(value, "quadrature", kQuadratures, sampling.quadrature);
+  read(value, "segments", sampling.segments);
   read(value, "bits", sampling.bits);
   read(value, "saturation", sampling.saturation);
   read(value, "tableSize", sampling.tableSize);

@@ -46,6 +46,7 @@ std::string printedSampling(const SamplingOptions& sampling) {
   return jsonObject({{"spacing", jsonNumber(sampling.spacing)},
                      {"unit", printed(kSpacingUnits, sampling.spacingInVoxels)},
                      {"quadrature", printed(kQuadratures, sampling.quadrature)},
+                     {"segments", printed(sampling.segments)},
                      {"bits", printed(sampling.bits)},
                      {"saturation", jsonNumber(sampling.saturation)},
                      {"tableSize", printed(sampling.tableSize)}});

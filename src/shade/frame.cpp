@@ -26,6 +26,7 @@ ShaderConstants slabConstants(const Frame& frame) {
   return {{"kPerspective", frame.camera.projection == Projection::perspective},
           {"kClipPlanes", static_cast<int>(frame.planes.size())},
           {"kQuadrature", frame.transfer.shaderMode()},
+          {"kSegments", frame.scene.sampling.segments},
           {"kAux", frame.targets.options.aux}};
 }
 

@@ -65,7 +65,7 @@ class SliceRenderer::Implementation {
       : gl_(context.gl()), volume_(volume), scene_(scene), options_(options) {
     checkScene(context);
     const SamplingOptions& sampling = scene.sampling;
-    transfer_.emplace(gl_, *scene.transfer, sampling.quadrature, sampling.tableSize, volume);
+    transfer_.emplace(gl_, *scene.transfer, sampling, volume);
     const Range background{volume.background, volume.background};
     backgroundVisible_ = !volume.domain.empty() && transfer_->isVisible(background, {0, 0});
     std::vector<Brick> bricks = visibleBricks(volume, *transfer_, scene.bricks, backgroundVisible_);

@@ -28,13 +28,13 @@ Range TransferLookup::Axis::around(const Range& values) const {
   return nodeRange;
 }
 
-TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& transfer, Quadrature quadrature,
-                               int nodes, const Bricks& volume)
+TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& transfer, const SamplingOptions& sampling,
+                               const Bricks& volume)
     : transfer_(transfer),
-      mode_(transfer.is2d()                           ? 2
-            : quadrature == Quadrature::preintegrated ? 0
-                                                      : 1) {
-  nodes = std::max(nodes, 3);  // an inner anchor needs a node on either side
+      mode_(transfer.is2d()                                    ? 2
+            : sampling.quadrature == Quadrature::preintegrated ? 0
+                                                               : 1) {
+  const int nodes = std::max(sampling.tableSize, 3);  // an inner anchor needs a node on either side
   value_ = makeAxis(volume.value, volume.background, nodes);
   if (mode_ == 2) gradient_ = makeAxis(volume.gradient, 0, nodes);
   std::vector<glm::vec4> entries;
@@ -42,7 +42,7 @@ TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& tr
   if (mode_ == 0) {
     const Range covered{static_cast<float>(value_.first),
                         static_cast<float>(value_.first + (value_.nodes - 1) * value_.step)};
-    entries = preintegrate(transfer, covered, value_.nodes);
+    entries = preintegrate(transfer, covered, value_.nodes, sampling.spacing / sampling.segments);
     rows = value_.nodes;
   } else {
     rows = gradient_.nodes;

@@ -12,7 +12,7 @@ class TransferLookup {
  public:
   /// Nodes stand at equal distances over the volume's values, one of them exactly at the background, so that empty
   /// space stays as transparent as the function says. @throw GlError
-  TransferLookup(const GlFunctions& gl, const TransferFunction& transfer, Quadrature quadrature, int nodes,
+  TransferLookup(const GlFunctions& gl, const TransferFunction& transfer, const SamplingOptions& sampling,
                  const Bricks& volume);
 
   /// False when no lookup with values (and gradient magnitudes) in these ranges can give anything but 0.

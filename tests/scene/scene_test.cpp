@@ -170,6 +170,7 @@ TEST_CASE("Every field of a scene has its range, however the scene was made", "[
       {"light.background", [=](Scene& s) { s.background = glm::dvec3(infinity); }},
       {"sampling.spacing", [](Scene& s) { s.sampling.spacing = -1; }},
       {"sampling.spacing", [=](Scene& s) { s.sampling.spacing = nan; }},
+      {"sampling.segments", [](Scene& s) { s.sampling.segments = 9; }},
       {"sampling.bits", [](Scene& s) { s.sampling.bits = 24; }},
       {"sampling.saturation", [](Scene& s) { s.sampling.saturation = 1; }},
       {"sampling.tableSize", [](Scene& s) { s.sampling.tableSize = 1; }},

@@ -41,13 +41,19 @@ TransferTable sampleTransferFunction(const TransferFunction& transfer, const Ran
 /// Means of the 1D function over every interval of values: entry (i, j) is the mean of (sigma_s, sigma_t) over values
 /// from node i to node j, where the value runs linearly, computed from the exact integral of the piecewise function.
 /// Lookup by (front value, back value) of a slab gives what a ramp of values between them scatters and absorbs per
-/// length, for any slab length (Engel, Kraus, Ertl 2001, doi:10.1145/383507.383515, without the attenuation inside the
-/// slab). On the diagonal it is the function, at a step the average of both sides.
+/// length, for any slab length (Engel, Kraus, Ertl 2001, doi:10.1145/383507.383515). On the diagonal it is the
+/// function, at a step the average of both sides.
+///
+/// With a thickness, sigma_s also accounts for the order of the media: a slab of that thickness with the entry as its
+/// constant medium sends exactly the light to the eye that the ramp does, what is behind dimmed by what is in front; at
+/// other thicknesses nearly so. Then the table is not symmetric, but for sigma_t.
 ///
 /// A ramp must not leave `value`: a lookup would clamp its ends and so average over a part of it (air at 0, bone at
 /// 2000 and a table from 500 to 1200 give a slab between them the mean over 500 to 1200). Use TableCover::data.
-/// @return nodes x nodes, front value fastest, symmetric, over `value` of a TransferTable with nodes = columns
+/// @param thickness  of the slab, world units; 0: means
+/// @return nodes x nodes, front value fastest, over `value` of a TransferTable with nodes = columns
 /// @throw InvalidArgument  a 2D function, nodes < 2, a range without extent
-std::vector<glm::vec4> preintegrate(const TransferFunction& transfer, const Range& value, int nodes);
+std::vector<glm::vec4> preintegrate(const TransferFunction& transfer, const Range& value, int nodes,
+                                    double thickness = 0);
 
 }  // namespace umbrick

@@ -41,6 +41,7 @@ struct SamplingOptions {
   double spacing = 0.5;         // d: distance of slices along the view direction
   bool spacingInVoxels = true;  // spacing counts the shortest voxel edge, else world units
   Quadrature quadrature = Quadrature::preintegrated;
+  int segments = 1;          // of equal length, in which a slab is integrated along the ray, 1 to 8
   int bits = 32;             // of the eye buffer, 16 or 32
   double saturation = 1e-3;  // pixels with less transmittance than this are shaded no more; 0: never
   int tableSize = 256;       // entries of the transfer table along an axis, 2 to 4096
@@ -98,7 +99,7 @@ struct Scene {
 ///   model      "emission", "cone"
 ///   method     "dos"
 ///   light      ambient [r, g, b], background [r, g, b]
-///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), bits, saturation, tableSize
+///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), segments, bits, saturation, tableSize
 ///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits
 ///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]
 ///   bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16", "half", "float32"), budgetMiB
