@@ -175,7 +175,7 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
   command.add_option("--clip-box", o.clipBox, "keep x0 y0 z0 x1 y1 z1, world")->expected(6)->group(clip);
 
   const std::string bricks = "Bricks";
-  command.add_option("--brick-edge", o.interior, "owned voxels along an edge: 8 to 256, a multiple of 8 [32]")
+  command.add_option("--brick-edge", o.interior, "owned voxels along an edge: 8 to 256, a multiple of 8 [16]")
       ->group(bricks);
   command.add_flag("--unbricked", o.unbricked, "the whole volume as one texture")->group(bricks);
   command.add_flag("--no-culling", o.noCulling, "draw bricks that the transfer function makes invisible, too")

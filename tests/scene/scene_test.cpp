@@ -49,7 +49,7 @@ Scene randomScene(std::mt19937& random) {
   scene.model = Model::cone;
   scene.ambient = vector(0, 5);
   scene.background = vector(0, 1);
-  scene.sampling = {number(1e-4, 5), false, Quadrature::midpoint, 16, number(0, 0.1), 1024};
+  scene.sampling = {number(1e-4, 5), false, Quadrature::midpoint, 5, 16, number(0, 0.1), 1024};
   scene.occlusion = {number(0, 1.57), 5, 2, 2, false, 16};
   scene.clipPlanes = {ClipPlane(vector(-1, 1), number(-9, 9)), ClipPlane(vector(-1, 1), number(-9, 9))};
   scene.clipBox = Box{vector(-9, -1), vector(0, 9)};

@@ -9,7 +9,7 @@
 namespace umbrick {
 
 struct BrickOptions {
-  int interior = 32;       // owned voxels along each edge, 8 to 256, a multiple of 8 (whole leaves)
+  int interior = 16;       // owned voxels along each edge, 8 to 256, a multiple of 8 (whole leaves)
   int apron = 1;           // ghost voxels; a sample may lie up to apron - 1/2 voxels outside the brick
   bool gradients = false;  // for 2D transfer functions
 };

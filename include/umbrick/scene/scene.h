@@ -50,7 +50,7 @@ struct SamplingOptions {
 
 struct BrickSettings {
   bool bricked = true;             // false: the whole volume as one texture
-  int interior = 32;               // owned voxels along a brick's edge: 8 to 256, a multiple of 8
+  int interior = 16;               // owned voxels along a brick's edge: 8 to 256, a multiple of 8
   bool culling = true;             // skip bricks that the transfer function makes invisible
   std::string format = "auto";     // texel: auto (smallest exact one), unorm8, unorm16, half, float32
   std::uint64_t budgetMiB = 2048;  // of textures that hold voxels; larger volumes stream through a pool of this size
