@@ -1,7 +1,7 @@
 // The part of one proxy slice that lies in one brick, both buffers at once (multiple render targets).
 // Reads   atlas, transfer (see medium.glsl)   occlusion_prev (see footprint.glsl)
 // Writes  eye        premultiplied RGBA, blended under: (ONE_MINUS_DST_ALPHA, ONE)
-//         occlusion  blending off; pixels that no brick covers come from occlusion_carry.frag
+//         occlusion  blending off; pixels that no brick covers come from occlusion_spread.frag
 //         aux        kAux: opacity-weighted visibility and depth, blended as eye
 // Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, section 4
 #include "shade/slab.glsl"

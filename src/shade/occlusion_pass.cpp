@@ -20,13 +20,15 @@ class OcclusionPass : public SlicePass {
     ShaderConstants constants = slabConstants(frame);
     constants["kTaps"] = static_cast<int>(disk_.size());
     constants["kAlgorithm"] = options.algorithm;
-    if (options.passes == 1) {
+    if (spreadsFirst(frame)) {
+      setSlabUniforms(blend_.get(gl, constants), frame);
+    } else if (options.passes == 1) {
       setSlabUniforms(both_.get(gl, constants), frame);
     } else {
       setSlabUniforms(eye_.get(gl, constants), frame);
       setSlabUniforms(light_.get(gl, constants), frame);
     }
-    carry_.get(gl, {{"kTaps", constants["kTaps"]}, {"kAlgorithm", options.algorithm}});
+    spread_.get(gl, {{"kTaps", constants["kTaps"]}, {"kAlgorithm", options.algorithm}});
     if (!nothing_) nothing_ = GlVertexArray(gl);
     planRegions(frame);
     if (frame.scene.sampling.saturation > 0) {
@@ -49,6 +51,13 @@ class OcclusionPass : public SlicePass {
   }
 
  private:
+  // With one distance for all samples the mean over the footprint does not depend on the medium: it is taken for all
+  // pixels at once, which fills whole blocks of a rasteriser where the polygons of small bricks do not, and bricks
+  // multiply it.
+  static bool spreadsFirst(const Frame& frame) {
+    return frame.scene.occlusion.passes == 1 && frame.scene.occlusion.algorithm == 3;
+  }
+
   // How slice i reads the slice before it: see footprint.glsl.
   SliceStep step(const Frame& frame, std::int64_t i) const {
     const double d = frame.slices.spacing;
@@ -116,13 +125,17 @@ class OcclusionPass : public SlicePass {
       stencil_ = 1;
     }
     gl.BindTextureUnit(2, frame.targets.occlusion[static_cast<std::size_t>(previous_)].name());
-    if (frame.scene.occlusion.passes == 1) {
-      if (!draws.empty()) drawBoth(frame, draws, step, target);
+    if (spreadsFirst(frame)) {
+      if (!region.empty()) drawSpread(frame, step, region, target, false);
+      if (!draws.empty()) drawBoth(frame, blend_.current(), draws, step, target);
+    } else if (frame.scene.occlusion.passes == 1) {
+      if (!draws.empty()) drawBoth(frame, both_.current(), draws, step, target);
+      if (!region.empty()) drawSpread(frame, step, region, target, true);
     } else {
       if (!draws.empty()) drawEye(frame, draws, step);
       if (!draws.empty() && !region.empty()) drawLight(frame, draws, step, region, target);
+      if (!region.empty()) drawSpread(frame, step, region, target, true);
     }
-    if (!region.empty()) drawCarry(frame, step, region, target);
     previous_ = target;
   }
 
@@ -155,14 +168,21 @@ class OcclusionPass : public SlicePass {
     frame.fragments.end();
   }
 
-  void drawBoth(Frame& frame, std::span<const SliceDraw> draws, const SliceStep& step, int target) {
-    frame.gl.BindFramebuffer(GL_FRAMEBUFFER, frame.targets.eyeAndLight[static_cast<std::size_t>(target)].name());
+  void drawBoth(Frame& frame, GlProgram& program, std::span<const SliceDraw> draws, const SliceStep& step, int target) {
+    const GlFunctions& gl = frame.gl;
+    gl.BindFramebuffer(GL_FRAMEBUFFER, frame.targets.eyeAndLight[static_cast<std::size_t>(target)].name());
     setCommonState(frame);
     blendUnder(frame, 0);
-    frame.gl.Disablei(GL_BLEND, 1);
+    if (spreadsFirst(frame)) {
+      gl.Disable(GL_STENCIL_TEST);
+      gl.Enablei(GL_BLEND, 1);
+      gl.BlendFunci(1, GL_ZERO, GL_SRC_COLOR);
+    } else {
+      gl.Disablei(GL_BLEND, 1);
+    }
     blendUnder(frame, 2);
-    setFootprint(both_.current(), frame, step);
-    both_.current().use();
+    setFootprint(program, frame, step);
+    program.use();
     drawTriangles(frame, draws);
   }
 
@@ -188,16 +208,21 @@ class OcclusionPass : public SlicePass {
     drawTriangles(frame, draws);
   }
 
-  void drawCarry(Frame& frame, const SliceStep& step, const ScreenRegion& region, int target) {
+  // @param spareBricks  leaves out the pixels that bricks of this slice have marked
+  void drawSpread(const Frame& frame, const SliceStep& step, const ScreenRegion& region, int target, bool spareBricks) {
     const GlFunctions& gl = frame.gl;
     gl.BindFramebuffer(GL_FRAMEBUFFER, frame.targets.lightOnly[static_cast<std::size_t>(target)].name());
     setCommonState(frame);
     setScissor(frame, region);
-    gl.StencilFunc(GL_NOTEQUAL, stencil_, 0xff);
-    gl.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    if (spareBricks) {
+      gl.StencilFunc(GL_NOTEQUAL, stencil_, 0xff);
+      gl.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    } else {
+      gl.Disable(GL_STENCIL_TEST);
+    }
     gl.Disablei(GL_BLEND, 0);
-    setFootprint(carry_.current(), frame, step);
-    carry_.current().use();
+    setFootprint(spread_.current(), frame, step);
+    spread_.current().use();
     gl.BindVertexArray(nothing_.name());
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
   }
@@ -207,10 +232,11 @@ class OcclusionPass : public SlicePass {
     frame.gl.Scissor(region.min.x, region.min.y, region.extent().x, region.extent().y);
   }
 
+  SpecialisedProgram blend_{"shade/slice.vert", "shade/occlusion_blend.frag"};
   SpecialisedProgram both_{"shade/slice.vert", "shade/occlusion_slice.frag"};
   SpecialisedProgram eye_{"shade/slice.vert", "shade/occlusion_eye.frag"};
   SpecialisedProgram light_{"shade/slice.vert", "shade/occlusion_light.frag"};
-  SpecialisedProgram carry_{"shade/full_screen.vert", "shade/occlusion_carry.frag"};
+  SpecialisedProgram spread_{"shade/full_screen.vert", "shade/occlusion_spread.frag"};
   std::optional<LightTiles> tiles_;
   GlVertexArray nothing_;
   std::vector<glm::dvec2> disk_;

@@ -1,4 +1,4 @@
-// Pixels of a slice that no brick covers: light keeps spreading in empty space.
+// Light as it spreads from slice to slice, whether or not a brick is there.
 // Reads   occlusion_prev (see footprint.glsl)
 // Writes  occlusion  blending off
 #include "shade/footprint.glsl"
