@@ -11,6 +11,8 @@ function(umbrick_flags target)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   if(UMBRICK_SANITIZE)
+    # With the sanitizers' checks in between, GCC loses track of what the standard library initialises.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=undefined
                                              -fno-omit-frame-pointer)
     # With sanitizers GCC 12 takes std::regex, which Catch uses, for uninitialised (its bug 105562).

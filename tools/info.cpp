@@ -38,6 +38,7 @@ json toJson(const GridSummary& grid) {
   json out{{"name", grid.label},
            {"type", grid.valueType},
            {"scalar", grid.scalar},
+           {"readable", grid.readable},
            {"saved_as_half", grid.savedAsHalf},
            {"class", grid.gridClass},
            {"dims", array(dims)},
@@ -109,6 +110,10 @@ void print(const GridSummary& grid) {
   std::cout << "  file bytes     " << grid.fileBytes << '\n';
   if (grid.transformType.empty()) {
     std::cout << "  (a type that this program does not know)\n";
+    return;
+  }
+  if (!grid.readable) {
+    std::cout << "  (voxels of this type are not read)\n";
     return;
   }
   const glm::i64vec3 dims = grid.activeBox.extent();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grid/affine_matrix.h"
 #include "grid/vdb_file.h"
 #include "umbrick/core/error.h"
 
@@ -19,7 +20,7 @@ std::string listed(const VdbFile& file) {
   if (file.entries().empty()) return "the file has no grids";
   std::string text = "the file has";
   for (const VdbFile::Entry& entry : file.entries())
-    text += (text.ends_with("has") ? " " : ", ") + quoted(entry) + " (" + valueTypeName(entry.type) + ')';
+    text += (text.ends_with("has") ? " " : ", ") + quoted(entry) + " (" + entry.valueType + ')';
   return text;
 }
 
@@ -27,7 +28,7 @@ const VdbFile::Entry& defaultEntry(const VdbFile& file) {
   const VdbFile::Entry *only = nullptr, *density = nullptr;
   int scalars = 0;
   for (const VdbFile::Entry& entry : file.entries()) {
-    if (!isScalarType(valueTypeName(entry.type))) continue;
+    if (!isScalarType(entry.valueType)) continue;
     ++scalars;
     only = &entry;
     if (entry.name == "density" && !density) density = &entry;
@@ -43,9 +44,9 @@ const VdbFile::Entry& findEntry(const VdbFile& file, const std::string& selector
   if (selector.empty()) return defaultEntry(file);
   const VdbFile::Entry* entry = file.find(selector);
   if (!entry) throw InvalidArgument(file.path().string() + ": no grid \"" + selector + "\": " + listed(file));
-  if (!isScalarType(valueTypeName(entry->type)))
+  if (!isScalarType(entry->valueType))
     throw InvalidArgument(file.path().string() + ": grid " + quoted(*entry) + ": expected a scalar grid, found " +
-                          valueTypeName(entry->type));
+                          entry->valueType);
   return *entry;
 }
 
@@ -110,12 +111,7 @@ ScalarGrid read(const fs::path& path, const std::string& selector, bool affineOn
 glm::dmat4 ScalarGrid::indexToWorld() const {
   if (!grid->transform().isLinear())
     throw InvalidArgument("grid \"" + name + "\": expected an affine transform, found " + grid->transform().mapType());
-  const openvdb::Mat4R map = grid->transform().baseMap()->getAffineMap()->getMat4();
-  glm::dmat4 matrix(1);
-  // OpenVDB multiplies row vectors from the left: its rows are our columns.
-  for (int axis = 0; axis < 4; ++axis)
-    for (int i = 0; i < 4; ++i) matrix[axis][i] = map(axis, i);
-  return matrix;
+  return affineMatrix(grid->transform());
 }
 
 IndexBox ScalarGrid::activeBox() const {
@@ -146,8 +142,7 @@ GridListing listGrids(const fs::path& path) {
   const VdbFile file(path);
   GridListing listing;
   for (const VdbFile::Entry& entry : file.entries()) {
-    const std::string type = valueTypeName(entry.type);
-    listing.grids.push_back({entry.label, type, isScalarType(type)});
+    listing.grids.push_back({entry.label, entry.valueType, isScalarType(entry.valueType)});
   }
   listing.metadata = file.metadata();
   return listing;

@@ -8,6 +8,8 @@
 #include <limits>
 #include <sstream>
 
+#include "grid/affine_matrix.h"
+#include "grid/vdb_check.h"
 #include "grid/vdb_file.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/scalar_grid.h"
@@ -116,17 +118,13 @@ void placeInWorld(const GridBase& grid, GridSummary& out) {
   out.transformType = linear ? "linear" : "frustum";
   const openvdb::Vec3d size = transform.voxelSize();
   out.voxelSize = {size[0], size[1], size[2]};
-  if (linear) {
-    const openvdb::Mat4R map = transform.baseMap()->getAffineMap()->getMat4();
-    glm::dmat4 matrix(1);
-    for (int axis = 0; axis < 4; ++axis)
-      for (int i = 0; i < 4; ++i) matrix[axis][i] = map(axis, i);
-    out.indexToWorld = matrix;
-  }
-  if (out.activeBox.empty()) return;
+  if (linear) out.indexToWorld = affineMatrix(transform);
+}
+
+void boundWorld(const GridBase& grid, GridSummary& out) {
   const glm::ivec3 &low = out.activeBox.min, &high = out.activeBox.max;
   for (int corner = 0; corner < 8; ++corner) {
-    const openvdb::Vec3d point = transform.indexToWorld(
+    const openvdb::Vec3d point = grid.transform().indexToWorld(
         openvdb::Vec3d(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z));
     out.worldBounds.include({point[0], point[1], point[2]});
   }
@@ -135,26 +133,29 @@ void placeInWorld(const GridBase& grid, GridSummary& out) {
 GridSummary summariseGrid(VdbFile& file, const VdbFile::Entry& entry, int bins) {
   GridSummary out;
   out.label = entry.label;
-  out.valueType = valueTypeName(entry.type);
+  out.valueType = entry.valueType;
   out.scalar = isScalarType(out.valueType);
   out.savedAsHalf = entry.descriptor.saveFloatAsHalf();
   out.fileBytes = entry.fileBytes;
-  if (!GridBase::isRegistered(entry.type)) return out;
-
   const GridBase::ConstPtr grid = file.read(entry);
+  if (!grid) return out;
   out.gridClass = GridBase::gridClassToString(grid->getGridClass());
+  out.metadata = asText(*grid);
+  placeInWorld(*grid, out);
+  out.readable = layoutOf(entry.valueType) != nullptr;
+  if (!out.readable) return out;
+
   out.activeVoxels = grid->activeVoxelCount();
   out.activeTiles = grid->baseTree().activeTileCount();
   out.leaves = grid->baseTree().leafCount();
   if (out.activeVoxels > 0) {
     const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
     out.activeBox = {{box.min().x(), box.min().y(), box.min().z()}, {box.max().x(), box.max().y(), box.max().z()}};
+    boundWorld(*grid, out);
     grid->apply<CountedGridTypes>([&](const auto& typed) { out.values = summariseValues(typed.tree(), bins); });
   }
   out.background = backgroundText(*grid);
-  placeInWorld(*grid, out);
   out.memoryBytes = grid->memUsage();
-  out.metadata = asText(*grid);
   return out;
 }
 

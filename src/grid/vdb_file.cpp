@@ -1,33 +1,18 @@
 #include "grid/vdb_file.h"
 
-#include <cctype>
 #include <map>
 #include <new>
-#include <system_error>
 
+#include "grid/vdb_check.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::uint32_t kOldestVersion = openvdb::OPENVDB_FILE_VERSION_BOOST_UUID;
-constexpr const char* kHalfSuffix = "_HalfFloat";
-
-// What the stream or the checks found wrong, without the name of the file.
-struct Broken : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-std::int64_t regularFileSize(const fs::path& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) throw IoError(path.string() + ": no such file");
-  if (status.type() == fs::file_type::directory) throw IoError(path.string() + ": expected a file, found a directory");
-  const auto size = fs::file_size(path, error);
-  if (error) throw IoError(path.string() + ": cannot read: " + error.message());
-  return static_cast<std::int64_t>(size);
-}
+// Older files (before OpenVDB 1.0.1 of 2012) lay out their nodes in other ways.
+constexpr std::uint32_t kOldestVersion = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
+constexpr std::string_view kHalfSuffix = "_HalfFloat";
 
 }  // namespace
 
@@ -38,11 +23,11 @@ auto VdbFile::guarded(const std::string& what, const Action& action) {
     return action();
   } catch (const Error&) {
     throw;
-  } catch (const Broken& error) {
+  } catch (const BrokenVdb& error) {
     throw IoError(path_.string() + ": " + what + error.what());
   } catch (const std::ios_base::failure&) {
     throw IoError(path_.string() + ": " + what + "truncated or corrupt, the data run past the end of the file at " +
-                  std::to_string(fileBytes_) + " bytes");
+                  std::to_string(fileBytes()) + " bytes");
   } catch (const std::bad_alloc&) {
     throw IoError(path_.string() + ": " + what + "corrupt, or too large for the memory");
   } catch (const std::exception& error) {
@@ -50,23 +35,21 @@ auto VdbFile::guarded(const std::string& what, const Action& action) {
   }
 }
 
-VdbFile::VdbFile(const fs::path& path) : path_(path), fileBytes_(regularFileSize(path)) {
+VdbFile::VdbFile(const fs::path& path) : path_(path), file_(path), buffer_(file_.bytes()), stream_(&buffer_) {
   openvdb::initialize();
-  stream_.open(path, std::ios::binary);
-  if (!stream_) throw IoError(path.string() + ": cannot read");
   stream_.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
   guarded("", [&] { readHead(); });
   nameEntries();
 }
 
 void VdbFile::readHead() {
-  if (fileBytes_ < 8 || number<std::int64_t>() != openvdb::OPENVDB_MAGIC)
-    throw Broken("expected a .vdb file, found other first bytes");
-  const auto fileVersion = number<std::uint32_t>();
-  if (fileVersion < kOldestVersion || fileVersion > openvdb::OPENVDB_FILE_VERSION)
-    throw Broken("file version: expected " + std::to_string(kOldestVersion) + " to " +
-                 std::to_string(openvdb::OPENVDB_FILE_VERSION) + ", found " + std::to_string(fileVersion));
-  stream_.seekg(0);
+  VdbCursor head(file_.bytes(), 0);
+  if (fileBytes() < 8 || head.number<std::int64_t>() != openvdb::OPENVDB_MAGIC)
+    throw BrokenVdb("expected a .vdb file, found other first bytes");
+  const auto found = head.number<std::uint32_t>();
+  if (found < kOldestVersion || found > openvdb::OPENVDB_FILE_VERSION)
+    throw BrokenVdb("file version: expected " + std::to_string(kOldestVersion) + " to " +
+                    std::to_string(openvdb::OPENVDB_FILE_VERSION) + ", found " + std::to_string(found));
   readHeader(stream_);
   streamMetadata_ = std::make_shared<openvdb::io::StreamMetadata>();
   streamMetadata_->setSeekable(inputHasGridOffsets());
@@ -74,35 +57,42 @@ void VdbFile::readHead() {
   setFormatVersion(stream_);
   setLibraryVersion(stream_);
   setDataCompression(stream_);
-  checkMetadata();
+  VdbCursor metadata(file_.bytes(), stream_.tellg());
+  checkMetadata(metadata);
   metadata_.readMeta(stream_);
 
-  const auto count = number<std::int32_t>();
-  if (count < 0) throw Broken("corrupt: the file says that it has " + std::to_string(count) + " grids");
+  const auto count = VdbCursor(file_.bytes(), stream_.tellg()).number<std::int32_t>();
+  if (count < 0) throw BrokenVdb("corrupt: the file says that it has " + std::to_string(count) + " grids");
+  stream_.seekg(sizeof count, std::ios::cur);
   for (std::int32_t i = 0; i < count; ++i) entries_.push_back(readEntry());
 }
 
+// One row of the table; rows lie before the data of their grids.
 VdbFile::Entry VdbFile::readEntry() {
-  const std::string uniqueName = checkedString();
-  std::string type = checkedString();
-  const bool half = type.ends_with(kHalfSuffix);
-  if (half) type.resize(type.size() - std::string_view(kHalfSuffix).size());
-  openvdb::io::GridDescriptor descriptor(uniqueName, type, half);
-  descriptor.setInstanceParentName(checkedString());
-  const auto gridPos = number<std::int64_t>(), blockPos = number<std::int64_t>(), endPos = number<std::int64_t>();
-  descriptor.setGridPos(gridPos);
-  descriptor.setBlockPos(blockPos);
-  descriptor.setEndPos(endPos);
-  Entry entry{{}, descriptor.gridName(), type, endPos - gridPos, descriptor, {}};
+  VdbCursor row(file_.bytes(), stream_.tellg());
+  const std::string uniqueName = row.string();
+  std::string type = row.string();
+  const bool saved = type.ends_with(kHalfSuffix);
+  if (saved) type.resize(type.size() - kHalfSuffix.size());
+  Entry entry{{}, {}, valueTypeName(type), 0, openvdb::io::GridDescriptor(uniqueName, type, saved), {}};
+  entry.name = entry.descriptor.gridName();
+  entry.descriptor.setInstanceParentName(row.string());
+  const auto gridPos = row.number<std::int64_t>(), blockPos = row.number<std::int64_t>(),
+             endPos = row.number<std::int64_t>();
+  const std::int64_t start = row.position();
+  stream_.seekg(start);
   if (inputHasGridOffsets()) {
-    const std::int64_t here = stream_.tellg();
-    if (gridPos < here || blockPos < gridPos || endPos < blockPos || endPos > fileBytes_)
-      throw Broken("truncated or corrupt: grid \"" + entry.name + "\" should end at byte " + std::to_string(endPos) +
-                   ", the file has " + std::to_string(fileBytes_));
+    if (gridPos < start || blockPos < gridPos || endPos < blockPos || endPos > fileBytes())
+      throw BrokenVdb("truncated or corrupt: grid \"" + entry.name + "\" should end at byte " + std::to_string(endPos) +
+                      ", the file has " + std::to_string(fileBytes()));
+    entry.descriptor.setGridPos(gridPos);
+    entry.fileBytes = endPos - gridPos;
     stream_.seekg(endPos);
   } else {
-    const std::int64_t start = stream_.tellg();
-    entry.loaded = readTree(entry);
+    if (!layoutOf(entry.valueType))
+      throw BrokenVdb("grid \"" + entry.name + "\": expected a type that can be read from a stream, found " +
+                      entry.valueType);
+    entry.loaded = readHere(entry);
     entry.fileBytes = static_cast<std::int64_t>(stream_.tellg()) - start;
   }
   return entry;
@@ -130,83 +120,53 @@ openvdb::GridBase::Ptr VdbFile::read(const Entry& entry) {
     if (!grid) {
       stream_.clear();
       stream_.seekg(entry.descriptor.getGridPos());
-      grid = readTree(entry);
+      grid = readHere(entry);
     }
     if (!entry.descriptor.isInstance()) return grid;
     // An instance shares the tree of another grid.
     for (const Entry& parent : entries_)
-      if (parent.descriptor.uniqueName() == entry.descriptor.instanceParentName() && &parent != &entry &&
-          !parent.descriptor.isInstance()) {
+      if (parent.descriptor.uniqueName() == entry.descriptor.instanceParentName() && !parent.descriptor.isInstance()) {
         const openvdb::GridBase::Ptr other = read(parent);
-        if (other->type() == grid->type()) {
+        if (other && other->type() == grid->type()) {
           grid->setTree(other->baseTreePtr());
           return grid;
         }
       }
-    throw Broken("corrupt: the grid whose voxels it shares is missing");
+    throw BrokenVdb("corrupt: the grid whose voxels it shares is missing");
   });
 }
 
-openvdb::GridBase::Ptr VdbFile::readTree(const Entry& entry) {
-  if (!openvdb::GridBase::isRegistered(entry.type)) throw Broken("unknown type of grid \"" + entry.type + '"');
-  // The lengths are checked in a first pass; OpenVDB then reads the same bytes.
-  const std::streampos start = stream_.tellg();
-  number<std::uint32_t>();  // compression
-  checkMetadata();
-  checkedString();  // the type of the transform
+// Reads the grid at which the stream stands.
+openvdb::GridBase::Ptr VdbFile::readHere(const Entry& entry) {
+  const std::string& type = entry.descriptor.gridType();
+  if (!openvdb::GridBase::isRegistered(type)) return nullptr;
+  const std::int64_t start = stream_.tellg();
+  // First pass: metadata and transform, and a walk over the tree behind them.
+  readGridCompression(stream_);
+  VdbCursor cursor(file_.bytes(), stream_.tellg());
+  checkMetadata(cursor);
+  cursor.string();  // the type of the transform, which is all of it that has a length
+  openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(type);
+  grid->setSaveFloatAsHalf(entry.descriptor.saveFloatAsHalf());
+  grid->readMeta(stream_);  // has the last word on half floats
+  grid->readTransform(stream_);
+  const VdbLayout* layout = layoutOf(entry.valueType);
+  if (!layout) return grid;
+  if (!entry.descriptor.isInstance()) {
+    VdbCursor tree(file_.bytes(), stream_.tellg());
+    checkTree(tree, *layout, openvdb::io::getDataCompression(stream_), grid->saveFloatAsHalf());
+  }
+  // Second pass: OpenVDB reads the same bytes.
   stream_.seekg(start);
-  const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(entry.type);
+  grid = openvdb::GridBase::createGrid(type);
   readGrid(grid, entry.descriptor, stream_);
   return grid;
 }
 
-// Walks over a map of metadata and comes back to its start.
-void VdbFile::checkMetadata() {
-  const std::streampos start = stream_.tellg();
-  const auto count = number<std::int32_t>();
-  for (std::int32_t i = 0; i < count; ++i) {
-    checkedString();  // name
-    checkedString();  // type
-    const auto bytes = number<std::uint32_t>();
-    checkLeft(bytes);
-    stream_.seekg(bytes, std::ios::cur);
-  }
-  stream_.seekg(start);
-}
-
-std::string VdbFile::checkedString() {
-  const auto length = number<std::uint32_t>();
-  checkLeft(length);
-  std::string text(length, '\0');
-  stream_.read(text.data(), length);
-  return text;
-}
-
-template <class T>
-T VdbFile::number() {
-  T value{};
-  stream_.read(reinterpret_cast<char*>(&value), sizeof(T));
-  return value;
-}
-
-void VdbFile::checkLeft(std::int64_t bytes) {
-  const std::int64_t left = fileBytes_ - static_cast<std::int64_t>(stream_.tellg());
-  if (bytes > left)
-    throw Broken("truncated or corrupt: a field of " + std::to_string(bytes) + " bytes begins " + std::to_string(left) +
-                 " bytes before the end of the file");
-}
-
 std::string valueTypeName(const std::string& treeType) {
-  constexpr std::string_view kPrefix = "Tree_";
-  if (!treeType.starts_with(kPrefix)) return treeType;
-  std::string name = treeType.substr(kPrefix.size());
-  while (!name.empty() && (std::isdigit(static_cast<unsigned char>(name.back())) || name.back() == '_')) {
-    // Only "_5_4_3" goes: "int32_5_4_3" keeps its 32.
-    const std::size_t underscore = name.rfind('_');
-    if (underscore == std::string::npos) break;
-    name.resize(underscore);
-  }
-  return name;
+  constexpr std::string_view kPrefix = "Tree_", kNodes = "_5_4_3";
+  if (!treeType.starts_with(kPrefix) || !treeType.ends_with(kNodes)) return treeType;
+  return treeType.substr(kPrefix.size(), treeType.size() - kPrefix.size() - kNodes.size());
 }
 
 bool isScalarType(const std::string& valueType) {

@@ -6,22 +6,24 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <istream>
 #include <string>
 #include <vector>
 
+#include "grid/mapped_file.h"
+
 namespace umbrick {
 
-/// OpenVDB trusts what it reads: lengths in a broken file make it allocate gigabytes, and a short read goes unnoticed.
-/// So the table of grids and all lengths of the metadata are checked against the size of the file first, and the
-/// stream throws when it is read past its end. Nothing is loaded later than it is asked for.
+/// OpenVDB trusts what it reads: wrong lengths in a broken file make it allocate gigabytes or write beyond its buffers,
+/// and a short read goes unnoticed. So everything is checked (vdb_check.h) before OpenVDB sees it, and the stream
+/// throws when it is read past its end. Nothing is loaded later than it is asked for.
 class VdbFile : private openvdb::io::Archive {
  public:
   struct Entry {
     std::string label;  // the grid's name, with "[k]" behind it when several grids share it or it is empty
     std::string name;
-    std::string type;        // as OpenVDB spells it: "Tree_float_5_4_3"
-    std::int64_t fileBytes;  // of the grid in the file
+    std::string valueType;       // "float", "vec3s", ...
+    std::int64_t fileBytes = 0;  // of the grid in the file
     openvdb::io::GridDescriptor descriptor;
     openvdb::GridBase::Ptr loaded;  // files without a table are read whole
   };
@@ -31,7 +33,7 @@ class VdbFile : private openvdb::io::Archive {
 
   const std::filesystem::path& path() const { return path_; }
   const std::vector<Entry>& entries() const { return entries_; }
-  std::int64_t fileBytes() const { return fileBytes_; }
+  std::int64_t fileBytes() const { return std::int64_t(file_.bytes().size()); }
   std::uint32_t version() const { return fileVersion(); }
   std::string writtenBy() const { return openvdb::io::Archive::version(); }
   const openvdb::MetaMap& metadata() const { return metadata_; }
@@ -39,7 +41,8 @@ class VdbFile : private openvdb::io::Archive {
   /// The entry of a selector: a label, a name (the first of that name) or "name[k]".
   /// @return null when there is none
   const Entry* find(const std::string& selector) const;
-  /// Reads a grid with its tree. @throw IoError  corrupt, or of a type that OpenVDB does not know
+  /// Reads a grid: with its tree where the voxels are of a type that vdb_check.h knows, else metadata and transform.
+  /// @return null for a type that OpenVDB does not know  @throw IoError  corrupt
   openvdb::GridBase::Ptr read(const Entry& entry);
 
  private:
@@ -48,22 +51,18 @@ class VdbFile : private openvdb::io::Archive {
   void readHead();
   Entry readEntry();
   void nameEntries();
-  openvdb::GridBase::Ptr readTree(const Entry& entry);
-  void checkMetadata();
-  std::string checkedString();
-  template <class T>
-  T number();
-  void checkLeft(std::int64_t bytes);
+  openvdb::GridBase::Ptr readHere(const Entry& entry);
 
   std::filesystem::path path_;
-  std::int64_t fileBytes_ = 0;
-  std::ifstream stream_;
+  MappedFile file_;
+  MemoryStreamBuffer buffer_;
+  std::istream stream_;
   openvdb::io::StreamMetadata::Ptr streamMetadata_;
   openvdb::MetaMap metadata_;
   std::vector<Entry> entries_;
 };
 
-/// "float" for "Tree_float_5_4_3": the type of the values, as people call it.
+/// "float" for "Tree_float_5_4_3": the type of the values, as people call it; others as they are.
 std::string valueTypeName(const std::string& treeType);
 /// True for the types that readScalarGrid turns into float.
 bool isScalarType(const std::string& valueType);

@@ -24,6 +24,7 @@ struct GridSummary {
   std::string label;      // what readScalarGrid takes
   std::string valueType;  // "float", "vec3s", "mask", ...
   bool scalar = false;    // readScalarGrid takes it
+  bool readable = false;  // false for points and other types: only what is above and transform and metadata are told
   bool savedAsHalf = false;
   std::string gridClass;
   IndexBox activeBox;  // of the active voxels; empty for an empty grid

@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/program.h"
+
+using namespace umbrick;
+namespace fs = std::filesystem;
+using Catch::Contains;
+
+namespace {
+
+const std::string kAssets = "'" UMBRICK_ASSETS "'/";
+const std::string kHead = kAssets + "headsq_256x256x94_uint16le.raw.gz --dims 256 256 94 --type u16 --bits-stored 15 ";
+
+std::size_t filesIn(const TemporaryFolder& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()));
+}
+
+struct Failing {
+  TemporaryFolder folder;
+  // One line of message, the status, and no file left behind.
+  void check(const std::string& arguments, int status, const std::string& message) const {
+    CAPTURE(arguments);
+    const std::size_t before = filesIn(folder);
+    const ProgramResult result = runProgram(folder, arguments);
+    CHECK(result.status == status);
+    CHECK_THAT(result.err, Contains(message));
+    CHECK(result.out.empty());
+    if (status == 1) CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+    CHECK(filesIn(folder) == before);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("The head scan converts, and info tells what is in the result", "[tools]") {
+  const TemporaryFolder folder;
+  const ProgramResult convert =
+      runProgram(folder, "convert " + kHead +
+                             "--spacing 0.8 0.8 1.5 --origin -100 -100 10 --clip-below 501 --name ct -o head.vdb");
+  CHECK(convert.status == 0);
+  CHECK(convert.err.empty());  // no progress bar in a pipe
+  CHECK_THAT(convert.out, Contains("2299643 of 6160384 (37.33 %)") && Contains("maximum error   0"));
+  const ProgramResult info = runProgram(folder, "info head.vdb --json --bins 4");
+  REQUIRE(info.status == 0);
+  const nlohmann::json json = nlohmann::json::parse(info.out);
+  const nlohmann::json& grid = json.at("grids").at(0);
+  CHECK(grid.at("name") == "ct");
+  CHECK(grid.at("type") == "float");
+  CHECK(grid.at("class") == "fog volume");
+  CHECK(grid.at("active_voxels") == 2299643);
+  CHECK(grid.at("values").at("min") == 501);
+  CHECK(grid.at("values").at("max") == 4095);
+  CHECK(grid.at("values").at("histogram").size() == 4);
+  CHECK(grid.at("voxel_size").at(2).get<double>() == Approx(1.5));
+  CHECK(grid.at("index_to_world").at(0).at(3) == -100);
+  CHECK(grid.at("world_bounds").at("min").at(2).get<double>() ==
+        Approx(10 + 1.5 * grid.at("index_box").at("min").at(2).get<double>()));
+  CHECK_THAT(runProgram(folder, "info head.vdb").out, Contains("grid \"ct\"") && Contains("2299643"));
+}
+
+TEST_CASE("A .vdb converts to .vdb grid by grid", "[tools]") {
+  const TemporaryFolder folder;
+  const std::string smoke = kAssets + "densityAndHeat.vdb ";
+  CHECK(runProgram(folder, "convert " + smoke + "-o both.vdb").status == 0);
+  CHECK(runProgram(folder, "convert " + smoke + "--grid heat --half --tolerance 0.01 -o heat.vdb").status == 0);
+  const auto grids = [&](const std::string& file) {
+    return nlohmann::json::parse(runProgram(folder, "info --json " + file).out).at("grids");
+  };
+  CHECK(grids("both.vdb").size() == 2);
+  CHECK(grids("both.vdb").at(0).at("active_voxels") == 6124);
+  CHECK(grids("heat.vdb").size() == 1);
+  CHECK(grids("heat.vdb").at(0).at("saved_as_half") == true);
+  CHECK(grids("heat.vdb").at(0).at("voxel_size") == grids("both.vdb").at(1).at("voxel_size"));
+}
+
+TEST_CASE("NRRD and pipes convert", "[tools]") {
+  const TemporaryFolder folder;
+  writeBytes(folder.path() / "v.nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\nabcdefgh");
+  CHECK_THAT(runProgram(folder, "convert v.nrrd -o v.vdb").out, Contains("8 of 8"));
+  fs::rename(folder.path() / "v.nrrd", folder.path() / "unnamed");
+  CHECK_THAT(runProgram(folder, "convert unnamed -o v.vdb").out, Contains("8 of 8"));
+  writeBytes(folder.path() / "v.raw", "abcdefgh");
+  CHECK_THAT(runProgram(folder, "convert /dev/stdin --dims 2 2 2 --type u8 -o v.vdb < v.raw").out, Contains("8 of 8"));
+}
+
+TEST_CASE("Failed conversions exit 1 with one line and leave nothing behind", "[tools]") {
+  const Failing failing;
+  writeBytes(failing.folder.path() / "short.raw", std::string(100, 'x'));
+  writeBytes(failing.folder.path() / "broken.vdb", readBytes(UMBRICK_ASSETS "/densityAndHeat.vdb").substr(0, 60000));
+  const std::string raw = " --dims 4 5 6 --type u8 -o o.vdb";
+  failing.check("convert none.raw" + raw, 1, "umbrick: none.raw: no such file");
+  failing.check("convert short.raw" + raw, 1, "short.raw: expected 4 x 5 x 6 u8 = 120 bytes, found 100");
+  failing.check("convert short.raw --dims 4 5 4 --type u8 -o o.vdb", 1, "found 100; does it begin with a header");
+  failing.check("convert ." + raw, 1, "expected a file, found a directory");
+  failing.check("convert short.raw --dims 10 10 1 --type u8 -o none/o.vdb", 1, "none/o.vdb: cannot write");
+  failing.check("convert none.nrrd -o o.vdb", 1, "none.nrrd: no such file");
+  failing.check("convert broken.vdb -o o.vdb", 1, "broken.vdb: truncated or corrupt");
+  failing.check("convert " + kAssets + "densityAndHeat.vdb --grid smoke -o o.vdb", 1,
+                "no grid \"smoke\": the file has \"density\" (float), \"heat\" (float)");
+  failing.check("info broken.vdb", 1, "truncated or corrupt");
+  failing.check("info short.raw", 1, "expected a .vdb file");
+  failing.check("info none.vdb", 1, "no such file");
+}
+
+TEST_CASE("Wrong usage exits 2", "[tools]") {
+  const Failing failing;
+  writeBytes(failing.folder.path() / "v.raw", std::string(120, 'x'));
+  const std::string start = "convert v.raw -o o.vdb --dims 4 5 6 --type u8 ";
+  failing.check("convert v.raw -o o.vdb", 2, "needs --dims and --type");
+  failing.check("convert v.raw", 2, "--output is required");
+  failing.check("convert v.raw -o o.vdb --dims 4 5 --type u8", 2, "--dims");
+  failing.check("convert v.raw -o o.vdb --dims 4 5 x --type u8", 2, "--dims");
+  failing.check("convert v.raw -o o.vdb --dims 4 0 6 --type u8", 2, "dims: expected each from 1");
+  failing.check("convert v.raw -o o.vdb --dims 4 -5 6 --type u8", 2, "dims: expected each from 1");
+  failing.check("convert v.raw -o o.vdb --dims 4 5 6 --type u12", 2, "u12");
+  failing.check("convert v.raw -o o.nvdb --dims 4 5 6 --type u8", 2, "ends in .vdb");
+  failing.check(start + "--spacing 1 0 1", 2, "spacing: expected positive");
+  failing.check(start + "--spacing 1 nan 1", 2, "spacing: expected positive");
+  failing.check(start + "--bits-stored 9", 2, "bits stored: expected 1 to 8");
+  failing.check(start + "--tolerance -1", 2, "--tolerance");
+  failing.check(start + "--background nan", 2, "--background");
+  failing.check(start + "--endian middle", 2, "--endian");
+  failing.check("convert v.nrrd --dims 4 5 6 --type u8 -o o.vdb", 2, "for headerless raw");
+  failing.check("info", 2, "file is required");
+  failing.check("info v.vdb --bins 0", 2, "--bins");
+  failing.check("nonsense", 2, "");
+}
