@@ -1,6 +1,7 @@
 // The umbrick program: one sub-command per file beside this one.
 #include <exception>
 #include <iostream>
+#include <string>
 #include <vector>
 
 #include "command.h"
@@ -13,6 +14,9 @@ int runProgram(int argc, char** argv) {
   CLI::App app{"Sparse volumes: convert, inspect, render, check.", "umbrick"};
   app.set_version_flag("--version", "umbrick " UMBRICK_VERSION);
   app.require_subcommand(1);
+  // One line, like every other error.
+  app.failure_message(
+      [](const CLI::App*, const CLI::Error& error) { return std::string("umbrick: ") + error.what() + "\n"; });
   const std::vector<Command> commands{
       addConvert(app),
       addInfo(app),
