@@ -72,10 +72,13 @@ def run_vtk(kind, scene, frames, work):
 def run_umbrick(program, spacing, extra, scene, frames, work, transfer):
     """-> frame times in ms, picture. The only place that knows umbrick's command line and statistics."""
     camera = scene["camera"]
-    picture, stats = work / f"umbrick-{spacing}.exr", work / f"umbrick-{spacing}.json"
+    spacing, _, segments = spacing.partition("/")
+    name = f"umbrick-{spacing}-{segments or 1}"
+    picture, stats = work / f"{name}.exr", work / f"{name}.json"
     run([program, "render", work / "volume.vdb", "--tf", transfer, "--eye", *camera["eye"], "--look-at",
          *camera["lookAt"], "--up", *camera["up"], "--fov", camera["fov"],
          "--size", f"{camera['width']}x{camera['height']}", "--model", "emission", "--spacing", spacing,
+         "--segments", segments or 1,
          "--frames", frames + 1, "--exr-pixel", "float", *extra, "--stats", stats, "-o", picture])
     with open(stats) as file:
         return json.load(file)["frames_ms"][1:], exr.read_rgba(picture)
@@ -102,7 +105,7 @@ def main():
     parser.add_argument("--transfer", required=True, help="transfer function: JSON with \"points\"")
     parser.add_argument("--work", required=True, type=pathlib.Path, help="folder for what is made on the way")
     parser.add_argument("--umbrick", help="the program; without it only VTK is measured")
-    parser.add_argument("--spacing", default="0.5", help="umbrick: slice spacings, in voxels (0.5); several: 0.5,1,2")
+    parser.add_argument("--spacing", default="0.5", help="umbrick: slice spacings, in voxels, and the segments of a slab (0.5); several: 0.5,1,2/4")
     parser.add_argument("--extra", default="", help="umbrick: more options, separated by spaces")
     parser.add_argument("--azimuth", type=float, default=30, help="deg (30)")
     parser.add_argument("--elevation", type=float, default=15, help="deg (15)")
@@ -132,7 +135,7 @@ def main():
     contenders = {"VTK GPU mapper": lambda: run_vtk("gpu", scene, arguments.frames, work),
                   "VTK fixed-point mapper": lambda: run_vtk("cpu", scene, arguments.frames, work)}
     for d in arguments.spacing.split(",") if arguments.umbrick else []:
-        contenders[f"umbrick, d = {d} voxels"] = lambda d=d: run_umbrick(
+        contenders[f"umbrick, d = {d}"] = lambda d=d: run_umbrick(
             arguments.umbrick, d, arguments.extra.split(), scene, arguments.frames, work, arguments.transfer)
     times, pictures, gl_names = {name: [] for name in contenders}, {}, set()
     for _ in range(arguments.turns):
