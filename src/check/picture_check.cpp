@@ -15,7 +15,7 @@ void raise(double& largest, double value) {
   if (!(value <= largest)) largest = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
 }
 
-// Unit in the last place of a buffer whose values are near 1, half of which one rounding may be off.
+// Unit in the last place of a buffer whose values are below 1: one rounding is off by half of it.
 double lastPlace(int bits) { return bits == 16 ? 0x1p-11 : 0x1p-24; }
 
 }  // namespace
@@ -40,8 +40,8 @@ PictureLimit pictureLimit(const PictureDifference& shifted, const Scene& scene, 
   double sums = 2 * n * lastPlace(scene.sampling.bits);
   if (scene.model == Model::cone) sums += 2 * n * lastPlace(scene.occlusion.bits);
   PictureLimit limit;
-  // Rounding may displace the samples of either picture.
-  limit.rounding = {2 * shifted.colour + sums, 2 * shifted.visibility + sums, 2 * shifted.depth + 2 * sums};
+  // All samples were displaced by the most that rounding can do, and all one way.
+  limit.rounding = {shifted.colour + sums, shifted.visibility + sums, shifted.depth + 2 * sums};
   // Beyond four deviations of a random walk lies 3.2e-5 of the light, on each of four sides.
   if (scene.model == Model::cone) limit.light = 4 * 3.2e-5;
   return limit;

@@ -14,7 +14,7 @@ double samplerPrecision(const GlContext& context, const Bricks& volume, const st
 
 /// How far rounding moves a sample along an axis, voxels. A texture coordinate is a sum of two rounded products and a
 /// rounded offset, of magnitudes up to the texture's edge plus the way from the middle of the image, and is rounded
-/// again when it is scaled to texels: eight times half a unit in the last place of 24 bits.
-inline double coordinateError(double textureEdge, double sideways) { return 8 * 0x1p-24 * (textureEdge + sideways); }
+/// again when it is scaled to texels: eight times half a unit in the last of 24 bits, which is 2^-25 of the number.
+inline double coordinateError(double textureEdge, double sideways) { return 8 * 0x1p-25 * (textureEdge + sideways); }
 
 }  // namespace umbrick
