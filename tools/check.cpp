@@ -100,6 +100,8 @@ void printJson(const std::vector<InvariantResult>& results, const Scene& scene, 
 }
 
 int check(const CheckCommand& command) {
+  for (const int edge : command.check.edges)
+    if (edge % 8 != 0) throw UsageError("--edges: " + std::to_string(edge) + " is not a multiple of 8");
   ScalarGrid grid;
   const auto load = [&](const Scene& scene) {
     if (!grid.grid) grid = readScalarGrid(scene.volume.file, scene.volume.grid);
@@ -140,7 +142,7 @@ Command addCheck(CLI::App& app) {
   sub->get_option("--size")->description("of the pictures, pixels [256x256]");
   sub->get_option("--tf")->description("transfer function: a preset or a JSON file [a grey ramp over the values]");
   const std::string group = "Check";
-  sub->add_option("--edges", command->check.edges, "of bricks that are compared, voxels")
+  sub->add_option("--edges", command->check.edges, "of bricks that are compared, voxels, multiples of 8")
       ->check(CLI::Range(8, 256))
       ->capture_default_str()
       ->group(group);
