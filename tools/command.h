@@ -19,6 +19,7 @@ struct UsageError : std::runtime_error {
 };
 
 // Each in the file of its name. Adds a sub-command with its options to `app`.
+Command addCheck(CLI::App& app);
 Command addConvert(CLI::App& app);
 Command addInfo(CLI::App& app);
 Command addRender(CLI::App& app);

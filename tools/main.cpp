@@ -21,6 +21,7 @@ int runProgram(int argc, char** argv) {
       addConvert(app),
       addInfo(app),
       addRender(app),
+      addCheck(app),
   };
   try {
     app.parse(argc, argv);

@@ -54,8 +54,9 @@ void applyCamera(const SceneOptions& options, Scene& scene) {
   apply(options.viewHeight, camera.viewHeight);
 }
 
-void applyTransfer(const SceneOptions& options, Scene& scene) {
+void applyTransfer(const SceneOptions& options, const DefaultTransfer& defaultTransfer, Scene& scene) {
   if (options.transfer) scene.transfer = loadTransferFunction(*options.transfer);
+  if (!scene.transfer && defaultTransfer) scene.transfer = defaultTransfer(scene);
   if (!scene.transfer) throw UsageError("no transfer function: give --tf (a preset or a file) or a scene that has one");
   if (options.window) scene.transfer = scene.transfer->windowed((*options.window)[0], (*options.window)[1]);
   if (options.sigmaScale) scene.transfer = scene.transfer->scaled(*options.sigmaScale);
@@ -191,14 +192,14 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
   return options;
 }
 
-Scene makeScene(const SceneOptions& options) {
+Scene makeScene(const SceneOptions& options, const DefaultTransfer& defaultTransfer) {
   Scene scene;
   if (options.input.extension() == ".json")
     scene = readScene(options.input);
   else
     scene.volume.file = options.input;
   apply(options.grid, scene.volume.grid);
-  applyTransfer(options, scene);
+  applyTransfer(options, defaultTransfer, scene);
   applyCamera(options, scene);
   applyModel(options, scene);
   applySampling(options, scene);

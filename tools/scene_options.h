@@ -2,6 +2,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,8 +32,11 @@ struct SceneOptions {
 /// Adds the options to a sub-command.
 std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command);
 
+/// What stands in for a transfer function that nobody gave; none: then one must be given.
+using DefaultTransfer = std::function<TransferFunction(const Scene&)>;
+
 /// The scene of a file and the command line. @throw UsageError, IoError, InvalidArgument
-Scene makeScene(const SceneOptions& options);
+Scene makeScene(const SceneOptions& options, const DefaultTransfer& defaultTransfer = {});
 
 /// A scene with its volume in memory, cut into bricks.
 struct LoadedScene {

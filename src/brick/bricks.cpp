@@ -1,5 +1,6 @@
 #include "umbrick/brick/bricks.h"
 
+#include <algorithm>
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -30,8 +31,8 @@ std::vector<Brick> backgroundBricks(const Bricks& bricks, std::size_t limit) {
     last[axis] = floorDivide(bricks.domain.max[axis] - phase[axis], interior);
     cells *= static_cast<long double>(last[axis] - first[axis] + 1);
   }
-  // All bricks lie among these cells.
-  const long double count = cells - static_cast<long double>(bricks.bricks.size());
+  // All bricks lie among these cells, each in its own.
+  const long double count = std::max(0.0L, cells - static_cast<long double>(bricks.bricks.size()));
   if (count > static_cast<long double>(limit))
     throw InvalidArgument("the background value " + std::to_string(bricks.background) + " fills " + printCount(count) +
                           " bricks of the domain, more than the limit of " + std::to_string(limit));

@@ -72,7 +72,7 @@ class SliceRenderer::Implementation {
     origins_ = originsOf(bricks);
     AtlasOptions atlas;
     atlas.format = parseVoxelFormat(scene.bricks.format, volume);
-    atlas.budgetBytes = scene.bricks.budgetMiB << 20;
+    atlas.budgetBytes = options.budgetBytes > 0 ? options.budgetBytes : scene.bricks.budgetMiB << 20;
     atlas.maxTextureBytes = options.maxTextureBytes;
     atlas.maxTextureEdge = options.maxTextureEdge;
     atlas_.emplace(context, volume, std::move(bricks), atlas);
@@ -127,6 +127,8 @@ class SliceRenderer::Implementation {
     stats.uploadedBricks = atlas_->uploadedBricks() - uploadedBefore;
     stats.textureBytes = atlas_->textureBytes();
     stats.textures = atlas_->textureCount();
+    const glm::ivec3 textureSize = atlas_->textureSize();
+    stats.textureEdge = std::max({textureSize.x, textureSize.y, textureSize.z});
     stats.bufferBytes = targets_->bytes();
     stats.formatError = atlas_->formatError();
     return picture;

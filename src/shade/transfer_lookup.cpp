@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vec4.hpp>
+#include <limits>
 #include <vector>
 
 #include "umbrick/optics/transfer_table.h"
@@ -59,7 +60,11 @@ TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& tr
 
 bool TransferLookup::isVisible(const Range& value, const Range& gradient) const {
   if (value.empty()) return false;
-  return !transfer_.isTransparent(value_.around(value), mode_ == 2 ? gradient_.around(gradient) : Range{0, 0});
+  Range values = value_.around(value);
+  // At a step the table holds the mean of both sides, but a range that begins there has only the upper one.
+  const auto [step, behind] = std::equal_range(transfer_.values().begin(), transfer_.values().end(), values.min);
+  if (behind - step > 1) values.min = std::nextafter(values.min, -std::numeric_limits<float>::infinity());
+  return !transfer_.isTransparent(values, mode_ == 2 ? gradient_.around(gradient) : Range{0, 0});
 }
 
 void TransferLookup::setUniforms(GlProgram& program, const TexelScale& texels) const {

@@ -17,6 +17,7 @@ struct RenderOptions {
   bool reverseBricks = false;  // draw the bricks of a slice in the opposite order: must change nothing
   std::uint64_t maxTextureBytes = std::uint64_t{512} << 20;  // see AtlasOptions
   int maxTextureEdge = 0;
+  std::uint64_t budgetBytes = 0;  // of bricks' textures; 0: the scene's budget
 };
 
 struct RenderStats {
@@ -28,6 +29,7 @@ struct RenderStats {
   std::uint64_t uploadedBricks = 0;  // in this picture
   std::uint64_t textureBytes = 0;    // of bricks
   int textures = 0;                  // that hold bricks
+  int textureEdge = 0;               // longest, texels
   std::uint64_t bufferBytes = 0;     // eye, occlusion, depth and layers
   double formatError = 0;            // largest |voxel - texel|, grid units
   double geometryMs = 0;             // cutting slices into polygons

@@ -1,0 +1,68 @@
+// What must hold for bricks to change nothing, measured on a volume of the caller's.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "umbrick/brick/brick_grid.h"
+#include "umbrick/brick/bricks.h"
+#include "umbrick/gl/context.h"
+#include "umbrick/scene/scene.h"
+
+namespace umbrick {
+
+/// The invariants:
+///   1  bricked equals unbricked, for every brick edge, pool size and number of textures
+///   2  each pixel of each slice is shaded by exactly one brick
+///   3  apron voxels equal the neighbour's voxels, interpolated values those of OpenVDB's BoxSampler
+///   4  culling never changes a picture
+///   5  the visibility V has no seam across brick faces, and none across skipped space
+///   6  the order in which the bricks of a slice are drawn does not matter
+struct InvariantResult {
+  int invariant = 0;
+  std::string name;       // what must hold, and for which model or bricks
+  std::string measured;   // what `value` is, with its unit
+  double value = 0;       // where several views were measured: in the one that is nearest to its limit
+  double limit = 0;       // passed: value <= limit
+  std::string limitFrom;  // where the limit comes from
+  std::size_t samples = 0, excluded = 0;
+  bool passed = false;
+  std::string detail;  // where it was worst, what was left out and why
+};
+
+/// A camera to check with. World units.
+struct CheckView {
+  std::string name;
+  Camera camera;
+  double spacing = 0;  // of slices; 0: the scene's
+};
+
+/// Face-on, diagonal and from inside under perspective; face-on and diagonal in parallel view; and a parallel view in
+/// which slices lie exactly on voxel planes and brick faces, and pixel centres on brick faces. Image size from the
+/// scene's camera. @throw InvalidArgument  the grid has no active voxel
+std::vector<CheckView> checkViews(const ScalarGrid& grid, const Scene& resolved);
+
+struct CheckOptions {
+  std::vector<int> edges{8, 16, 32, 64};  // interiors to compare; those narrower than the apron are left out
+  std::vector<CheckView> views;           // empty: checkViews() and the scene's own camera
+  int probedSlices = 24;                  // of each view, spread over the sweep
+  std::size_t comparedBricks = 4000;      // whose aprons and ranges are read, at most
+  unsigned seed = 1;                      // of what is chosen at random: bricks
+  /// Called before each step. @param done  share of the steps so far, in [0, 1]
+  std::function<void(const std::string& step, double done)> progress;
+  /// Cuts the bricks that are checked; empty: brickGrid.
+  std::function<std::unique_ptr<Bricks>(const ScalarGrid&, const BrickOptions&)> cut;
+};
+
+/// Measures all invariants. The scene gives medium, sampling, occlusion, clipping, brick edge, texel format and budget;
+/// both models are rendered, without background radiance.
+/// @param resolved  see resolveScene
+/// @throw InvalidArgument  as SliceRenderer, checkViews and brickGrid
+/// @throw GlError, IoError
+/// @pre `context` is current
+std::vector<InvariantResult> checkInvariants(const GlContext& context, const ScalarGrid& grid, const Scene& resolved,
+                                             const CheckOptions& options = {});
+
+}  // namespace umbrick

@@ -1,0 +1,289 @@
+#include "umbrick/check/invariants.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <functional>
+#include <sstream>
+
+#include "support/gl_fixture.h"
+#include "support/test_grids.h"
+#include "umbrick/core/error.h"
+#include "umbrick/shade/prepare.h"
+
+using namespace umbrick;
+
+namespace {
+
+// Transparent up to 0.3, then denser and of another colour; a few voxels saturate a pixel.
+TransferFunction softMedium() {
+  return TransferFunction({{0.3, {{0.9, 0.5, 0.2}, 0}}, {0.7, {{0.2, 0.6, 0.9}, 0.2}}, {1.5, {{1, 1, 1}, 0.6}}});
+}
+
+Scene sceneFor(const ScalarGrid& grid, const TransferFunction& transfer, int width = 64, int height = 64) {
+  Scene scene;
+  scene.transfer = transfer;
+  scene.camera.width = width;
+  scene.camera.height = height;
+  scene.orbit = Orbit{0.4, 0.3};
+  return resolveScene(scene, grid.worldBounds(), grid.indexToWorld());
+}
+
+std::string print(const std::vector<InvariantResult>& results) {
+  std::ostringstream text;
+  for (const InvariantResult& r : results)
+    text << (r.passed ? "ok      " : "FAILED  ") << r.invariant << ' ' << r.name << ": " << r.value << ", limit "
+         << r.limit << ", " << r.samples << " samples, " << r.excluded << " excluded, " << r.detail << '\n';
+  return text.str();
+}
+
+void checkAllHold(const GlContext& context, const ScalarGrid& grid, const Scene& scene, const CheckOptions& options) {
+  const std::vector<InvariantResult> results = checkInvariants(context, grid, scene, options);
+  INFO(print(results));
+  for (const InvariantResult& result : results) {
+    CHECK(result.passed);
+    // What looks at nothing always passes: each must have been measured.
+    CHECK(result.samples > 0);
+  }
+}
+
+const InvariantResult& find(const std::vector<InvariantResult>& results, const std::string& name) {
+  const auto found =
+      std::find_if(results.begin(), results.end(), [&](const auto& result) { return result.name == name; });
+  REQUIRE(found != results.end());
+  return *found;
+}
+
+// Bricks with a fault.
+class FaultyBricks final : public Bricks {
+ public:
+  using ReadFault = std::function<void(const glm::ivec3& origin, std::span<float> values)>;
+  explicit FaultyBricks(std::unique_ptr<Bricks> sound) : Bricks(*sound), sound_(std::move(sound)) {}
+  void read(const glm::ivec3& origin, std::span<float> values, std::span<float> gradients) const override {
+    sound_->read(origin, values, gradients);
+    if (readFault) readFault(origin, values);
+  }
+  ReadFault readFault;
+
+ private:
+  std::unique_ptr<Bricks> sound_;
+};
+
+// The results for one dense volume in bricks of 8, `fault` applied to them.
+std::vector<InvariantResult> checkFaulty(const GlContext& context, const std::function<void(FaultyBricks&)>& fault) {
+  const ScalarGrid grid = makeDense({30, 30, 30}, {3, -7, 1});
+  Scene scene = sceneFor(grid, softMedium());
+  scene.bricks.interior = 8;
+  CheckOptions options;
+  options.edges = {8};
+  options.views = {checkViews(grid, scene)[1]};
+  options.cut = [&](const ScalarGrid& volume, const BrickOptions& how) {
+    auto bricks = std::make_unique<FaultyBricks>(brickGrid(volume, how));
+    if (fault) fault(*bricks);
+    return bricks;
+  };
+  return checkInvariants(context, grid, scene, options);
+}
+
+// A brick in the middle of the volume.
+std::size_t middleBrick(const Bricks& bricks) {
+  std::size_t middle = 0;
+  for (std::size_t i = 0; i < bricks.bricks.size(); ++i)
+    if (bricks.bricks[i].origin == glm::ivec3(16, 8, 16)) middle = i;
+  REQUIRE(bricks.bricks[middle].origin == glm::ivec3(16, 8, 16));
+  return middle;
+}
+
+}  // namespace
+
+// Brick edges, pools, cameras and slices on faces are those of CheckOptions and checkViews.
+TEST_CASE("All invariants hold on a dense volume", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = makeDense({45, 50, 40}, {-13, 5, 100});
+  CheckOptions options;
+  options.probedSlices = 12;
+  checkAllHold(*context, grid, sceneFor(grid, softMedium()), options);
+}
+
+TEST_CASE("All invariants hold on noise, whose neighbouring voxels differ by as much as they can", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = makeNoise({30, 26, 34}, {1, -40, -3});
+  CheckOptions options;
+  options.edges = {8, 16};
+  Scene scene = sceneFor(grid, softMedium(), 61, 48);
+  scene.sampling.quadrature = Quadrature::midpoint;
+  scene.occlusion.passes = 2;
+  scene.occlusion.algorithm = 2;
+  options.probedSlices = 12;
+  checkAllHold(*context, grid, scene, options);
+}
+
+TEST_CASE("All invariants hold on a sparse volume far from the origin", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = makeSparse({1'000'003, -500'000, -77}, 3, 8, 90);
+  CheckOptions options;
+  options.edges = {8, 32};
+  options.probedSlices = 12;
+  checkAllHold(*context, grid, sceneFor(grid, softMedium()), options);
+}
+
+TEST_CASE("All invariants hold for a rotated, sheared and mirrored volume", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = withTransform(makeSparse({-40, 0, 9}, 5, 6, 64), crookedTransform());
+  CheckOptions options;
+  options.edges = {8, 16};
+  options.probedSlices = 12;
+  // No parallel view sees faces edge-on here, so that V beside them is not measured.
+  const auto results = checkInvariants(*context, grid, sceneFor(grid, softMedium()), options);
+  INFO(print(results));
+  for (const InvariantResult& result : results) CHECK(result.passed);
+}
+
+TEST_CASE("All invariants hold where the background is visible", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = makeSphereLevelSet(12, 1, {3, 40, -5});
+  // Thin fog outside of the ball (background 3), denser inside.
+  const TransferFunction fog({{-3, {{1, 0.8, 0.6}, 0.3}}, {0, {{1, 1, 1}, 0.1}}, {3, {{0.5, 0.7, 1}, 0.02}}});
+  CheckOptions options;
+  options.edges = {8, 16};
+  options.probedSlices = 12;
+  checkAllHold(*context, grid, sceneFor(grid, fog), options);
+}
+
+// A slab from 1 to 1 gets the mean of both sides of a step at 1, so that it can be seen, though the function is 0
+// there.
+TEST_CASE("Culling keeps bricks whose lowest value is at a falling step", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = makeFilled(
+      {20, 20, 20}, {0, 0, 0}, [](const glm::ivec3&) { return 1.0; }, 2);
+  const Medium dense{{1, 1, 1}, 0.3}, nothing{{1, 1, 1}, 0};
+  const TransferFunction falling({{0, dense}, {1, dense}, {1, nothing}, {3, nothing}});
+  CheckOptions options;
+  options.edges = {8};
+  const Scene scene = sceneFor(grid, falling);
+  options.views = {{"the scene's camera", scene.camera, 0}};
+  const auto results = checkInvariants(*context, grid, scene, options);
+  INFO(print(results));
+  CHECK(find(results, "culled equals not culled, emission").passed);
+}
+
+TEST_CASE("Sound bricks pass what faulty ones fail", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const auto results = checkFaulty(*context, {});
+  INFO(print(results));
+  for (const InvariantResult& result : results) CHECK(result.passed);
+}
+
+TEST_CASE("One wrong apron voxel is found", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
+    bricks.readFault = [](const glm::ivec3& origin, std::span<float> values) {
+      if (origin == glm::ivec3(16, 8, 16)) values[0] += 0.01f;
+    };
+  });
+  INFO(print(results));
+  const InvariantResult& aprons = find(results, "aprons equal the neighbours' voxels");
+  CHECK_FALSE(aprons.passed);
+  CHECK(aprons.value == 1);
+}
+
+TEST_CASE("A layer of wrong apron voxels is found in samples and pictures", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
+    const glm::ivec3 edge = bricks.layout.edge();
+    bricks.readFault = [edge](const glm::ivec3& origin, std::span<float> values) {
+      if (origin == glm::ivec3(16, 8, 16))
+        for (int i = 0; i < edge.x * edge.y; ++i) values[static_cast<std::size_t>(i)] += 0.1f;
+    };
+  });
+  INFO(print(results));
+  CHECK_FALSE(find(results, "aprons equal the neighbours' voxels").passed);
+  CHECK_FALSE(find(results, "interpolated values equal BoxSampler's").passed);
+  CHECK_FALSE(find(results, "bricked equals unbricked, emission").passed);
+  CHECK_FALSE(find(results, "bricked equals unbricked, cone").passed);
+}
+
+TEST_CASE("A brick that is missing is found", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
+    bricks.bricks.erase(bricks.bricks.begin() + static_cast<std::ptrdiff_t>(middleBrick(bricks)));
+  });
+  INFO(print(results));
+  CHECK_FALSE(find(results, "bricked equals unbricked, emission").passed);
+  CHECK_FALSE(find(results, "bricked equals unbricked, cone").passed);
+  CHECK_FALSE(find(results, "V across bricks, cone").passed);
+}
+
+TEST_CASE("A brick that is drawn twice is found", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
+    const std::size_t middle = middleBrick(bricks);
+    bricks.bricks.push_back(bricks.bricks[middle]);
+  });
+  INFO(print(results));
+  CHECK(find(results, "every pixel of a slice is shaded").passed);
+  CHECK_FALSE(find(results, "no pixel of a slice is shaded twice").passed);
+  CHECK_FALSE(find(results, "bricked equals unbricked, emission").passed);
+}
+
+TEST_CASE("A brick beside its place is found", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const auto results = checkFaulty(
+      *context, [](FaultyBricks& bricks) { bricks.bricks[middleBrick(bricks)].origin += glm::ivec3(1, 0, 0); });
+  INFO(print(results));
+  CHECK_FALSE(find(results, "every pixel of a slice is shaded").passed);
+  CHECK_FALSE(find(results, "no pixel of a slice is shaded twice").passed);
+}
+
+// Bricks that overlap and do not agree: then the order shows.
+TEST_CASE("Bricks whose order matters are found", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
+    Brick overlapping = bricks.bricks[middleBrick(bricks)];
+    overlapping.origin += 4;
+    bricks.bricks.push_back(overlapping);
+    bricks.readFault = [overlapping](const glm::ivec3& origin, std::span<float> values) {
+      if (origin == overlapping.origin) std::fill(values.begin(), values.end(), 1.2f);
+    };
+  });
+  INFO(print(results));
+  CHECK_FALSE(find(results, "bricks drawn in reverse, emission").passed);
+  CHECK_FALSE(find(results, "bricks drawn in reverse, cone").passed);
+}
+
+TEST_CASE("A range by which a visible brick is culled is found", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
+    bricks.bricks[middleBrick(bricks)].value = {0, 0.1f};
+  });
+  INFO(print(results));
+  CHECK_FALSE(find(results, "ranges hold all voxels of a brick").passed);
+  CHECK_FALSE(find(results, "culled equals not culled, emission").passed);
+  CHECK_FALSE(find(results, "culled equals not culled, cone").passed);
+  CHECK_FALSE(find(results, "V across skipped space, cone").passed);
+  CHECK(find(results, "bricked equals unbricked, emission").passed);
+}
+
+TEST_CASE("What cannot be checked is said", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = makeDense({10, 10, 10});
+  Scene scene = sceneFor(grid, softMedium());
+  CHECK_THROWS_AS(checkViews(makeVoxels({}), scene), InvalidArgument);
+  CheckOptions options;
+  options.edges = {12};
+  CHECK_THROWS_WITH(checkInvariants(*context, grid, scene, options), Catch::Contains("multiple of 8"));
+}
