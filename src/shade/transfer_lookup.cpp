@@ -11,7 +11,8 @@ namespace umbrick {
 
 TransferLookup::Axis TransferLookup::makeAxis(const Range& values, double anchor, int nodes) {
   const double low = std::min<double>(values.min, anchor), high = std::max<double>(values.max, anchor);
-  if (!(high > low)) return {anchor - 0.5, 1, 2};
+  // One value: it is the first node; the other one only has to be apart from it in single precision.
+  if (!(high > low)) return {anchor, std::max(1.0, 1e-3 * std::abs(anchor)), 2};
   // The anchor is node k; the step is the smallest that still reaches both ends.
   const int k = std::clamp(static_cast<int>(std::lround((anchor - low) / (high - low) * (nodes - 1))),
                            anchor > low ? 1 : 0, anchor < high ? nodes - 2 : nodes - 1);
