@@ -117,6 +117,7 @@ void BrickAtlas::require(std::span<const std::int32_t> bricks) {
       slot = shared->second;
     } else {
       if (free_.empty()) {
+        upload(uploads);  // what has a slot by now counts as resident
         const std::uint64_t slotBytes = volume_.layout.voxels() * texelFormat(format_, volume_.hasGradients).bytes;
         throw InvalidArgument("bricks: one slice needs more than the " + std::to_string(slots_) + " bricks (" +
                               mebibytes(slots_ * slotBytes) + ") that the memory budget holds");
@@ -144,9 +145,9 @@ void BrickAtlas::release(std::int32_t brick) {
 }
 
 double BrickAtlas::encode(std::span<const float> values, std::span<const float> gradients, std::byte* texels) const {
-  // 8-bit whole numbers fit every format; everything fits itself and float.
+  // Everything fits itself and float, and 8-bit whole numbers fit 16 bits. Large ones do not fit half.
   const bool exact = format_ == volume_.exactFormat || format_ == VoxelFormat::float32 ||
-                     volume_.exactFormat == VoxelFormat::unorm8;
+                     (format_ == VoxelFormat::unorm16 && volume_.exactFormat == VoxelFormat::unorm8);
   double error = 0;
   const auto store = [&](auto codeOf, auto valueOf) {
     using Code = decltype(codeOf(0.0f));

@@ -35,7 +35,8 @@ struct Egl {
         chooseConfig(library.function<PFNEGLCHOOSECONFIGPROC>("eglChooseConfig")),
         createContext(library.function<PFNEGLCREATECONTEXTPROC>("eglCreateContext")),
         destroyContext(library.function<PFNEGLDESTROYCONTEXTPROC>("eglDestroyContext")),
-        makeCurrent(library.function<PFNEGLMAKECURRENTPROC>("eglMakeCurrent")) {}
+        makeCurrent(library.function<PFNEGLMAKECURRENTPROC>("eglMakeCurrent")),
+        getCurrentContext(library.function<PFNEGLGETCURRENTCONTEXTPROC>("eglGetCurrentContext")) {}
 
   PFNEGLGETPROCADDRESSPROC getProcAddress;
   PFNEGLGETDISPLAYPROC getDisplay;
@@ -46,6 +47,7 @@ struct Egl {
   PFNEGLCREATECONTEXTPROC createContext;
   PFNEGLDESTROYCONTEXTPROC destroyContext;
   PFNEGLMAKECURRENTPROC makeCurrent;
+  PFNEGLGETCURRENTCONTEXTPROC getCurrentContext;
 };
 
 struct Candidate {
@@ -95,6 +97,9 @@ class EglContext : public GlContext {
   ~EglContext() override { close(); }
 
   void makeCurrent() override {
+    // EGL does nothing for a context that it takes for current, though OSMesa may have put another one in its place.
+    if (egl_.getCurrentContext() == context_)
+      egl_.makeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (!egl_.makeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
       throw GlError("cannot make the context current");
   }
@@ -132,7 +137,9 @@ class EglContext : public GlContext {
   }
   void close() {
     if (display_ == EGL_NO_DISPLAY) return;
-    egl_.makeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    // Another context may be current by now, and stays so.
+    if (context_ != EGL_NO_CONTEXT && egl_.getCurrentContext() == context_)
+      egl_.makeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (context_ != EGL_NO_CONTEXT) egl_.destroyContext(display_, context_);
     // The display is the process's, not ours: another context may still use it, so it is not terminated.
     context_ = EGL_NO_CONTEXT;

@@ -12,7 +12,15 @@ std::string_view shaderText(std::string_view path);  // embedded by the build
 
 namespace {
 
-// Appends a file with its includes. `files` lists the files in order of first use: a driver names a file by its number.
+// A driver is told that line n of the i-th file is line i * kLinesPerFile + n of one file: GLSL can number files, but
+// Mesa forgets the number in most of its messages.
+constexpr int kLinesPerFile = 10'000;
+
+std::string lineMark(std::size_t file, int line) {
+  return "#line " + std::to_string(static_cast<int>(file) * kLinesPerFile + line) + "\n";
+}
+
+// Appends a file with its includes. `files` lists the files in order of first use.
 void appendSource(const std::string& path, std::vector<std::string>& files, std::vector<std::string>& open,
                   std::string& out) {
   for (const std::string& outer : open)
@@ -24,7 +32,7 @@ void appendSource(const std::string& path, std::vector<std::string>& files, std:
   const std::size_t number = files.size();
   files.push_back(path);
   open.push_back(path);
-  out += "#line 1 " + std::to_string(number) + "\n";
+  out += lineMark(number, 1);
   constexpr std::string_view kInclude = "#include \"";
   int line = 1;
   for (std::size_t at = 0; at < text.size(); ++line) {
@@ -34,7 +42,7 @@ void appendSource(const std::string& path, std::vector<std::string>& files, std:
     if (row.starts_with(kInclude)) {
       const std::string_view rest = row.substr(kInclude.size());
       appendSource(std::string(rest.substr(0, rest.find('"'))), files, open, out);
-      out += "#line " + std::to_string(line + 1) + " " + std::to_string(number) + "\n";
+      out += lineMark(number, line + 1);
     } else {
       out.append(row);
       out += '\n';
@@ -51,10 +59,26 @@ std::string expand(const std::string& path, const ShaderConstants& constants, st
   return out;
 }
 
-std::string fileList(const std::vector<std::string>& files) {
-  std::string list;
-  for (std::size_t i = 0; i < files.size(); ++i) list += (i ? ", " : "") + std::to_string(i) + ": " + files[i];
-  return list;
+// A driver's message with our files and lines: Mesa says "0:10006(19): error", others "0(10006) : error" or
+// "ERROR: 0:10006: ".
+std::string withFileNames(std::string_view log, const std::vector<std::string>& files) {
+  std::string out;
+  for (std::size_t at = 0; at < log.size();) {
+    const bool starts = at == 0 || log[at - 1] == '\n' || log[at - 1] == ' ';
+    const bool marked = starts && log[at] == '0' && at + 1 < log.size() && (log[at + 1] == ':' || log[at + 1] == '(');
+    std::size_t end = at + 2;
+    long number = 0;
+    while (marked && end < log.size() && log[end] >= '0' && log[end] <= '9' && number < 1'000'000'000)
+      number = 10 * number + (log[end++] - '0');
+    const auto file = static_cast<std::size_t>(number / kLinesPerFile);
+    if (!marked || end == at + 2 || file >= files.size()) {
+      out += log[at++];
+      continue;
+    }
+    out += files[file] + ":" + std::to_string(number % kLinesPerFile);
+    at = end + (log[at + 1] == '(' && end < log.size() && log[end] == ')' ? 1 : 0);
+  }
+  return out;
 }
 
 GLuint compile(const GlFunctions& gl, GLenum stage, const std::string& path, const ShaderConstants& constants) {
@@ -72,7 +96,7 @@ GLuint compile(const GlFunctions& gl, GLenum stage, const std::string& path, con
   gl.GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
   log.resize(static_cast<std::size_t>(length));
   gl.DeleteShader(shader);
-  throw GlError("shader " + path + " (files " + fileList(files) + "): " + log);
+  throw GlError("shader " + path + ": " + withFileNames(log, files));
 }
 
 }  // namespace

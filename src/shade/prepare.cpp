@@ -37,9 +37,9 @@ int requiredApron(const Scene& resolved, const glm::dmat4& indexToWorld) {
     const glm::dvec3 axes = slabReach(view, resolved.sampling.spacing);
     reach = std::max({axes.x, axes.y, axes.z});
   }
-  // Half a voxel belongs to every apron: a brick's space ends half-way between its last voxel and the first ghost. A
-  // thousandth of a voxel is left to rounding: beyond the apron a texture repeats its edge, which is as exact.
-  const double wanted = std::ceil(0.5 + reach - 1e-3);
+  // Half a voxel belongs to every apron: a brick's space ends half-way between its last voxel and the first ghost. What
+  // rounding may add is left to the texture filter.
+  const double wanted = std::ceil(0.5 + reach - 1e-9);
   if (!(wanted <= resolved.bricks.interior))
     throw InvalidArgument("sampling: slices " + std::to_string(resolved.sampling.spacing) + " apart reach " +
                           std::to_string(static_cast<long long>(std::min(wanted, 9e15))) +

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
@@ -37,6 +38,22 @@ void appendDomainPlanes(std::vector<ClipPlane>& planes, const Bricks& volume) {
     planes.push_back(coordinate - glm::dvec4(0, 0, 0, volume.domain.min[axis]));
     planes.push_back(glm::dvec4(0, 0, 0, volume.domain.max[axis]) - coordinate);
   }
+}
+
+// Half-spaces a little larger as the image shows them. Shaders cut slabs exactly, so polygons must not be too small: a
+// rasteriser snaps their corners to a grid of 1/256 pixel.
+std::vector<glm::dvec4> widened(std::vector<glm::dvec4> planes, const IndexView& view, int height, double spacing) {
+  const double margin = 2 * view.halfExtent.y / height / 64;
+  for (glm::dvec4& plane : planes) {
+    const double distance = margin * glm::length(glm::dvec2(plane));  // on the screen plane
+    if (view.projection == Projection::perspective) {
+      plane.z += distance;
+      plane.w += 0.5 * spacing * distance;
+    } else {
+      plane.w += distance;
+    }
+  }
+  return planes;
 }
 
 std::vector<Brick> visibleBricks(const Bricks& volume, const TransferLookup& transfer, const BrickSettings& settings,
@@ -199,7 +216,7 @@ class SliceRenderer::Implementation {
   void checkReach(const IndexView& view) const {
     if (transfer_->shaderMode() != 0) return;
     const glm::dvec3 reach = slabReach(view, scene_.sampling.spacing);
-    if (std::max({reach.x, reach.y, reach.z}) > volume_.layout.apron - 0.5 + 2e-3)
+    if (std::max({reach.x, reach.y, reach.z}) > volume_.layout.apron - 0.5 + 1e-6)
       throw InvalidArgument("render: slabs reach beyond the apron of " + std::to_string(volume_.layout.apron) +
                             " voxels");
   }
@@ -217,7 +234,9 @@ class SliceRenderer::Implementation {
     const IndexView view = indexView(camera, volume_.indexToWorld);
     checkReach(view);
     std::vector<glm::dvec4> planes = viewPlanes(camera);
-    ProxySlices slices = cutSlices(view, origins_, volume_.layout.interior, planes, scene_.sampling.spacing);
+    ProxySlices slices =
+        cutSlices(view, origins_, volume_.layout.interior,
+                  widened(planes, view, camera.height, scene_.sampling.spacing), scene_.sampling.spacing);
     runs_ = planSweep(slices, origins_.size(),
                       atlas_->holdsAll() ? std::numeric_limits<std::size_t>::max() : atlas_->slots());
     frame_.emplace(Frame{gl_, scene_, camera, view, std::move(planes), std::move(slices), *atlas_, *transfer_,

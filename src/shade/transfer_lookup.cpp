@@ -12,18 +12,20 @@ namespace umbrick {
 
 TransferLookup::Axis TransferLookup::makeAxis(const Range& values, double anchor, int nodes) {
   const double low = std::min<double>(values.min, anchor), high = std::max<double>(values.max, anchor);
-  if (!(high > low)) return {anchor - 0.5, 1, 2};
+  // One value: it is the first node; the other one only has to be apart from it in single precision.
+  if (!(high > low)) return {anchor, std::max(1.0, 1e-3 * std::abs(anchor)), 0, 2};
   // The anchor is node k; the step is the smallest that still reaches both ends.
   const int k = std::clamp(static_cast<int>(std::lround((anchor - low) / (high - low) * (nodes - 1))),
                            anchor > low ? 1 : 0, anchor < high ? nodes - 2 : nodes - 1);
   const double below = k > 0 ? (anchor - low) / k : 0, above = k < nodes - 1 ? (high - anchor) / (nodes - 1 - k) : 0;
-  const double step = std::max(below, above);
-  return {anchor - k * step, step, nodes};
+  return {anchor, std::max(below, above), k, nodes};
 }
 
 Range TransferLookup::Axis::around(const Range& values) const {
-  const auto node = [&](double i) { return static_cast<float>(first + std::clamp<double>(i, 0, nodes - 1) * step); };
-  Range nodeRange{node(std::floor((values.min - first) / step)), node(std::ceil((values.max - first) / step))};
+  const auto place = [&](double steps) {
+    return static_cast<float>(node(static_cast<int>(std::clamp<double>(steps + anchorNode, 0, nodes - 1))));
+  };
+  Range nodeRange{place(std::floor((values.min - anchor) / step)), place(std::ceil((values.max - anchor) / step))};
   // Rounding to float must not narrow it.
   nodeRange.include(Range{std::min(nodeRange.min, values.min), std::max(nodeRange.max, values.max)});
   return nodeRange;
@@ -41,15 +43,14 @@ TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& tr
   std::vector<glm::vec4> entries;
   int rows = 1;
   if (mode_ == 0) {
-    const Range covered{static_cast<float>(value_.first),
-                        static_cast<float>(value_.first + (value_.nodes - 1) * value_.step)};
+    const Range covered{static_cast<float>(value_.node(0)), static_cast<float>(value_.node(value_.nodes - 1))};
     entries = preintegrate(transfer, covered, value_.nodes, sampling.spacing / sampling.segments);
     rows = value_.nodes;
   } else {
     rows = gradient_.nodes;
     for (int j = 0; j < rows; ++j)
       for (int i = 0; i < value_.nodes; ++i) {
-        const Medium medium = transfer(value_.first + i * value_.step, gradient_.first + j * gradient_.step);
+        const Medium medium = transfer(value_.node(i), gradient_.node(j));
         entries.emplace_back(glm::vec3(medium.sigma_s()), static_cast<float>(medium.sigma_t));
       }
   }
@@ -70,9 +71,9 @@ bool TransferLookup::isVisible(const Range& value, const Range& gradient) const 
 void TransferLookup::setUniforms(GlProgram& program, const TexelScale& texels) const {
   // Texture coordinates of node i are (i + 1/2) / nodes.
   const double perTexel = texels.scale / (value_.step * value_.nodes);
-  const double offset = ((texels.offset - value_.first) / value_.step + 0.5) / value_.nodes;
+  const double offset = ((texels.offset - value_.node(0)) / value_.step + 0.5) / value_.nodes;
   const double gradientScale = 1 / (gradient_.step * gradient_.nodes);
-  const double gradientOffset = (-gradient_.first / gradient_.step + 0.5) / gradient_.nodes;
+  const double gradientOffset = (-gradient_.node(0) / gradient_.step + 0.5) / gradient_.nodes;
   program.set("transfer_map", glm::vec4(perTexel, gradientScale, offset, gradientOffset));
 }
 

@@ -24,10 +24,11 @@ class TransferLookup {
   GLuint texture() const { return texture_.name(); }
 
  private:
-  // Nodes at first + i * step.
+  // Node i stands at anchor + (i - anchorNode) step: counted from the anchor, which rounding then cannot move.
   struct Axis {
-    double first = 0, step = 1;
-    int nodes = 1;
+    double anchor = 0, step = 1;
+    int anchorNode = 0, nodes = 1;
+    double node(int i) const { return anchor + (i - anchorNode) * step; }
     Range around(const Range& values) const;  // from the node at or below to the node at or above
   };
   static Axis makeAxis(const Range& values, double anchor, int nodes);

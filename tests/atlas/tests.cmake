@@ -1,0 +1,1 @@
+umbrick_tests(atlas brick_atlas_gl_test.cpp)

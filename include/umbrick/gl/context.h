@@ -13,7 +13,8 @@ enum class Backend {
   egl,        // a GPU where there is one, else software; no display is needed
 };
 
-/// Made current on the thread that creates it, and used on that thread only.
+/// Made current on the thread that creates it, and used on that thread only. Of several, the one that was made current
+/// last is used, and stays current when another one of its backend ends.
 class GlContext {
  public:
   virtual ~GlContext();

@@ -66,8 +66,8 @@ class SliceRenderer {
   /// One picture. Bricks that fit the budget stay for the next one.
   /// @throw GlError, InvalidArgument
   Picture render();
-  /// The same scene from another camera of the same image size and projection.
-  /// @throw InvalidArgument  another size or projection, or slabs that reach beyond the apron
+  /// The same scene from another camera of the same image size.
+  /// @throw InvalidArgument  another size, or slabs that reach beyond the apron
   Picture render(const Camera& camera);
 
   /// What slice i (of those in the last picture) samples: channel 0 the interpolated value, grid units, at the middle

@@ -1,0 +1,126 @@
+#include "umbrick/gl/program.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "support/gl_fixture.h"
+#include "umbrick/core/error.h"
+#include "umbrick/gl/objects.h"
+
+namespace umbrick {
+std::vector<std::string> shaderTextNames();  // embedded by the build
+}
+
+using namespace umbrick;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+template <class Action>
+std::string complaint(const Action& action) {
+  try {
+    action();
+  } catch (const GlError& error) {
+    return error.what();
+  }
+  return "no complaint";
+}
+
+}  // namespace
+
+TEST_CASE("A shader holds every file it includes once, in the place of the first include", "[gl]") {
+  const std::string source = shaderSource("shade/occlusion_slice.frag", {{"kTaps", 9}});
+  CHECK_THAT(source, StartsWith("#version 450 core\nconst int kTaps = 9;\n#line 1\n"));
+  CHECK(count(source, "#include") == 0);
+  // slab.glsl and occlusion_slice.frag both need what optics/slab.glsl defines.
+  CHECK(count(source, "float slabFactor(float x)") == 1);
+  CHECK(source.find("float slabFactor(float x)") < source.find("Slab evaluateSlab("));
+}
+
+// What a driver is told is line 10 000 i + n is line n of the i-th file, in order of first use.
+TEST_CASE("Every line of a shader keeps its number and its file", "[gl]") {
+  const std::string source = shaderSource("shade/occlusion_slice.frag");
+  const std::string own = shaderSource("shade/medium.glsl");
+  // Lines of a file without includes follow their mark as they are in the file.
+  const std::string mark = "#line 1\n";
+  const std::string body = own.substr(own.find(mark) + mark.size());
+  int found = 0;
+  for (int file = 1; file < 9; ++file)
+    found += static_cast<int>(count(source, "#line " + std::to_string(10'000 * file + 1) + "\n" + body));
+  CHECK(found == 1);
+  // After an include in line 2 the file goes on at its line 3.
+  CHECK_THAT(shaderSource("shade/slab.glsl"), Contains("#line 3\n#line 20001\n"));
+}
+
+TEST_CASE("A shader that does not exist is named", "[gl]") {
+  CHECK(complaint([] { shaderSource("shade/none.frag"); }) == "no shader shade/none.frag");
+}
+
+TEST_CASE("Every shader that is not an include compiles by itself or says where it fails", "[gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const std::vector<std::string> names = shaderTextNames();
+  CHECK(std::find(names.begin(), names.end(), "shade/emission.frag") != names.end());
+  int compiled = 0;
+  for (const std::string& name : names) {
+    if (!name.ends_with(".frag")) continue;
+    const bool isSlice = name.find("occlusion_eye") != std::string::npos ||
+                         name.find("occlusion_light") != std::string::npos ||
+                         name.find("occlusion_slice") != std::string::npos ||
+                         name.find("emission") != std::string::npos || name.find("probe") != std::string::npos;
+    INFO(name);
+    for (const int perspective : {0, 1})
+      for (const int planes : {0, 7})
+        for (const int quadrature : {0, 1, 2}) {
+          const ShaderConstants constants{{"kPerspective", perspective},
+                                          {"kClipPlanes", planes},
+                                          {"kQuadrature", quadrature},
+                                          {"kAux", planes > 0},
+                                          {"kTaps", 9},
+                                          {"kAlgorithm", 2 + perspective},
+                                          {"kTileEdge", 8}};
+          const GlProgram program(context->gl(), isSlice ? "shade/slice.vert" : "shade/full_screen.vert", name,
+                                  constants);
+          ++compiled;
+        }
+  }
+  CHECK(compiled >= 12 * 9);
+}
+
+TEST_CASE("A driver's complaint names our file and line", "[gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  // Without its constants footprint.glsl fails where it declares the taps.
+  const std::string message =
+      complaint([&] { GlProgram(context->gl(), "shade/full_screen.vert", "shade/occlusion_carry.frag"); });
+  CHECK_THAT(message, StartsWith("shader shade/occlusion_carry.frag: ") && Contains("kTaps"));
+  const std::string text = shaderSource("shade/footprint.glsl");
+  const std::size_t start = text.find("#line 1\n") + 8;
+  const std::size_t line = count(text.substr(start, text.find("uniform vec4 taps[") - start), "\n") + 1;
+  CHECK_THAT(message, Contains("shade/footprint.glsl:" + std::to_string(line)));
+  CHECK(complaint([&] { GlProgram(context->gl(), "shade/none.vert", "shade/emission.frag"); }) ==
+        "no shader shade/none.vert");
+}
+
+TEST_CASE("A program moves without being deleted twice", "[gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const GlFunctions& gl = context->gl();
+  GlProgram first(gl, "shade/full_screen.vert", "shade/saturated.frag");
+  GlProgram second = std::move(first);
+  second.set("saturation", 0.5f);
+  second.set("not there", 1);  // ignored
+  GlProgram third(gl, "shade/full_screen.vert", "shade/saturated.frag");
+  third = std::move(second);
+  third.use();
+  checkGl(gl, "use of a moved program");
+}
