@@ -47,6 +47,13 @@ class OneRange : public Bricks {
   void read(const glm::ivec3&, std::span<float>, std::span<float>) const override {}
 };
 
+SamplingOptions sampling(Quadrature quadrature, int nodes) {
+  SamplingOptions options;
+  options.quadrature = quadrature;
+  options.tableSize = nodes;
+  return options;
+}
+
 }  // namespace
 
 // Empty space must stay as transparent as the function says, however close to the background a medium begins.
@@ -63,7 +70,8 @@ TEST_CASE("A node of the table stands exactly at the background", "[shade][gl]")
         const double b = background, width = 1e-3 * (high - low);
         const TransferFunction valley(
             {{b - width, {glm::dvec3(1), 1}}, {b, {glm::dvec3(1), 0}}, {b + width, {glm::dvec3(1), 1}}});
-        const TransferLookup lookup(context->gl(), valley, quadrature, nodes, OneRange({low, high}, background));
+        const TransferLookup lookup(context->gl(), valley, sampling(quadrature, nodes),
+                                    OneRange({low, high}, background));
         CHECK_FALSE(lookup.isVisible({background, background}, {0, 0}));
         CHECK(lookup.isVisible({background, high}, {0, 0}) == (high > background));
         CHECK(lookup.isVisible({low, background}, {0, 0}) == (low < background));
@@ -90,7 +98,7 @@ TEST_CASE("What is not visible by its range looks up nothing", "[shade][gl]") {
   const TransferFunction peak({{0.3, {glm::dvec3(1), 0}}, {0.31, {glm::dvec3(1), 5}}, {0.32, {glm::dvec3(1), 0}}});
   for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint})
     for (const int nodes : {8, 32, 1000}) {
-      const TransferLookup lookup(context->gl(), peak, quadrature, nodes, OneRange({0, 1}, 0));
+      const TransferLookup lookup(context->gl(), peak, sampling(quadrature, nodes), OneRange({0, 1}, 0));
       const int rows = quadrature == Quadrature::preintegrated ? nodes : 1;
       const Texture texture = readBack(context->gl(), lookup, nodes, rows);
       int hidden = 0;
