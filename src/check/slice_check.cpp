@@ -110,11 +110,12 @@ class SliceExpectation {
   void compareHits(const glm::dvec3& index, int hits, const glm::ivec2& pixel, Counts& counts) const {
     ++counts.pixels;
     // The rasteriser snaps vertices to 1/256 pixel, after rounding them to 24 bits: an outer edge may be so far off.
-    const double pixels = 1.0 / 256 + 0x1p-23 * std::max(camera_.width, camera_.height);
-    glm::dvec3 slack;
-    for (int axis = 0; axis < 3; ++axis)
-      slack[axis] = pixels * scale_ * screen_.pixelSize.x * std::hypot(view_.toIndex[0][axis], view_.toIndex[1][axis]) +
-                    1e-10 * (1 + std::abs(index[axis]));
+    const double pixels = 1.0 / kSubpixels + 0x1p-23 * std::max(camera_.width, camera_.height);
+    glm::dvec3 perPixel, slack;
+    for (int axis = 0; axis < 3; ++axis) {
+      perPixel[axis] = scale_ * screen_.pixelSize.x * std::hypot(view_.toIndex[0][axis], view_.toIndex[1][axis]);
+      slack[axis] = pixels * perPixel[axis] + 1e-10 * (1 + std::abs(index[axis]));
+    }
     bool all = true, any = false;
     const glm::ivec3 low = cells_.cellOf(index - slack), high = cells_.cellOf(index + slack);
     for (int z = low.z; z <= high.z; ++z)
@@ -125,8 +126,10 @@ class SliceExpectation {
           any = any || drawn;
         }
     if (options_.complete) {
-      // With a visible background planes cut at the domain's faces, with half a slab to spare.
-      const glm::dvec3 spare = slabReach(view_, spacing_) + slack;
+      // With a visible background planes cut at the domain's faces, with half a slab and a margin to spare. The margin
+      // is measured at the back of the slab.
+      const double growth = 1 + 0.5 * spacing_ / depth_;
+      const glm::dvec3 spare = slabReach(view_, spacing_) + growth * kPlaneMargin * perPixel + slack;
       for (int axis = 0; axis < 3; ++axis) {
         all = all && index[axis] > bricks_.domain.min[axis] + slack[axis] &&
               index[axis] < bricks_.domain.max[axis] - slack[axis];

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
@@ -38,22 +37,6 @@ void appendDomainPlanes(std::vector<ClipPlane>& planes, const Bricks& volume) {
     planes.push_back(coordinate - glm::dvec4(0, 0, 0, volume.domain.min[axis]));
     planes.push_back(glm::dvec4(0, 0, 0, volume.domain.max[axis]) - coordinate);
   }
-}
-
-// Half-spaces a little larger as the image shows them. Shaders cut slabs exactly, so polygons must not be too small: a
-// rasteriser snaps their corners to a grid of 1/256 pixel.
-std::vector<glm::dvec4> widened(std::vector<glm::dvec4> planes, const IndexView& view, int height, double spacing) {
-  const double margin = 2 * view.halfExtent.y / height / 64;
-  for (glm::dvec4& plane : planes) {
-    const double distance = margin * glm::length(glm::dvec2(plane));  // on the screen plane
-    if (view.projection == Projection::perspective) {
-      plane.z += distance;
-      plane.w += 0.5 * spacing * distance;
-    } else {
-      plane.w += distance;
-    }
-  }
-  return planes;
 }
 
 std::vector<Brick> visibleBricks(const Bricks& volume, const TransferLookup& transfer, const BrickSettings& settings,
@@ -234,9 +217,7 @@ class SliceRenderer::Implementation {
     const IndexView view = indexView(camera, volume_.indexToWorld);
     checkReach(view);
     std::vector<glm::dvec4> planes = viewPlanes(camera);
-    ProxySlices slices =
-        cutSlices(view, origins_, volume_.layout.interior,
-                  widened(planes, view, camera.height, scene_.sampling.spacing), scene_.sampling.spacing);
+    ProxySlices slices = cutSlices(view, origins_, volume_.layout.interior, planes, scene_.sampling.spacing);
     runs_ = planSweep(slices, origins_.size(),
                       atlas_->holdsAll() ? std::numeric_limits<std::size_t>::max() : atlas_->slots());
     frame_.emplace(Frame{gl_, scene_, camera, view, std::move(planes), std::move(slices), *atlas_, *transfer_,

@@ -29,6 +29,7 @@ IndexView indexView(const Camera& camera, const glm::dmat4& indexToWorld) {
   view.origin = toView(glm::dvec3(indexToWorld[3]) - camera.eye);
   view.projection = camera.projection;
   view.halfExtent = screenPlane(camera).halfExtent;
+  view.size = {camera.width, camera.height};
   view.toIndex = {inverse * frame.right, inverse * frame.up, inverse * frame.forward};
   view.eyeIndex = inverse * (camera.eye - glm::dvec3(indexToWorld[3]));
   return view;

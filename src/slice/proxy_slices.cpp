@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <string>
 #include <utility>
@@ -72,12 +73,39 @@ void clip(Polygon& polygon, Polygon& scratch, const glm::dvec3& line) {
   std::swap(polygon, scratch);
 }
 
-// How far beyond a plane the middle of a slab may lie while the slab still reaches the kept side.
-double slack(const IndexView& view, const glm::dvec4& plane, double spacing) {
-  double rate = std::abs(plane.z);
-  if (view.projection == Projection::perspective)
-    rate += std::abs(plane.x) * view.halfExtent.x + std::abs(plane.y) * view.halfExtent.y;
-  return 0.5 * spacing * rate;
+// A plane moved out by as much as the middle of a slab may lie beyond it while the slab still reaches the kept side,
+// and by kPlaneMargin pixels, since the rasteriser moves vertices.
+glm::dvec4 widened(glm::dvec4 plane, const IndexView& view, double spacing) {
+  const glm::dvec2 across = glm::abs(glm::dvec2(plane));
+  const double margin = kPlaneMargin * 2 * view.halfExtent.y / view.size.y * glm::length(across);
+  if (view.projection == Projection::perspective) {
+    plane.w +=
+        0.5 * spacing * (std::abs(plane.z) + across.x * view.halfExtent.x + across.y * view.halfExtent.y + margin);
+    plane.z += margin;  // a pixel grows with depth
+  } else {
+    plane.w += 0.5 * spacing * std::abs(plane.z) + margin;
+  }
+  return plane;
+}
+
+// A vertex whose fan of triangles covers the polygon once. Moved to a grid, a vertex near the line between its
+// neighbours may dent the polygon: then a fan around another one would cover the dent twice. Products of grid
+// coordinates are exact.
+std::size_t fanApex(const Polygon& vertices) {
+  const std::size_t count = vertices.size();
+  const auto turn = [](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  };
+  for (std::size_t apex = 0; apex < count; ++apex) {
+    bool left = false, right = false;
+    for (std::size_t i = 1; i + 1 < count; ++i) {
+      const double t = turn(vertices[apex], vertices[(apex + i) % count], vertices[(apex + i + 1) % count]);
+      left = left || t > 0;
+      right = right || t < 0;
+    }
+    if (!(left && right)) return apex;
+  }
+  return 0;
 }
 
 struct SlicePolygons {
@@ -91,7 +119,7 @@ class SliceCutter {
   SliceCutter(const IndexView& view, std::span<const Corners> corners, std::span<const glm::dvec4> planes,
               double spacing)
       : view_(view), corners_(corners), planes_(planes.begin(), planes.end()), cuts_(planeCuts()) {
-    for (glm::dvec4& plane : planes_) plane.w += slack(view, plane, spacing);
+    for (glm::dvec4& plane : planes_) plane = widened(plane, view, spacing);
   }
 
   void cut(double depth, std::span<const std::int32_t> bricks, SlicePolygons& out) const {
@@ -104,7 +132,7 @@ class SliceCutter {
       for (const glm::dvec4& plane : planes_)
         if (polygon.size() >= 3) clip(polygon, scratch, {plane.x, plane.y, plane.z * depth + plane.w});
       if (polygon.size() < 3) continue;
-      emit(polygon, scale, brick, out);
+      emit(polygon, scratch, scale, brick, out);
     }
   }
 
@@ -122,20 +150,30 @@ class SliceCutter {
     }
   }
 
-  static void emit(const Polygon& polygon, const glm::dvec2& scale, std::int32_t brick, SlicePolygons& out) {
-    const auto firstVertex = static_cast<std::int32_t>(out.vertices.size());
-    glm::vec2 low(std::numeric_limits<float>::infinity()), high(-std::numeric_limits<float>::infinity());
+  void emit(const Polygon& polygon, Polygon& vertices, const glm::dvec2& scale, std::int32_t brick,
+            SlicePolygons& out) const {
+    // Vertices on the rasteriser's grid. Neighbours that fall on one point are one.
+    const glm::dvec2 toGrid = 0.5 * kSubpixels * glm::dvec2(view_.size);
+    vertices.clear();
     for (const glm::dvec2& point : polygon) {
-      const glm::vec2 device(point * scale);
-      low = glm::min(low, device);
-      high = glm::max(high, device);
-      out.vertices.push_back(device);
+      const glm::dvec2 snapped = glm::round(point * scale * toGrid);
+      if (vertices.empty() || snapped != vertices.back()) vertices.push_back(snapped);
     }
-    const bool seen = low.x < 1 && low.y < 1 && high.x > -1 && high.y > -1;
-    if (seen)
-      out.polygons.push_back({brick, firstVertex, static_cast<std::int32_t>(polygon.size())});
-    else
-      out.vertices.resize(static_cast<std::size_t>(firstVertex));
+    while (vertices.size() > 1 && vertices.back() == vertices.front()) vertices.pop_back();
+    if (vertices.size() < 3) return;
+
+    glm::dvec2 low = vertices[0], high = vertices[0];
+    for (const glm::dvec2& vertex : vertices) {
+      low = glm::min(low, vertex);
+      high = glm::max(high, vertex);
+    }
+    const bool seen = low.x < toGrid.x && low.y < toGrid.y && high.x > -toGrid.x && high.y > -toGrid.y;
+    if (!seen) return;
+    const auto count = static_cast<std::int32_t>(vertices.size());
+    out.polygons.push_back({brick, static_cast<std::int32_t>(out.vertices.size()), count});
+    const std::size_t apex = fanApex(vertices);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      out.vertices.emplace_back(vertices[(apex + i) % vertices.size()] / toGrid);
   }
 
   const IndexView& view_;

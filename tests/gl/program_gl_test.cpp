@@ -73,10 +73,8 @@ TEST_CASE("Every shader that is not an include compiles by itself or says where 
   int compiled = 0;
   for (const std::string& name : names) {
     if (!name.ends_with(".frag")) continue;
-    const bool isSlice = name.find("occlusion_eye") != std::string::npos ||
-                         name.find("occlusion_light") != std::string::npos ||
-                         name.find("occlusion_slice") != std::string::npos ||
-                         name.find("emission") != std::string::npos || name.find("probe") != std::string::npos;
+    // Those of polygons say where they lie in the atlas.
+    const bool isSlice = shaderSource(name).find("flat in vec4 slab_centre") != std::string::npos;
     INFO(name);
     for (const int perspective : {0, 1})
       for (const int planes : {0, 7})
@@ -84,6 +82,7 @@ TEST_CASE("Every shader that is not an include compiles by itself or says where 
           const ShaderConstants constants{{"kPerspective", perspective},
                                           {"kClipPlanes", planes},
                                           {"kQuadrature", quadrature},
+                                          {"kSegments", 1},
                                           {"kAux", planes > 0},
                                           {"kTaps", 9},
                                           {"kAlgorithm", 2 + perspective},
@@ -101,8 +100,8 @@ TEST_CASE("A driver's complaint names our file and line", "[gl]") {
   if (!context) return;
   // Without its constants footprint.glsl fails where it declares the taps.
   const std::string message =
-      complaint([&] { GlProgram(context->gl(), "shade/full_screen.vert", "shade/occlusion_carry.frag"); });
-  CHECK_THAT(message, StartsWith("shader shade/occlusion_carry.frag: ") && Contains("kTaps"));
+      complaint([&] { GlProgram(context->gl(), "shade/full_screen.vert", "shade/occlusion_spread.frag"); });
+  CHECK_THAT(message, StartsWith("shader shade/occlusion_spread.frag: ") && Contains("kTaps"));
   const std::string text = shaderSource("shade/footprint.glsl");
   const std::size_t start = text.find("#line 1\n") + 8;
   const std::size_t line = count(text.substr(start, text.find("uniform vec4 taps[") - start), "\n") + 1;

@@ -20,6 +20,7 @@ struct IndexView {
   glm::dvec3 origin;
   Projection projection = Projection::perspective;
   glm::dvec2 halfExtent;  // of the screen plane, see screenPlane
+  glm::ivec2 size;        // of the image, pixels
 
   glm::dvec3 toView(const glm::dvec3& index) const;
   /// Change of index coordinates along the view axes: toIndex[0] for one unit to the right, [1] up, [2] forward.
@@ -37,10 +38,17 @@ glm::dvec4 planeInView(const glm::dvec4& worldPlane, const Camera& camera);
 /// index axis, in voxels.
 glm::dvec3 slabReach(const IndexView& view, double spacing);
 
+/// Steps of a rasteriser's grid along the edge of a pixel: 8 bits in Mesa's software drivers and in current hardware.
+inline constexpr int kSubpixels = 256;
+
+/// Pixels by which polygons reach beyond a plane that cuts them: shaders cut slabs exactly, so that a polygon may be
+/// too large but not too small.
+inline constexpr double kPlaneMargin = 1.0 / 64;
+
 struct ProxyPolygon {
   std::int32_t brick;  // position in the list of bricks
   std::int32_t firstVertex;
-  std::int32_t vertices;  // 3 or more, convex, in order
+  std::int32_t vertices;  // 3 or more, in order, to be drawn as a fan around the first
 };
 
 /// Slices first, first + 1, ... with the polygons of each. The middle of slice i is at depth (i + 1/2) spacing from the
@@ -60,13 +68,15 @@ struct ProxySlices {
 /// Each point of a slice inside the bricks lies in exactly one polygon: neighbouring bricks compute a shared vertex
 /// from the same numbers in the same order, a corner on the plane counts as behind it for all, and a corner's depth is
 /// a sum of one monotone term per axis, so that rounding cannot tear a cut into two. Needs a compiler that does not
-/// contract or reorder floating point.
+/// contract or reorder floating point. Vertices are moved to the grid of kSubpixels that rasterisers move them to
+/// anyway, and a polygon starts at a vertex from which its fan of triangles covers it once even where that has dented
+/// it.
 ///
 /// @param origins    first owned voxel of each brick
 /// @param interior   owned voxels along each axis; a brick fills [origin - 1/2, origin + interior - 1/2)
 /// @param viewPlanes half-spaces (see planeInView) beyond which nothing is drawn; what is left of a slab that a plane
 /// cuts
-///                   stays, so polygons reach half a slab beyond it
+///                   stays, so polygons reach half a slab and kPlaneMargin beyond it
 /// @return slices between the nearest and the farthest that anything crosses; polygons outside the image are left out
 /// @throw InvalidArgument  spacing <= 0 or so small that there would be more than `maxSlices`
 ProxySlices cutSlices(const IndexView& view, std::span<const glm::ivec3> origins, const glm::ivec3& interior,
