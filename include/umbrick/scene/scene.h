@@ -99,10 +99,10 @@ struct Scene {
 ///   model      "emission", "cone"
 ///   method     "dos"
 ///   light      ambient [r, g, b], background [r, g, b]
-///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), segments, bits, saturation, tableSize
-///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits
-///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]
-///   bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16", "half", "float32"), budgetMiB
+///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), segments, bits, saturation,
+///   tableSize occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits clip       planes [[a, b, c,
+///   d], ...], box [[x, y, z], [x, y, z]] bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16",
+///   "half", "float32"), budgetMiB
 /// @param source  what messages call the text, usually its file name
 /// @throw IoError  malformed JSON, or a field of the wrong kind or out of range: names source, line, column and field
 Scene parseScene(std::string_view text, const std::string& source, const std::filesystem::path& folder = {});
