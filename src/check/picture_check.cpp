@@ -40,8 +40,9 @@ PictureLimit pictureLimit(const PictureDifference& shifted, const Scene& scene, 
   double sums = 2 * n * lastPlace(scene.sampling.bits);
   if (scene.model == Model::cone) sums += 2 * n * lastPlace(scene.occlusion.bits);
   PictureLimit limit;
-  // All samples were displaced by the most that rounding can do, and all one way.
-  limit.rounding = {shifted.colour + sums, shifted.visibility + sums, shifted.depth + 2 * sums};
+  // All samples were displaced by the most that rounding can do, and all one way; in the other picture it may be the
+  // other.
+  limit.rounding = {2 * shifted.colour + sums, 2 * shifted.visibility + sums, 2 * shifted.depth + 2 * sums};
   // Beyond four deviations of a random walk lies 3.2e-5 of the light, on each of four sides.
   if (scene.model == Model::cone) limit.light = 4 * 3.2e-5;
   return limit;
