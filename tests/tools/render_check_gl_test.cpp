@@ -30,10 +30,10 @@ void writeText(const fs::path& path, const std::string& text) { std::ofstream(pa
 TEST_CASE("A picture can be made again from the scene in its EXR header", "[tools]") {
   if (!testContext()) return;
   const TemporaryFolder folder;
-  const ProgramResult first = runProgram(
-      folder, "render " + kSmall +
-                  "--model cone --azimuth 40 --elevation 20 --clip-plane 1 0 0 3 --layers --exr-pixel float "
-                  "-o a.exr -o a.png --stats a.json");
+  const ProgramResult first =
+      runProgram(folder, "render " + kSmall +
+                             "--model cone --azimuth 40 --elevation 20 --clip-plane 1 0 0 3 --layers --exr-pixel float "
+                             "-o a.exr -o a.png --stats a.json");
   CHECK(first.err.empty());
   REQUIRE(first.status == 0);
   CHECK(first.out == "a.exr\na.png\n");
