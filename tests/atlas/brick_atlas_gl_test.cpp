@@ -7,6 +7,7 @@
 #include <string>
 #include <tuple>
 
+#include "support/complaint.h"
 #include "support/field_bricks.h"
 #include "support/gl_fixture.h"
 #include "umbrick/core/error.h"
@@ -80,16 +81,6 @@ Difference compare(const GlFunctions& gl, const BrickAtlas& atlas, const Bricks&
   return worst;
 }
 
-template <class Action>
-std::string complaint(const Action& action) {
-  try {
-    action();
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "no complaint";
-}
-
 }  // namespace
 
 TEST_CASE("Every voxel comes back from the texture as the volume reads it", "[atlas][gl]") {
@@ -105,7 +96,7 @@ TEST_CASE("Every voxel comes back from the texture as the volume reads it", "[at
         const FieldBricks volume(scattered, kVoxels, field);
         for (const char* name : {"unorm8", "unorm16", "half", "float32"}) {
           if (gradients && std::string(name).starts_with("unorm")) {
-            CHECK_THAT(complaint([&] { parseVoxelFormat(name, volume); }), Contains("gradient"));
+            CHECK_THAT(complaint<InvalidArgument>([&] { parseVoxelFormat(name, volume); }), Contains("gradient"));
             continue;
           }
           // In one texture, and in as many as small ones make.
@@ -252,17 +243,18 @@ TEST_CASE("What does not fit is refused with what is needed and what there is", 
   const FieldBricks volume(scattered, {glm::ivec3(0), glm::ivec3(127)}, {.interior = 64});
   AtlasOptions options;
   options.budgetBytes = 1 << 20;
-  CHECK_THAT(complaint([&] { BrickAtlas(*context, volume, volume.bricks, options); }),
+  CHECK_THAT(complaint<InvalidArgument>([&] { BrickAtlas(*context, volume, volume.bricks, options); }),
              Contains("2 MiB") && Contains("1 MiB"));
   options = {};
   options.maxTextureEdge = 64;
-  CHECK_THAT(complaint([&] { BrickAtlas(*context, volume, volume.bricks, options); }),
+  CHECK_THAT(complaint<InvalidArgument>([&] { BrickAtlas(*context, volume, volume.bricks, options); }),
              Contains("66 x 66 x 66") && Contains("64 texels"));
   options = {};
   options.budgetBytes = 4 << 20;
   BrickAtlas atlas(*context, volume, volume.bricks, options);
   CHECK(atlas.slots() == 3);
-  CHECK_THAT(complaint([&] { atlas.require(allOf(atlas)); }), Contains("3 bricks") && Contains("4 MiB"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { atlas.require(allOf(atlas)); }),
+             Contains("3 bricks") && Contains("4 MiB"));
   // What was refused has not spoilt it: what is resident is there.
   CHECK(compare(context->gl(), atlas, volume).value == 0);
   for (const std::int32_t brick : allOf(atlas)) atlas.release(brick);
@@ -298,5 +290,6 @@ TEST_CASE("Texel formats have names, and an unknown name is refused", "[atlas]")
     // 8-bit texels would be filtered with 8-bit weights.
     CHECK(parseVoxelFormat("auto", volume) == (format == VoxelFormat::unorm8 ? VoxelFormat::unorm16 : format));
   }
-  CHECK_THAT(complaint([&] { parseVoxelFormat("float64", volume); }), Contains("float64") && Contains("unorm16, half"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { parseVoxelFormat("float64", volume); }),
+             Contains("float64") && Contains("unorm16, half"));
 }

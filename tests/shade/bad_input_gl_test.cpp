@@ -3,6 +3,7 @@
 #include <string>
 
 #include "shade/shade_fixture.h"
+#include "support/complaint.h"
 #include "umbrick/core/error.h"
 
 using namespace umbrick;
@@ -15,16 +16,6 @@ const IndexBox kVoxels{glm::ivec3(0), glm::ivec3(31)};
 TransferFunction ramp() { return TransferFunction({{0, {glm::dvec3(1), 0}}, {1, {glm::dvec3(1), 1}}}); }
 Camera camera() { return perspectiveCamera({40, 30, 50}, {16, 16, 16}, 0.7, 24); }
 
-template <class Action>
-std::string complaint(const Action& action) {
-  try {
-    action();
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "no complaint";
-}
-
 }  // namespace
 
 TEST_CASE("Scenes that cannot be rendered are refused with the reason", "[shade][gl]") {
@@ -33,7 +24,9 @@ TEST_CASE("Scenes that cannot be rendered are refused with the reason", "[shade]
   const Scene scene = plainScene(ramp(), camera(), 1);
   const FieldBricks volume = fieldFor(
       scene, [](const glm::ivec3& i) { return i.x / 31.0; }, kVoxels);
-  const auto complaintOf = [&](const Scene& bad) { return complaint([&] { renderPicture(*context, volume, bad); }); };
+  const auto complaintOf = [&](const Scene& bad) {
+    return complaint<InvalidArgument>([&] { renderPicture(*context, volume, bad); });
+  };
   Scene bad = scene;
   bad.camera.width = context->maxTextureEdge2d() + 1;
   CHECK_THAT(complaintOf(bad), Contains("size") && Contains(std::to_string(context->maxTextureEdge2d())));
@@ -64,11 +57,13 @@ TEST_CASE("A budget that one slice does not fit is refused with both sizes", "[s
   scene.bricks.budgetMiB = 1;  // of 20^3 * 4 bytes: 32 bricks
   const FieldBricks volume =
       fieldFor(scene, [](const glm::ivec3& i) { return (i.x + i.y + i.z) / 400.0; }, {glm::ivec3(0), glm::ivec3(127)});
-  CHECK_THAT(complaint([&] { renderPicture(*context, volume, scene); }), Contains("one slice") && Contains(" MiB"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { renderPicture(*context, volume, scene); }),
+             Contains("one slice") && Contains(" MiB"));
   scene.bricks.interior = 64;
   const FieldBricks large =
       fieldFor(scene, [](const glm::ivec3& i) { return i.x / 400.0; }, {glm::ivec3(0), glm::ivec3(63)});
-  CHECK_THAT(complaint([&] { renderPicture(*context, large, scene); }), Contains("2 MiB") && Contains("1 MiB"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { renderPicture(*context, large, scene); }),
+             Contains("2 MiB") && Contains("1 MiB"));
 }
 
 TEST_CASE("A renderer takes other cameras of the same image size", "[shade][gl]") {
@@ -82,7 +77,7 @@ TEST_CASE("A renderer takes other cameras of the same image size", "[shade][gl]"
   renderer.render();
   Camera other = camera();
   other.width = 25;
-  CHECK_THAT(complaint([&] { renderer.render(other); }), Contains("another size"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { renderer.render(other); }), Contains("another size"));
   // Of either projection; nothing of an earlier picture stays.
   for (const Camera& next : {perspectiveCamera({-30, 20, 40}, {16, 16, 16}, 0.5, 24),
                              orthographicCamera({-30, 20, 40}, {16, 16, 16}, 30, 24)}) {
@@ -92,7 +87,7 @@ TEST_CASE("A renderer takes other cameras of the same image size", "[shade][gl]"
   }
   Camera wide = camera();
   wide.fov = 2.9;  // the slabs of its corners reach far
-  CHECK_THAT(complaint([&] { renderer.render(wide); }), Contains("apron"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { renderer.render(wide); }), Contains("apron"));
 }
 
 TEST_CASE("There is no slice to probe before a picture or beyond it", "[shade][gl]") {
@@ -103,11 +98,11 @@ TEST_CASE("There is no slice to probe before a picture or beyond it", "[shade][g
       scene, [](const glm::ivec3& i) { return i.x / 31.0; }, kVoxels);
   SliceRenderer renderer(*context, volume, scene);
   CHECK(renderer.sliceDepths().empty());
-  CHECK_THAT(complaint([&] { renderer.probe(0); }), Contains("no slice 0"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { renderer.probe(0); }), Contains("no slice 0"));
   const Picture picture = renderer.render();
   CHECK(renderer.sliceDepths().size() == static_cast<std::size_t>(picture.stats.slices));
-  CHECK_THAT(complaint([&] { renderer.probe(picture.stats.slices); }), Contains("no slice"));
-  CHECK_THAT(complaint([&] { renderer.probe(-1); }), Contains("no slice -1"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { renderer.probe(picture.stats.slices); }), Contains("no slice"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { renderer.probe(-1); }), Contains("no slice -1"));
 }
 
 TEST_CASE("An empty volume gives an empty picture", "[shade][gl]") {
@@ -136,7 +131,8 @@ TEST_CASE("Resolving a scene writes out what the volume decides", "[shade]") {
   const Box bounds{glm::dvec3(0), glm::dvec3(20, 30, 40)};
   const glm::dmat4 anisotropic(2, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1);
   Scene scene;
-  CHECK_THAT(complaint([&] { resolveScene(scene, bounds, anisotropic); }), Contains("no transfer function"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { resolveScene(scene, bounds, anisotropic); }),
+             Contains("no transfer function"));
   scene.transfer = ramp();
   const Scene resolved = resolveScene(scene, bounds, anisotropic);
   CHECK_FALSE(resolved.orbit);
@@ -144,9 +140,9 @@ TEST_CASE("Resolving a scene writes out what the volume decides", "[shade]") {
   CHECK(resolved.sampling.spacing == 0.25);  // half a voxel of the shortest edge
   CHECK(glm::distance(resolved.camera.lookAt, bounds.centre()) < 1e-12);
   CHECK(resolveScene(resolved, {}, glm::dmat4(7)) == resolved);
-  CHECK_THAT(complaint([&] { resolveScene(scene, {}, anisotropic); }), Contains("empty"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { resolveScene(scene, {}, anisotropic); }), Contains("empty"));
   scene.sampling.spacing = -1;
-  CHECK_THAT(complaint([&] { resolveScene(scene, bounds, anisotropic); }), Contains("spacing"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { resolveScene(scene, bounds, anisotropic); }), Contains("spacing"));
 }
 
 // A slab reads half its length beyond a brick along each axis, and every sample half a voxel.
@@ -166,5 +162,6 @@ TEST_CASE("The apron follows from the reach of a slab", "[shade]") {
   scene.camera.up = {0, 1, 0};
   CHECK(requiredApron(scene, glm::dmat4(1)) == 11);  // 3.5 * 3 + 0.5
   scene.sampling.spacing = 100;
-  CHECK_THAT(complaint([&] { requiredApron(scene, glm::dmat4(1)); }), Contains("151") && Contains("16"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { requiredApron(scene, glm::dmat4(1)); }),
+             Contains("151") && Contains("16"));
 }

@@ -16,10 +16,6 @@ namespace {
 const std::string kAssets = "'" UMBRICK_ASSETS "'/";
 const std::string kHead = kAssets + "headsq_256x256x94_uint16le.raw.gz --dims 256 256 94 --type u16 --bits-stored 15 ";
 
-std::size_t filesIn(const TemporaryFolder& folder) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()));
-}
-
 struct Failing {
   TemporaryFolder folder;
   // One line of message, the status, and no file left behind.

@@ -29,4 +29,9 @@ inline ProgramResult runProgram(const TemporaryFolder& folder, const std::string
   return result;
 }
 
+inline std::size_t filesIn(const TemporaryFolder& folder) {
+  using Iterator = std::filesystem::directory_iterator;
+  return static_cast<std::size_t>(std::distance(Iterator(folder.path()), Iterator()));
+}
+
 }  // namespace umbrick

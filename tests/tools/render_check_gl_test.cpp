@@ -19,10 +19,6 @@ namespace {
 const std::string kSmoke = "'" UMBRICK_ASSETS "/densityAndHeat.vdb' ";
 const std::string kSmall = kSmoke + "--tf smoke --size 40x30 ";
 
-std::size_t filesIn(const TemporaryFolder& folder) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()));
-}
-
 void writeText(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
 
 }  // namespace
