@@ -1,5 +1,6 @@
 // The occlusion buffer of the slice before, read over the footprint of the cone.
 // Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, Eqs. 10-15, Algorithms 2 and 3.
+#include "optics/slab.glsl"
 layout(binding = 2) uniform sampler2D occlusion_prev;  // 1 = unoccluded
 uniform vec2 texel_size;         // pixels to occlusion_prev's coordinates
 uniform float previous_scale;    // size of this slice over that of the slice before, from the image's centre (Eqs. 12-15)
@@ -19,8 +20,8 @@ float meanOverFootprint(vec2 uv) {
 
 // What leaves a slab of which `share` is filled with a medium of extinction sigma_t.
 float occlusionBehind(vec2 uv, float sigma_t, float share, float spacing) {
-  if (kAlgorithm == 3) return meanOverFootprint(uv) * exp(-sigma_t * share * spacing);
+  if (kAlgorithm == 3) return meanOverFootprint(uv) * transmittance(sigma_t, share * spacing);
   float sum = 0.0;
-  for (int i = 0; i < kTaps; ++i) sum += visibility(uv + taps[i].xy) * exp(-sigma_t * share * taps[i].z);
+  for (int i = 0; i < kTaps; ++i) sum += visibility(uv + taps[i].xy) * transmittance(sigma_t, share * taps[i].z);
   return sum * (1.0 / float(kTaps));
 }
