@@ -115,15 +115,7 @@ class OcclusionPass : public SlicePass {
       nextLook_ = slice + LightTiles::kInterval;
     }
     const int target = 1 - previous_;
-    if (++stencil_ > 255) {
-      const RenderTargets& targets = frame.targets;
-      gl.Disable(GL_SCISSOR_TEST);
-      gl.StencilMask(0xff);
-      gl.DepthMask(GL_FALSE);
-      const GLint zero = 0;
-      gl.ClearNamedFramebufferiv(targets.depthOnly.name(), GL_STENCIL, 0, &zero);
-      stencil_ = 1;
-    }
+    if (!spreadsFirst(frame)) nextStencil(frame);
     gl.BindTextureUnit(2, frame.targets.occlusion[static_cast<std::size_t>(previous_)].name());
     if (spreadsFirst(frame)) {
       if (!region.empty()) drawSpread(frame, step, region, target, false);
@@ -137,6 +129,17 @@ class OcclusionPass : public SlicePass {
       if (!region.empty()) drawSpread(frame, step, region, target, true);
     }
     previous_ = target;
+  }
+
+  // A number for this slice that no pixel holds yet.
+  void nextStencil(const Frame& frame) {
+    if (++stencil_ <= 255) return;
+    const GlFunctions& gl = frame.gl;
+    gl.Disable(GL_SCISSOR_TEST);
+    gl.StencilMask(0xff);
+    const GLint zero = 0;
+    gl.ClearNamedFramebufferiv(frame.targets.depthOnly.name(), GL_STENCIL, 0, &zero);
+    stencil_ = 1;
   }
 
   void setCommonState(const Frame& frame) const {
