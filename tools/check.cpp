@@ -15,7 +15,7 @@
 #include "scene_options.h"
 #include "umbrick/check/invariants.h"
 #include "umbrick/core/error.h"
-#include "umbrick/shade/prepare.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick::tools {
 namespace {

@@ -7,6 +7,7 @@
 #include "umbrick/brick/brick_grid.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/scene/resolve.h"
 #include "umbrick/shade/prepare.h"
 
 namespace umbrick::tools {

@@ -2,33 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <string>
 
 #include "umbrick/core/error.h"
 #include "umbrick/slice/proxy_slices.h"
 
 namespace umbrick {
-
-double shortestVoxelEdge(const glm::dmat4& indexToWorld) {
-  return std::min({glm::length(glm::dvec3(indexToWorld[0])), glm::length(glm::dvec3(indexToWorld[1])),
-                   glm::length(glm::dvec3(indexToWorld[2]))});
-}
-
-Scene resolveScene(const Scene& scene, const Box& worldBounds, const glm::dmat4& indexToWorld) {
-  if (!scene.transfer) throw InvalidArgument("scene: no transfer function");
-  validateScene(scene);
-  Scene resolved = scene;
-  if (resolved.orbit) {
-    resolved.camera = orbitCamera(worldBounds, resolved.orbit->azimuth, resolved.orbit->elevation, resolved.camera);
-    resolved.orbit.reset();
-  }
-  if (resolved.sampling.spacingInVoxels) {
-    resolved.sampling.spacing *= shortestVoxelEdge(indexToWorld);
-    resolved.sampling.spacingInVoxels = false;
-  }
-  return resolved;
-}
 
 int requiredApron(const Scene& resolved, const glm::dmat4& indexToWorld) {
   const IndexView view = indexView(resolved.camera, indexToWorld);

@@ -8,6 +8,7 @@
 #include "support/gl_fixture.h"
 #include "support/test_grids.h"
 #include "umbrick/core/error.h"
+#include "umbrick/scene/resolve.h"
 #include "umbrick/shade/prepare.h"
 
 using namespace umbrick;

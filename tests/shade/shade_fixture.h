@@ -11,6 +11,7 @@
 
 #include "support/field_bricks.h"
 #include "support/gl_fixture.h"
+#include "umbrick/scene/resolve.h"
 #include "umbrick/shade/prepare.h"
 #include "umbrick/shade/slice_renderer.h"
 
