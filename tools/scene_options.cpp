@@ -64,7 +64,7 @@ void applyTransfer(const SceneOptions& options, const DefaultTransfer& defaultTr
 }
 
 void applyModel(const SceneOptions& options, Scene& scene) {
-  if (options.model) scene.model = *options.model == "cone" ? Model::cone : Model::emission;
+  if (options.model) scene.model = parseModel(*options.model);
   OcclusionOptions& occlusion = scene.occlusion;
   if (options.theta) occlusion.aperture = *options.theta * kRadians;
   apply(options.footprint, occlusion.footprint);
@@ -133,8 +133,12 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
   command.add_option("--size", o.size, "of the picture, pixels [512x512]")->group(camera);
 
   const std::string light = "Light";
-  command.add_option("--model", o.model, "emission (no occlusion) or cone [emission]")
-      ->check(CLI::IsMember({"emission", "cone"}))
+  command
+      .add_option(
+          "--model", o.model,
+          "emission (no occlusion), cone (around the slice normal), cone-ray (around the view ray) or ambient (whole "
+          "sphere); the last two only in the reference [emission]")
+      ->check(CLI::IsMember({"emission", "cone", "cone-ray", "ambient"}))
       ->group(light);
   command.add_option("--method", o.method, "of the cone model: dos [dos]")->check(CLI::IsMember({"dos"}))->group(light);
   command.add_option("--theta", o.theta, "half-angle of the cone, degrees, in [0, 90) [60]")->group(light);

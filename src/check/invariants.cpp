@@ -30,8 +30,6 @@ InvariantResult makeResult(int invariant, std::string name, std::string measured
   return result;
 }
 
-std::string modelName(Model model) { return model == Model::cone ? "cone" : "emission"; }
-
 std::string mebibytes(std::uint64_t bytes) {
   std::string text = std::to_string(static_cast<double>(bytes) / (1 << 20));
   return text.substr(0, text.find('.') + 2) + " MiB";

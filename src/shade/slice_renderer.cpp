@@ -187,6 +187,9 @@ class SliceRenderer::Implementation {
   void checkScene(const GlContext& context) const {
     if (!scene_.transfer || scene_.orbit || scene_.sampling.spacingInVoxels)
       throw InvalidArgument("render: the scene is not resolved for its volume");
+    if (scene_.model != Model::emission && scene_.model != Model::cone)
+      throw InvalidArgument("model: " + modelName(scene_.model) +
+                            " is integrated by the reference alone; slices render emission and cone");
     const int most = context.maxTextureEdge2d();
     if (scene_.camera.width > most || scene_.camera.height > most)
       throw InvalidArgument("size: " + std::to_string(scene_.camera.width) + " x " +

@@ -40,6 +40,9 @@ TEST_CASE("Scenes that cannot be rendered are refused with the reason", "[shade]
   bad.sampling.spacingInVoxels = true;
   CHECK_THAT(complaintOf(bad), Contains("not resolved"));
   bad = scene;
+  bad.model = Model::ambient;
+  CHECK_THAT(complaintOf(bad), Contains("ambient") && Contains("reference"));
+  bad = scene;
   bad.bricks.format = "unorm12";
   CHECK_THAT(complaintOf(bad), Contains("unorm12") && Contains("unorm16"));
   bad = scene;

@@ -14,9 +14,15 @@
 
 namespace umbrick {
 
-/// What light is scattered at a point: `emission` all of the ambient radiance, `cone` the share that a cone around the
-/// slice normal lets in.
-enum class Model { emission, cone };
+/// What light is scattered at a point: `emission` all of the ambient radiance; the others the share V of it that the
+/// medium lets in, as the mean over directions of a cone around the slice normal (`cone`) or around the ray to the eye
+/// (`coneRay`, Eq. 6 of Schott et al. to the letter), or of the whole sphere (`ambient`, their Fig. 2a). The slice
+/// renderer knows the first two, the reference all.
+enum class Model { emission, cone, coneRay, ambient };
+/// What a scene file and the command line call it: "emission", "cone", "cone-ray", "ambient".
+std::string modelName(Model model);
+/// @throw InvalidArgument  another name; lists those there are
+Model parseModel(std::string_view name);
 /// How the share is computed. dos: directional occlusion shading, Schott et al. 2009,
 /// doi:10.1111/j.1467-8659.2009.01464.x
 enum class Method { dos };
@@ -96,13 +102,14 @@ struct Scene {
 ///              elevation around the volume, or eye, lookAt, up and viewHeight
 ///   transfer   name of a preset, name of a file, or the function itself (also ParaView's array);
 ///   window [low, high], sigmaScale    applied to it
-///   model      "emission", "cone"
+///   model      "emission", "cone", "cone-ray", "ambient"
 ///   method     "dos"
 ///   light      ambient [r, g, b], background [r, g, b]
 ///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), segments, bits, saturation,
-///   tableSize occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits clip       planes [[a, b, c,
-///   d], ...], box [[x, y, z], [x, y, z]] bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16",
-///   "half", "float32"), budgetMiB
+///              tableSize
+///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits
+///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]
+///   bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16", "half", "float32"), budgetMiB
 /// @param source  what messages call the text, usually its file name
 /// @throw IoError  malformed JSON, or a field of the wrong kind or out of range: names source, line, column and field
 Scene parseScene(std::string_view text, const std::string& source, const std::filesystem::path& folder = {});

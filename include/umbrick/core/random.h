@@ -1,0 +1,30 @@
+// Seeded random numbers that do not depend on who draws first.
+#pragma once
+#include <cstdint>
+
+namespace umbrick {
+
+/// PCG XSH-RR 64/32: one of 2^63 independent streams of a seed. O'Neill 2014, HMC-CS-2014-0905.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed, std::uint64_t stream = 0) : increment_(2 * stream + 1) {
+    next();
+    state_ += seed;
+    next();
+  }
+
+  std::uint32_t next() {
+    const std::uint64_t old = state_;
+    state_ = old * 6364136223846793005u + increment_;
+    const auto shifted = static_cast<std::uint32_t>(((old >> 18) ^ old) >> 27);
+    const auto turns = static_cast<std::uint32_t>(old >> 59);
+    return (shifted >> turns) | (shifted << ((32 - turns) & 31));
+  }
+  /// In (0, 1): never 0, so that its logarithm is finite.
+  double uniform() { return (next() + 0.5) * 0x1p-32; }
+
+ private:
+  std::uint64_t state_ = 0, increment_;
+};
+
+}  // namespace umbrick
