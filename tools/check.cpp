@@ -23,6 +23,7 @@ namespace {
 struct CheckCommand {
   std::shared_ptr<SceneOptions> scene;
   CheckOptions check;
+  std::string backend = "auto";
   bool json = false;
 };
 
@@ -115,7 +116,7 @@ int check(const CheckCommand& command) {
   load(scene);
   if (!command.scene->size) scene.camera.width = scene.camera.height = 256;
   scene = resolveScene(scene, grid.worldBounds(), grid.indexToWorld());
-  const auto context = createGlContext(parseBackend(command.scene->backend));
+  const auto context = createGlContext(parseBackend(command.backend));
   CheckOptions options = command.check;
   const bool terminal = isatty(STDERR_FILENO);
   if (terminal)
@@ -137,6 +138,7 @@ Command addCheck(CLI::App& app) {
   const auto command = std::make_shared<CheckCommand>();
   CLI::App* sub = app.add_subcommand("check", "Measure on a volume that bricks and culling change nothing.");
   command->scene = addSceneOptions(*sub);
+  addBackendOption(*sub, command->backend);
   // What is compared is no option: both models, with and without bricks and culling.
   for (const char* option : {"--model", "--unbricked", "--no-culling"}) sub->remove_option(sub->get_option(option));
   sub->get_option("--size")->description("of the pictures, pixels [256x256]");

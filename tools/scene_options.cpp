@@ -190,11 +190,13 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
       .add_option("--texel-format", o.format, "auto, unorm8, unorm16, half or float32 [auto: the smallest exact one]")
       ->group(bricks);
   command.add_option("--memory-budget", o.budgetMiB, "of the bricks' textures, MiB [2048]")->group(bricks);
+  return options;
+}
 
-  command.add_option("--backend", o.backend, "OpenGL: auto (OSMesa, else EGL), osmesa or egl")
+void addBackendOption(CLI::App& command, std::string& backend) {
+  command.add_option("--backend", backend, "OpenGL: auto (OSMesa, else EGL), osmesa or egl")
       ->check(CLI::IsMember({"auto", "osmesa", "egl"}))
       ->capture_default_str();
-  return options;
 }
 
 Scene makeScene(const SceneOptions& options, const DefaultTransfer& defaultTransfer) {
@@ -221,20 +223,28 @@ std::unique_ptr<Bricks> cutBricks(const ScalarGrid& grid, const Scene& resolved)
   return resolved.bricks.bricked ? brickGrid(grid, options) : unbrickedGrid(grid, options);
 }
 
-LoadedScene loadScene(const Scene& scene) {
-  LoadedScene loaded;
+LoadedVolume loadVolume(const Scene& scene) {
+  LoadedVolume loaded;
   const Stopwatch load;
   loaded.grid = readScalarGrid(scene.volume.file, scene.volume.grid);
   loaded.loadMs = load.elapsedMs();
   if (loaded.grid.activeBox().empty())
     throw InvalidArgument(scene.volume.file.string() + ": grid \"" + loaded.grid.name + "\" has no active voxel");
   loaded.scene = resolveScene(scene, loaded.grid.worldBounds(), loaded.grid.indexToWorld());
+  return loaded;
+}
+
+void warnOfNonFinite(const Scene& scene, std::uint64_t voxels) {
+  if (voxels > 0)
+    std::cerr << scene.volume.file.string() << ": " << voxels << " voxels are not finite and count as background\n";
+}
+
+LoadedScene loadScene(const Scene& scene) {
+  LoadedScene loaded{loadVolume(scene)};
   const Stopwatch brick;
   loaded.bricks = cutBricks(loaded.grid, loaded.scene);
   loaded.brickMs = brick.elapsedMs();
-  if (loaded.bricks->nonFiniteVoxels > 0)
-    std::cerr << scene.volume.file.string() << ": " << loaded.bricks->nonFiniteVoxels
-              << " voxels are not finite and count as background\n";
+  warnOfNonFinite(scene, loaded.bricks->nonFiniteVoxels);
   return loaded;
 }
 

@@ -26,11 +26,12 @@ struct SceneOptions {
   std::optional<int> eyeBits, occlusionBits, tableSize, segments, footprint, passes, algorithm, interior;
   std::optional<std::uint64_t> budgetMiB;
   bool orthographic = false, noPerspectiveCorrection = false, unbricked = false, noCulling = false;
-  std::string backend = "auto";
 };
 
 /// Adds the options to a sub-command.
 std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command);
+/// Adds --backend, for those that draw with OpenGL.
+void addBackendOption(CLI::App& command, std::string& backend);
 
 /// What stands in for a transfer function that nobody gave; none: then one must be given.
 using DefaultTransfer = std::function<TransferFunction(const Scene&)>;
@@ -38,12 +39,21 @@ using DefaultTransfer = std::function<TransferFunction(const Scene&)>;
 /// The scene of a file and the command line. @throw UsageError, IoError, InvalidArgument
 Scene makeScene(const SceneOptions& options, const DefaultTransfer& defaultTransfer = {});
 
-/// A scene with its volume in memory, cut into bricks.
-struct LoadedScene {
+/// A scene with its volume in memory.
+struct LoadedVolume {
   Scene scene;  // resolved
   ScalarGrid grid;
-  std::unique_ptr<Bricks> bricks;
-  double loadMs = 0, brickMs = 0;
+  double loadMs = 0;
+};
+/// @throw IoError, InvalidArgument
+LoadedVolume loadVolume(const Scene& scene);
+/// One line on stderr, if there are any.
+void warnOfNonFinite(const Scene& scene, std::uint64_t voxels);
+
+/// Cut into bricks as well.
+struct LoadedScene : LoadedVolume {
+  std::unique_ptr<Bricks> bricks = {};
+  double brickMs = 0;
 };
 
 /// Reads the grid and cuts it as the scene wants. @throw IoError, InvalidArgument

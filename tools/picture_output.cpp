@@ -1,0 +1,71 @@
+#include "picture_output.h"
+
+#include <iostream>
+
+#include "command.h"
+#include "umbrick/core/pending_file.h"
+#include "umbrick/image/png.h"
+
+namespace umbrick::tools {
+namespace {
+bool isExr(const std::filesystem::path& path) { return path.extension() == ".exr"; }
+}  // namespace
+
+std::shared_ptr<PictureOutput> addPictureOutput(CLI::App& command, const std::string& exrPixel,
+                                                const std::string& layers) {
+  const auto output = std::make_shared<PictureOutput>();
+  output->exrPixel = exrPixel;
+  const std::string group = "Output";
+  command
+      .add_option("-o,--output", output->files,
+                  "picture: .exr (linear, premultiplied) or .png (sRGB, alpha); may be repeated")
+      ->required()
+      ->type_size(1)
+      ->allow_extra_args(false)
+      ->group(group);
+  command.add_option("--exr-pixel", output->exrPixel, "half or float")
+      ->check(CLI::IsMember({"half", "float"}))
+      ->capture_default_str()
+      ->group(group);
+  command.add_flag("--layers", output->layers, "add to the EXR: " + layers)->group(group);
+  command.add_option("--tone-map", output->toneMap, "of the PNG: none, reinhard or filmic")
+      ->check(CLI::IsMember({"none", "reinhard", "filmic"}))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--exposure", output->exposure, "of the PNG, stops")->capture_default_str()->group(group);
+  command.add_option("--stats", output->stats, "write times, counts and the scene as JSON")->group(group);
+  return output;
+}
+
+void checkOutputs(const PictureOutput& output) {
+  for (const std::filesystem::path& path : output.files) {
+    if (!isExr(path) && path.extension() != ".png")
+      throw UsageError(path.string() + ": expected a picture that ends in .exr or .png");
+    PendingFile probe(path);
+  }
+  if (!output.stats.empty()) PendingFile probe(output.stats);
+}
+
+void writeOutputs(const PictureOutput& output, std::vector<ImageLayer> layers,
+                  const std::map<std::string, std::string>& metadata) {
+  if (!output.layers) layers.resize(1);
+  for (const std::filesystem::path& path : output.files) {
+    if (isExr(path)) {
+      ExrOptions options;
+      options.pixel = output.exrPixel == "half" ? ExrPixel::half : ExrPixel::float32;
+      options.metadata = metadata;
+      writeExr(path, layers, options);
+    } else {
+      PngOptions options;
+      options.toneMap = output.toneMap == "reinhard" ? ToneMap::reinhard
+                        : output.toneMap == "filmic" ? ToneMap::filmic
+                                                     : ToneMap::none;
+      options.exposure = static_cast<float>(output.exposure);
+      if (const auto scene = metadata.find("umbrick.scene"); scene != metadata.end()) options.metadata.insert(*scene);
+      writePng(path, layers.front().image, options);
+    }
+    std::cout << path.string() << '\n';
+  }
+}
+
+}  // namespace umbrick::tools

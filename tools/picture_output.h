@@ -1,0 +1,36 @@
+// Where a picture goes and as what, shared by the sub-commands that make one.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "umbrick/image/exr.h"
+
+namespace umbrick::tools {
+
+struct PictureOutput {
+  std::vector<std::filesystem::path> files;
+  std::filesystem::path stats;  // empty: none
+  std::string exrPixel, toneMap = "none";
+  double exposure = 0;
+  bool layers = false;
+};
+
+/// Adds the options to a sub-command. @param exrPixel  default of --exr-pixel  @param layers  what --layers adds
+std::shared_ptr<PictureOutput> addPictureOutput(CLI::App& command, const std::string& exrPixel,
+                                                const std::string& layers);
+
+/// A picture can take long: what cannot be written is said before it is made. @throw UsageError, IoError
+void checkOutputs(const PictureOutput& output);
+
+/// Writes the picture and prints the names of its files.
+/// @param layers    the colour, then what --layers adds
+/// @param metadata  of EXR files; a PNG keeps the scene
+/// @throw IoError
+void writeOutputs(const PictureOutput& output, std::vector<ImageLayer> layers,
+                  const std::map<std::string, std::string>& metadata);
+
+}  // namespace umbrick::tools
