@@ -1,0 +1,122 @@
+// The transfer function along a cell of a ray, in pieces on which extinction is a polynomial.
+#pragma once
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "reference/cubic.h"
+#include "umbrick/optics/transfer_function.h"
+
+namespace umbrick {
+
+/// One linear stretch of a 1D function: sigma_t and albedo at value v are base + slope (v - origin).
+struct LinearStretch {
+  double origin = 0, sigma_t = 0, sigmaSlope = 0;
+  glm::dvec3 albedo{0}, albedoSlope{0};
+};
+
+/// Part [begin, end] of a cell, s in [0, 1] along the ray.
+struct CellPiece {
+  double begin = 0, end = 0;
+  Cubic sigma_t;                           // in s, 1/world unit
+  const LinearStretch* stretch = nullptr;  // 1D
+};
+
+class Classifier {
+ public:
+  explicit Classifier(const TransferFunction& transfer);
+
+  bool is2d() const { return transfer_.is2d(); }
+  const TransferFunction& transfer() const { return transfer_; }
+
+  /// Calls visit(const CellPiece&) for the pieces of [0, 1] where the medium may scatter or absorb, in order.
+  /// @param value,gradient  along the ray; gradient counts for a 2D function only
+  template <class Visit>
+  void forEachPiece(const Cubic& value, const Cubic& gradient, const Visit& visit) const {
+    if (is2d())
+      forEachFitted(value, gradient, visit);
+    else
+      forEachExact(value, visit);
+  }
+
+  glm::dvec3 albedo(const CellPiece& piece, const Cubic& value, const Cubic& gradient, double s) const {
+    if (!piece.stretch) return transfer_(value(s), gradient(s)).albedo;
+    return piece.stretch->albedo + piece.stretch->albedoSlope * (value(s) - piece.stretch->origin);
+  }
+
+ private:
+  // Which stretch holds at a value; a step counts as its upper side.
+  std::size_t locate(double value) const {
+    return static_cast<std::size_t>(std::upper_bound(values_.begin(), values_.end(), value) - values_.begin());
+  }
+
+  template <class Visit>
+  void visitStretch(const Cubic& value, std::size_t index, double begin, double end, const Visit& visit) const {
+    const LinearStretch& stretch = stretches_[index];
+    if (end <= begin || (stretch.sigma_t == 0 && stretch.sigmaSlope == 0)) return;
+    CellPiece piece{begin, end, {}, &stretch};
+    for (std::size_t i = 0; i < 4; ++i) piece.sigma_t.c[i] = stretch.sigmaSlope * value.c[i];
+    piece.sigma_t.c[0] = stretch.sigma_t + stretch.sigmaSlope * (value.c[0] - stretch.origin);
+    visit(piece);
+  }
+
+  template <class Visit>
+  void forEachExact(const Cubic& value, const Visit& visit) const {
+    // Most cells lie between two points: the control points of Bernstein's basis bound the cubic.
+    const auto& c = value.c;
+    const double b1 = c[0] + c[1] / 3, b2 = b1 + (c[1] + c[2]) / 3, b3 = c[0] + c[1] + c[2] + c[3];
+    const std::size_t lowest = locate(std::min({c[0], b1, b2, b3}));
+    if (lowest == values_.size() || std::max({c[0], b1, b2, b3}) < values_[lowest])
+      return visitStretch(value, lowest, 0, 1, visit);
+    // Else between its turns it meets the points one after the other.
+    std::array<double, 2> turns{};
+    const int count = value.turns(turns);
+    double begin = 0;
+    for (int i = 0; i <= count; ++i) {
+      const double end = i < count ? turns[static_cast<std::size_t>(i)] : 1;
+      forEachMonotonic(value, begin, end, visit);
+      begin = end;
+    }
+  }
+
+  template <class Visit>
+  void forEachMonotonic(const Cubic& value, double begin, double end, const Visit& visit) const {
+    const double first = value(begin), last = value(end);
+    std::size_t index = locate(first);
+    const std::size_t target = locate(last);
+    double at = begin;
+    const auto crossTo = [&](double point, std::size_t next) {
+      const double s = std::max(at, value.solve(point, begin, end));
+      visitStretch(value, index, at, s, visit);
+      at = s;
+      index = next;
+    };
+    while (index < target) crossTo(values_[index], index + 1);
+    while (index > target) crossTo(values_[index - 1], index - 1);
+    visitStretch(value, index, at, end, visit);
+  }
+
+  // A 2D function is bilinear between lattice lines, so along a ray of degree six in between: interpolated by a cubic
+  // in each quarter of the cell, at the nodes of its 3/8 rule.
+  template <class Visit>
+  void forEachFitted(const Cubic& value, const Cubic& gradient, const Visit& visit) const {
+    constexpr int pieces = 4;
+    for (int i = 0; i < pieces; ++i) {
+      const double begin = static_cast<double>(i) / pieces, h = 1.0 / pieces;
+      std::array<double, 4> y;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const double s = begin + h * static_cast<double>(k) / 3;
+        y[k] = transfer_(value(s), std::max(0.0, gradient(s))).sigma_t;
+      }
+      if (y[0] == 0 && y[1] == 0 && y[2] == 0 && y[3] == 0) continue;
+      visit(CellPiece{begin, begin + h, throughThirds(y, begin, h), nullptr});
+    }
+  }
+
+  static Cubic throughThirds(const std::array<double, 4>& y, double begin, double h);
+
+  TransferFunction transfer_;
+  std::vector<double> values_;            // of the control points
+  std::vector<LinearStretch> stretches_;  // below the first point, between neighbours, above the last
+};
+
+}  // namespace umbrick

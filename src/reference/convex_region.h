@@ -1,0 +1,39 @@
+// The space that holds the medium: an intersection of half-spaces.
+#pragma once
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "umbrick/core/box.h"
+#include "umbrick/scene/scene.h"
+
+namespace umbrick {
+
+/// A line in continuous index space, origin + t direction. t is a length in world units.
+struct IndexRay {
+  glm::dvec3 origin{0}, direction{0};
+  glm::dvec3 at(double t) const { return origin + t * direction; }
+};
+
+struct Interval {
+  double begin = 0, end = 0;
+  bool empty() const { return !(begin < end); }
+};
+
+/// Half-spaces dot(xyz, point) + w >= 0 in index space.
+class ConvexRegion {
+ public:
+  /// The domain, the clip planes and the clip box of the scene and what of space the camera sees.
+  /// @param behindEye  also what lies behind the plane of the eye
+  ConvexRegion(const Scene& scene, const IndexBox& domain, const glm::dmat4& indexToWorld, bool behindEye);
+
+  /// The part of the ray with t >= begin that lies inside.
+  Interval clip(const IndexRay& ray, double begin) const;
+
+ private:
+  std::vector<glm::dvec4> planes_;
+};
+
+}  // namespace umbrick

@@ -1,0 +1,53 @@
+// Polynomials of degree three: what trilinear interpolation is along a line.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace umbrick {
+
+/// c[0] + c[1] s + c[2] s^2 + c[3] s^3.
+struct Cubic {
+  std::array<double, 4> c{};
+
+  double operator()(double s) const { return c[0] + s * (c[1] + s * (c[2] + s * c[3])); }
+  /// Over [a, b], without the cancellation of a difference of antiderivatives: exact by two Gauss nodes.
+  double integral(double a, double b) const {
+    constexpr double node = 0.21132486540518712;
+    const double h = b - a;
+    return 0.5 * h * ((*this)(a + node * h) + (*this)(b - node * h));
+  }
+  /// Places in (0, 1) where the slope changes sign, ascending.
+  int turns(std::array<double, 2>& places) const {
+    int count = 0;
+    const auto add = [&](double s) {
+      if (s > 0 && s < 1) places[static_cast<std::size_t>(count++)] = s;
+    };
+    const double a = 3 * c[3], half = c[2], b = c[1];  // a s^2 + 2 half s + b
+    const double root = half * half - a * b;
+    if (root < 0) return 0;
+    // The larger root first, the other from their product: no cancellation.
+    const double q = -(half + std::copysign(std::sqrt(root), half));
+    if (a != 0) add(q / a);
+    if (q != 0) add(b / q);
+    if (count == 2 && places[0] > places[1]) std::swap(places[0], places[1]);
+    return count;
+  }
+  /// Where the cubic, monotonic on [a, b], takes a value that lies between those at the ends.
+  double solve(double value, double a, double b) const {
+    const bool rising = (*this)(b) >= (*this)(a);
+    double s = 0.5 * (a + b);
+    for (int i = 0; i < 60 && b - a > 1e-15; ++i) {
+      const double f = (*this)(s)-value;
+      ((f < 0) == rising ? a : b) = s;
+      const double slope = c[1] + s * (2 * c[2] + 3 * s * c[3]);
+      const double newton = s - f / slope;
+      const double next = newton > a && newton < b ? newton : 0.5 * (a + b);
+      if (std::abs(next - s) < 1e-15) return next;
+      s = next;
+    }
+    return s;
+  }
+};
+
+}  // namespace umbrick

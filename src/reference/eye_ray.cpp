@@ -1,0 +1,135 @@
+#include "reference/eye_ray.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace umbrick {
+namespace {
+
+// Goes through a ray's cells front to back.
+class Collector {
+ public:
+  Collector(const Classifier& classifier, const EyeRayOptions& options, double begin, std::vector<Scatterer>& parts)
+      : classifier_(classifier), options_(options), begin_(begin), parts_(parts) {}
+
+  double transmittance() const { return transmittance_; }
+  bool isDark() const { return transmittance_ < options_.darkest; }
+
+  /// A cell, or part of one; `value` and `gradient` over s in [0, 1] from `begin` to `end` of the ray.
+  void add(const Cubic& value, const Cubic& gradient, double begin, double end) {
+    value_ = value;
+    gradient_ = gradient;
+    cellBegin_ = begin;
+    length_ = end - begin;
+    classifier_.forEachPiece(value, gradient, [&](const CellPiece& piece) { addSteps(piece); });
+  }
+
+ private:
+  // Cuts a piece where a step ends.
+  void addSteps(const CellPiece& piece) {
+    double s = piece.begin;
+    while (s < piece.end && !isDark()) {
+      double end = piece.end;
+      if (options_.step > 0) {
+        stretch_ = static_cast<std::int64_t>(std::floor((at(s) - begin_) / options_.step + 1e-9));
+        const double boundary = (begin_ + static_cast<double>(stretch_ + 1) * options_.step - cellBegin_) / length_;
+        if (boundary > s && boundary < end) end = boundary;
+      }
+      addHalves(piece, s, end, length_ * piece.sigma_t.integral(s, end), 60);
+      s = end;
+    }
+  }
+
+  // Halves what is too opaque for a few nodes.
+  void addHalves(const CellPiece& piece, double begin, double end, double tau, int depth) {
+    if (isDark() || !(tau > 0)) return;
+    if (tau > options_.largestTau && depth > 0) {
+      const double middle = 0.5 * (begin + end);
+      const double first = length_ * piece.sigma_t.integral(begin, middle);
+      addHalves(piece, begin, middle, first, depth - 1);
+      addHalves(piece, middle, end, tau - first, depth - 1);
+      return;
+    }
+    addPart(piece, begin, end, tau);
+  }
+
+  // The opacity is exact; how it is shared out over the part, for centre and albedo, by three Gauss nodes.
+  void addPart(const CellPiece& piece, double begin, double end, double tau) {
+    constexpr double nodes[]{0.11270166537925831, 0.5, 0.88729833462074169}, weights[]{5, 8, 5};
+    double sum = 0, centre = 0;
+    glm::dvec3 albedo(0);
+    for (int i = 0; i < 3; ++i) {
+      const double s = begin + nodes[i] * (end - begin);
+      const double before = std::max(0.0, length_ * piece.sigma_t.integral(begin, s));
+      const double weight = weights[i] * std::max(0.0, piece.sigma_t(s)) * std::exp(-before);
+      sum += weight;
+      centre += weight * s;
+      albedo += weight * classifier_.albedo(piece, value_, gradient_, s);
+    }
+    if (!(sum > 0)) return;
+    Scatterer part;
+    part.t = at(centre / sum);
+    part.alpha = transmittance_ * -std::expm1(-tau);
+    part.light = part.alpha * albedo / sum;
+    part.stretch = stretch_;
+    transmittance_ *= std::exp(-tau);
+    parts_.push_back(part);
+  }
+
+  double at(double s) const { return cellBegin_ + s * length_; }
+
+  const Classifier& classifier_;
+  const EyeRayOptions& options_;
+  double begin_;
+  std::vector<Scatterer>& parts_;
+  Cubic value_, gradient_;
+  double cellBegin_ = 0, length_ = 0, transmittance_ = 1;
+  std::int64_t stretch_ = 0;
+};
+
+}  // namespace
+
+EyeRays::EyeRays(const Camera& camera, const glm::dmat4& indexToWorld)
+    : camera_(camera),
+      frame_(cameraFrame(camera)),
+      plane_(screenPlane(camera)),
+      worldToIndex_(glm::inverse(indexToWorld)),
+      linear_(worldToIndex_) {}
+
+EyeRays::Ray EyeRays::through(int x, int y) const {
+  const glm::dvec2 p = (glm::dvec2(x, y) + 0.5) * plane_.pixelSize - plane_.halfExtent;
+  const glm::dvec3 aside = p.x * frame_.right + p.y * frame_.up;
+  const bool perspective = camera_.projection == Projection::perspective;
+  Ray ray;
+  ray.direction = perspective ? glm::normalize(frame_.forward + aside) : frame_.forward;
+  ray.depthPerLength = glm::dot(ray.direction, frame_.forward);
+  ray.index.origin = glm::dvec3(worldToIndex_ * glm::dvec4(perspective ? camera_.eye : camera_.eye + aside, 1));
+  ray.index.direction = toIndex(ray.direction);
+  return ray;
+}
+
+double collectScatterers(const Field& field, Field::Accessor& accessor, const Classifier& classifier,
+                         const IndexRay& ray, const Interval& part, const EyeRayOptions& options,
+                         std::vector<Scatterer>& parts, std::uint64_t& cells) {
+  Collector collector(classifier, options, part.begin, parts);
+  field.walkBlocks(
+      accessor, ray, part, [&](const FieldBlock& block, const glm::dvec3& origin, double begin, double end) {
+        if (!block.values) {
+          ++cells;
+          collector.add(Cubic{{block.uniform, 0, 0, 0}}, Cubic{}, begin, end);
+          return !collector.isDark();
+        }
+        return walkCells(block, origin, ray, begin, end, [&](const glm::ivec3& cell, double enter, double leave) {
+          ++cells;
+          const glm::dvec3 corner = origin + glm::dvec3(cell);
+          const glm::dvec3 from = ray.at(enter) - corner, to = ray.at(leave) - corner;
+          Cubic gradient;
+          if (block.gradients) gradient = TrilinearCell(block.gradients, cell).along(from, to);
+          collector.add(TrilinearCell(block.values, cell).along(from, to), gradient, enter, leave);
+          return !collector.isDark();
+        });
+      });
+  return collector.isDark() ? 0 : collector.transmittance();
+}
+
+}  // namespace umbrick

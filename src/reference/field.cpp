@@ -1,0 +1,284 @@
+#include "reference/field.h"
+
+#include <openvdb/tools/Dense.h>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <span>
+#include <string_view>
+#include <unordered_map>
+
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace {
+using openvdb::Coord;
+using openvdb::CoordBBox;
+using Leaf = openvdb::FloatTree::LeafNodeType;
+constexpr int kVoxels = FieldBlock::kVoxels, kCells = FieldBlock::kCells;
+constexpr std::size_t kBlockSize = static_cast<std::size_t>(kVoxels) * kVoxels * kVoxels;
+
+// What one thread has seen of the tree.
+struct Seen {
+  CoordBBox extent;
+  std::uint64_t nonFinite = 0;
+};
+
+// Calls visit(value, active, box) for the tiles above leaf level.
+template <class Visit>
+void forEachTile(const openvdb::FloatTree& tree, const Visit& visit) {
+  auto tile = tree.cbeginValueAll();
+  tile.setMaxDepth(tile.getLeafDepth() - 1);
+  for (; tile; ++tile) visit(*tile, tile.isValueOn(), tile.getBoundingBox());
+}
+
+// The blocks that read one of the voxels in `box`, up to `reach` voxels before the block.
+CoordBBox blocksOf(const CoordBBox& box, int reach) {
+  const Coord &a = box.min(), &b = box.max();
+  const auto low = [&](int x) { return static_cast<int>((std::int64_t(x) - kCells - reach + kCells - 1) >> 3); };
+  const auto high = [&](int x) { return static_cast<int>((std::int64_t(x) + reach) >> 3); };
+  return {Coord(low(a.x()), low(a.y()), low(a.z())), Coord(high(b.x()), high(b.y()), high(b.z()))};
+}
+
+// Voxels of one block with `margin` on each side, x fastest; not finite ones are the background.
+class BlockReader {
+ public:
+  BlockReader(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, float background, bool gradients)
+      : tree_(tree),
+        covariant_(glm::transpose(glm::inverse(glm::dmat3(indexToWorld)))),
+        background_(background),
+        gradients_(gradients) {}
+
+  // values: kBlockSize floats, behind them as many gradients if there are any.
+  void read(const Coord& block, float* values) {
+    const int margin = gradients_ ? 1 : 0, edge = kVoxels + 2 * margin;
+    const Coord first = Coord(block.x() * kCells, block.y() * kCells, block.z() * kCells).offsetBy(-margin);
+    scratch_.resize(static_cast<std::size_t>(edge) * edge * edge);
+    openvdb::tools::Dense<float, openvdb::tools::LayoutXYZ> dense(CoordBBox::createCube(first, edge), scratch_.data());
+    openvdb::tools::copyToDense(tree_, dense, true);
+    for (float& value : scratch_)
+      if (!std::isfinite(value)) value = background_;
+    for (int z = 0; z < kVoxels; ++z)
+      for (int y = 0; y < kVoxels; ++y)
+        for (int x = 0; x < kVoxels; ++x) {
+          const std::ptrdiff_t at = ((z + margin) * edge + y + margin) * edge + x + margin;
+          const auto to = static_cast<std::size_t>((z * kVoxels + y) * kVoxels + x);
+          values[to] = scratch_[static_cast<std::size_t>(at)];
+          if (gradients_) values[kBlockSize + to] = magnitude(scratch_.data() + at, edge);
+        }
+  }
+
+ private:
+  // Central differences per voxel, turned into a gradient per world unit.
+  float magnitude(const float* v, std::ptrdiff_t edge) const {
+    const auto difference = [&](std::ptrdiff_t stride) { return (double(v[stride]) - double(v[-stride])) / 2; };
+    const double size = glm::length(covariant_ * glm::dvec3(difference(1), difference(edge), difference(edge * edge)));
+    return static_cast<float>(std::min<double>(size, std::numeric_limits<float>::max()));
+  }
+
+  const openvdb::FloatTree& tree_;
+  glm::dmat3 covariant_;
+  float background_;
+  bool gradients_;
+  std::vector<float> scratch_;
+};
+
+Range rangeOf(const float* values, std::size_t count) {
+  const auto [low, high] = std::minmax_element(values, values + count);
+  return {*low, *high};
+}
+
+Range rangeOfCell(const float* values, int x, int y, int z) {
+  Range range;
+  for (int corner = 0; corner < 8; ++corner)
+    range.include(values[((z + (corner >> 2)) * kVoxels + y + (corner >> 1 & 1)) * kVoxels + x + (corner & 1)]);
+  return range;
+}
+
+// Marks the cells that are not transparent and bounds sigma_t. False when there is no such cell.
+bool survey(FieldBlock& block, const TransferFunction& transfer, bool skipEmpty) {
+  const auto gradientsOf = [&](const auto& rangeOfPart) {
+    return block.gradients ? rangeOfPart(block.gradients) : Range{0, 0};
+  };
+  const Range all = rangeOf(block.values, kBlockSize);
+  const Range allGradients = gradientsOf([](const float* g) { return rangeOf(g, kBlockSize); });
+  block.sigma_maj = transfer.majorant(all, allGradients);
+  if (!skipEmpty) {
+    block.visible.fill(~std::uint64_t(0));
+    return true;
+  }
+  if (transfer.isTransparent(all, allGradients)) return false;
+  for (int z = 0; z < kCells; ++z)
+    for (int y = 0; y < kCells; ++y)
+      for (int x = 0; x < kCells; ++x) {
+        const auto cell = [&](const float* v) { return rangeOfCell(v, x, y, z); };
+        const bool seen = !transfer.isTransparent(cell(block.values), gradientsOf(cell));
+        block.visible[static_cast<std::size_t>(z)] |= std::uint64_t(seen) << (8 * y + x);
+      }
+  return std::any_of(block.visible.begin(), block.visible.end(), [](std::uint64_t word) { return word != 0; });
+}
+
+}  // namespace
+
+TrilinearCell::TrilinearCell(const float* block, const glm::ivec3& cell) {
+  const float* v = block + (cell.z * kVoxels + cell.y) * kVoxels + cell.x;
+  constexpr int Y = kVoxels, Z = kVoxels * kVoxels;
+  const double v000 = v[0], v100 = v[1], v010 = v[Y], v110 = v[Y + 1];
+  const double v001 = v[Z], v101 = v[Z + 1], v011 = v[Z + Y], v111 = v[Z + Y + 1];
+  k0_ = v000;
+  kx_ = v100 - v000;
+  ky_ = v010 - v000;
+  kz_ = v001 - v000;
+  kxy_ = v110 - v100 - ky_;
+  kxz_ = v101 - v100 - kz_;
+  kyz_ = v011 - v010 - kz_;
+  kxyz_ = (v111 - v101 - v011 + v001) - kxy_;
+}
+
+Cubic TrilinearCell::along(const glm::dvec3& p, const glm::dvec3& to) const {
+  const glm::dvec3 d = to - p;
+  // Coefficients by powers of s of a product of three linear factors.
+  return {{(*this)(p),
+           kx_ * d.x + ky_ * d.y + kz_ * d.z + kxy_ * (p.x * d.y + p.y * d.x) + kxz_ * (p.x * d.z + p.z * d.x) +
+               kyz_ * (p.y * d.z + p.z * d.y) + kxyz_ * (d.x * p.y * p.z + p.x * d.y * p.z + p.x * p.y * d.z),
+           kxy_ * d.x * d.y + kxz_ * d.x * d.z + kyz_ * d.y * d.z +
+               kxyz_ * (d.x * d.y * p.z + d.x * p.y * d.z + p.x * d.y * d.z),
+           kxyz_ * d.x * d.y * d.z}};
+}
+
+Field::Field(const ScalarGrid& grid, const TransferFunction& transfer, bool skipEmpty) : skipEmpty_(skipEmpty) {
+  const openvdb::FloatTree& tree = grid.grid->tree();
+  background_ = std::isfinite(tree.background()) ? tree.background() : 0.0f;
+  findDomain(tree);
+  const int background = skipEmpty && transfer.isTransparent({background_, background_}, {0, 0})
+                             ? -1
+                             : uniformBlock(background_, transfer);
+  tree_ = std::make_unique<BlockTree>(background);
+  if (!domain_.empty()) addBlocks(tree, grid.indexToWorld(), transfer);
+}
+
+void Field::findDomain(const openvdb::FloatTree& tree) {
+  std::vector<const Leaf*> leaves;
+  tree.getNodes(leaves);
+  tbb::enumerable_thread_specific<Seen> seen;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 64), [&](const auto& range) {
+    Seen& mine = seen.local();
+    for (std::size_t i = range.begin(); i != range.end(); ++i)
+      for (auto voxel = leaves[i]->cbeginValueAll(); voxel; ++voxel) {
+        const bool finite = std::isfinite(*voxel);
+        if (voxel.isValueOn() && !finite) ++mine.nonFinite;
+        if (voxel.isValueOn() || (finite && *voxel != background_)) mine.extent.expand(voxel.getCoord());
+      }
+  });
+  Seen all;
+  forEachTile(tree, [&](float value, bool active, const CoordBBox& box) {
+    const bool finite = std::isfinite(value);
+    if (active && !finite) all.nonFinite += box.volume();
+    if (active || (finite && value != background_)) all.extent.expand(box);
+  });
+  for (const Seen& mine : seen) {
+    if (!mine.extent.empty()) all.extent.expand(mine.extent);
+    all.nonFinite += mine.nonFinite;
+  }
+  nonFinite_ = all.nonFinite;
+  if (all.extent.empty()) return;
+  // A block beyond the domain must have coordinates, too.
+  constexpr int margin = 2 * kCells, most = std::numeric_limits<int>::max() - margin;
+  for (int axis = 0; axis < 3; ++axis)
+    if (all.extent.min()[axis] < -most || all.extent.max()[axis] > most)
+      throw InvalidArgument(
+          "the grid reaches voxel " +
+          std::to_string(all.extent.min()[axis] < -most ? all.extent.min()[axis] : all.extent.max()[axis]) +
+          " along an axis, the reference takes -" + std::to_string(most) + " to " + std::to_string(most));
+  const Coord a = all.extent.min().offsetBy(-1), b = all.extent.max().offsetBy(1);
+  domain_ = {{a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}};
+}
+
+int Field::uniformBlock(float value, const TransferFunction& transfer) {
+  FieldBlock block;
+  block.uniform = value;
+  block.sigma_maj = transfer(value, 0).sigma_t;
+  block.visible.fill(~std::uint64_t(0));
+  if (!skipEmpty_) {
+    storage_.push_back(std::make_unique<float[]>(2 * kBlockSize));
+    std::fill_n(storage_.back().get(), kBlockSize, value);
+    block.values = storage_.back().get();
+    if (transfer.is2d()) block.gradients = block.values + kBlockSize;
+  }
+  blocks_.push_back(block);
+  return static_cast<int>(blocks_.size()) - 1;
+}
+
+void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld,
+                      const TransferFunction& transfer) {
+  const bool gradients = transfer.is2d();
+  const int reach = gradients ? 1 : 0;
+  // Tiles first: all blocks inside one are alike, those at its faces are looked at one by one below.
+  std::set<Coord> borders;
+  std::map<float, int> uniform;
+  forEachTile(tree, [&](float value, bool, const CoordBBox& box) {
+    if (!std::isfinite(value) || value == background_) return;
+    const CoordBBox touched = blocksOf(box, reach);
+    const auto low = [&](int x) { return (x + reach + kCells - 1) >> 3; };
+    const auto high = [&](int x) { return (x - reach - kCells) >> 3; };
+    const CoordBBox inner(Coord(low(box.min().x()), low(box.min().y()), low(box.min().z())),
+                          Coord(high(box.max().x()), high(box.max().y()), high(box.max().z())));
+    if (!inner.empty()) {
+      const bool transparent = skipEmpty_ && transfer.isTransparent({value, value}, {0, 0});
+      if (!uniform.count(value)) uniform[value] = transparent ? -1 : uniformBlock(value, transfer);
+      tree_->fill(inner, uniform[value], true);
+    }
+    for (auto block = touched.begin(); block != touched.end(); ++block)
+      if (inner.empty() || !inner.isInside(*block)) borders.insert(*block);
+  });
+  std::set<Coord> wanted = borders;
+  std::vector<const Leaf*> leaves;
+  tree.getNodes(leaves);
+  for (const Leaf* leaf : leaves) {
+    const CoordBBox touched = blocksOf(leaf->getNodeBoundingBox(), reach);
+    for (auto block = touched.begin(); block != touched.end(); ++block) wanted.insert(*block);
+  }
+  // Blocks at the faces of tiles look alike: each look is kept once. In parts, so that few are held at a time.
+  std::unordered_map<std::string_view, int> looks;
+  const std::size_t size = kBlockSize * (gradients ? 2 : 1);
+  const std::vector<Coord> all(wanted.begin(), wanted.end());
+  constexpr std::size_t part = 16384;
+  for (std::size_t first = 0; first < all.size(); first += part) {
+    const std::span<const Coord> coords = std::span(all).subspan(first, std::min(part, all.size() - first));
+    std::vector<FieldBlock> found(coords.size());
+    std::vector<std::unique_ptr<float[]>> voxels(coords.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, coords.size(), 16), [&](const auto& range) {
+      BlockReader reader(tree, indexToWorld, background_, gradients);
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        if (!voxels[i]) voxels[i] = std::make_unique<float[]>(size);
+        reader.read(coords[i], voxels[i].get());
+        found[i].values = voxels[i].get();
+        if (gradients) found[i].gradients = voxels[i].get() + kBlockSize;
+        if (!survey(found[i], transfer, skipEmpty_)) voxels[i].reset();
+      }
+    });
+    for (std::size_t i = 0; i < coords.size(); ++i) {
+      int index = -1;
+      if (voxels[i]) {
+        ++denseBlocks_;
+        index = static_cast<int>(blocks_.size());
+        if (borders.count(coords[i])) {
+          const std::string_view look(reinterpret_cast<const char*>(voxels[i].get()), size * sizeof(float));
+          index = looks.try_emplace(look, index).first->second;
+        }
+        if (index == static_cast<int>(blocks_.size())) {
+          blocks_.push_back(found[i]);
+          storage_.push_back(std::move(voxels[i]));
+        }
+      }
+      // What is transparent anyway needs no node.
+      if (index >= 0 || tree_->getValue(coords[i]) >= 0) tree_->setValueOn(coords[i], index);
+    }
+  }
+}
+
+}  // namespace umbrick

@@ -1,0 +1,153 @@
+// The voxels that a transfer function makes visible, in blocks of 8 x 8 x 8 cells, found by a tree.
+#pragma once
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "reference/convex_region.h"
+#include "reference/cubic.h"
+#include "umbrick/core/range.h"
+#include "umbrick/grid/scalar_grid.h"
+#include "umbrick/optics/transfer_function.h"
+
+namespace umbrick {
+
+/// Cells origin to origin + 7 along each axis; the cell at i is the space between voxels i and i + 1.
+struct FieldBlock {
+  static constexpr int kCells = 8, kVoxels = kCells + 1;
+
+  const float* values = nullptr;     // kVoxels^3, x fastest; none: every voxel is `uniform`
+  const float* gradients = nullptr;  // magnitudes at the same voxels, for a 2D function
+  float uniform = 0;
+  double sigma_maj = 0;                         // majorant, 1/world unit
+  std::array<std::uint64_t, kCells> visible{};  // word z, bit 8 y + x: cells that are not transparent
+
+  bool sees(const glm::ivec3& cell) const {
+    return visible[static_cast<std::size_t>(cell.z)] >> (8 * cell.y + cell.x) & 1;
+  }
+};
+
+/// A trilinear cell: its value at local coordinates in [0, 1]^3 and along a line.
+class TrilinearCell {
+ public:
+  TrilinearCell(const float* block, const glm::ivec3& cell);
+  double operator()(const glm::dvec3& p) const {
+    return k0_ + p.x * kx_ + p.y * (ky_ + p.x * kxy_) + p.z * (kz_ + p.x * kxz_ + p.y * (kyz_ + p.x * kxyz_));
+  }
+  /// Along from + s (to - from).
+  Cubic along(const glm::dvec3& from, const glm::dvec3& to) const;
+
+ private:
+  double k0_, kx_, ky_, kz_, kxy_, kxz_, kyz_, kxyz_;
+};
+
+class Field {
+ public:
+  using BlockTree = openvdb::Int32Tree;  // at block coordinates: index of a block, -1 where all is transparent
+  using Accessor = openvdb::tree::ValueAccessor<const BlockTree, false>;
+
+  /// @param skipEmpty  false: keep transparent blocks as well, and let rays visit each cell
+  Field(const ScalarGrid& grid, const TransferFunction& transfer, bool skipEmpty);
+
+  const IndexBox& domain() const { return domain_; }
+  Accessor accessor() const { return Accessor(*tree_); }
+  std::uint64_t nonFiniteVoxels() const { return nonFinite_; }
+  std::uint64_t blocks() const { return denseBlocks_; }
+  const FieldBlock& block(int index) const { return blocks_[static_cast<std::size_t>(index)]; }
+
+  /// Calls visit(const FieldBlock&, origin, begin, end) for the blocks that the ray meets from `begin` to `end`, in
+  /// order, until it returns false. Transparent nodes of the tree are passed in one step each, and so is a node all of
+  /// whose cells are alike.
+  template <class Visit>
+  void walkBlocks(Accessor& accessor, const IndexRay& ray, const Interval& part, const Visit& visit) const;
+
+ private:
+  void findDomain(const openvdb::FloatTree& tree);
+  void addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, const TransferFunction& transfer);
+  int uniformBlock(float value, const TransferFunction& transfer);
+
+  bool skipEmpty_;
+  float background_ = 0;
+  IndexBox domain_;
+  std::uint64_t nonFinite_ = 0, denseBlocks_ = 0;
+  std::vector<FieldBlock> blocks_;
+  std::vector<std::unique_ptr<float[]>> storage_;
+  std::unique_ptr<BlockTree> tree_;
+};
+
+/// Where a ray leaves the box [low, high] that it is in.
+inline double exitOf(const IndexRay& ray, const glm::dvec3& low, const glm::dvec3& high) {
+  double exit = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double d = ray.direction[axis];
+    if (d != 0) exit = std::min(exit, ((d > 0 ? high[axis] : low[axis]) - ray.origin[axis]) / d);
+  }
+  return exit;
+}
+
+/// A step along the ray that is nothing to the field and yet leads off a face: 1e-7 voxels, or more where coordinates
+/// are so large that double precision has no such step.
+inline double nudgeOf(const IndexRay& ray, const glm::dvec3& at) {
+  const auto largest = [](const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+  return std::max(1e-7, 0x1p-48 * largest(at)) / largest(ray.direction);
+}
+
+template <class Visit>
+void Field::walkBlocks(Accessor& accessor, const IndexRay& ray, const Interval& part, const Visit& visit) const {
+  double t = part.begin;
+  while (t < part.end) {
+    const double nudge = nudgeOf(ray, ray.at(t));
+    const glm::dvec3 p = glm::floor(ray.at(t + nudge) / double(FieldBlock::kCells));
+    const openvdb::Coord at(static_cast<int>(p.x), static_cast<int>(p.y), static_cast<int>(p.z));
+    const int index = accessor.getValue(at);
+    const FieldBlock* found = index < 0 ? nullptr : &blocks_[static_cast<std::size_t>(index)];
+    // Tiles are constant: the ray leaves them at once. Blocks with voxels stand at the lowest level.
+    std::int64_t edge = 1;
+    if (skipEmpty_ && (!found || !found->values)) {
+      constexpr std::int64_t edges[]{4096, 4096, 128, 8, 1};
+      edge = edges[accessor.getValueDepth(at) + 1];
+    }
+    const auto lowOf = [&](int x) { return static_cast<double>(std::int64_t(x) & ~(edge - 1)) * FieldBlock::kCells; };
+    const glm::dvec3 low(lowOf(at.x()), lowOf(at.y()), lowOf(at.z()));
+    const double exit = exitOf(ray, low, low + static_cast<double>(edge * FieldBlock::kCells));
+    const double next = std::min(part.end, std::max(exit, t + nudge));
+    if (found && !visit(*found, low, t, next)) return;
+    t = next;
+  }
+}
+
+/// Calls visit(cell, begin, end) for the cells of a block, which has voxels, from `begin` to `end` of the ray, in
+/// order, until it returns false.
+template <class Visit>
+bool walkCells(const FieldBlock& block, const glm::dvec3& origin, const IndexRay& ray, double begin, double end,
+               const Visit& visit) {
+  const glm::dvec3 start = ray.at(begin + nudgeOf(ray, ray.at(begin))) - origin;
+  glm::ivec3 cell, step(0);
+  glm::dvec3 next(std::numeric_limits<double>::infinity()), width(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    cell[axis] = std::clamp(static_cast<int>(std::floor(start[axis])), 0, FieldBlock::kCells - 1);
+    const double d = ray.direction[axis];
+    if (d == 0) continue;
+    step[axis] = d > 0 ? 1 : -1;
+    width[axis] = std::abs(1 / d);
+    next[axis] = (origin[axis] + cell[axis] + (d > 0) - ray.origin[axis]) / d;
+  }
+  for (double t = begin; t < end;) {
+    const int axis = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
+    const double leave = std::min(next[axis], end);
+    if (leave > t && block.sees(cell) && !visit(cell, t, leave)) return false;
+    t = std::max(t, leave);
+    cell[axis] += step[axis];
+    if (cell[axis] < 0 || cell[axis] >= FieldBlock::kCells) return true;
+    next[axis] += width[axis];
+  }
+  return true;
+}
+
+}  // namespace umbrick

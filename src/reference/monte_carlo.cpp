@@ -1,0 +1,135 @@
+#include "reference/monte_carlo.h"
+
+#include <array>
+#include <cmath>
+
+namespace umbrick {
+namespace {
+
+Medium mediumAt(const FieldBlock& block, const glm::dvec3& local, const TransferFunction& transfer) {
+  if (!block.values) return transfer(block.uniform, 0);
+  const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(local)), glm::ivec3(0), glm::ivec3(FieldBlock::kCells - 1));
+  if (!block.sees(cell)) return {};
+  const glm::dvec3 inside = glm::clamp(local - glm::dvec3(cell), glm::dvec3(0), glm::dvec3(1));
+  const double gradient = block.gradients ? TrilinearCell(block.gradients, cell)(inside) : 0;
+  return transfer(TrilinearCell(block.values, cell)(inside), gradient);
+}
+
+// Mean and squared deviations as numbers come in. Welford 1962.
+class RunningMoments {
+ public:
+  void add(const std::array<double, 6>& x) {
+    ++count_;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double change = x[i] - mean_[i];
+      mean_[i] += change / count_;
+      squares_[i] += change * (x[i] - mean_[i]);
+    }
+  }
+  double mean(std::size_t i) const { return mean_[i]; }
+  /// Of the mean.
+  double variance(std::size_t i) const { return count_ < 2 ? 0 : squares_[i] / (count_ - 1.0) / count_; }
+
+ private:
+  int count_ = 0;
+  std::array<double, 6> mean_{}, squares_{};
+};
+
+}  // namespace
+
+// Calls visit(t, medium, sigma_maj) at tentative collisions, whose density is the majorant of each block, until it
+// returns false.
+template <class Visit>
+void MonteCarloPixel::trackBlocks(const IndexRay& ray, const Interval& part, Random& random, const Visit& visit) {
+  double tau = -std::log(random.uniform());  // to the next collision, in units of the majorants
+  space_.field.walkBlocks(
+      accessor_, ray, part, [&](const FieldBlock& block, const glm::dvec3& origin, double begin, double end) {
+        ++counts_.cells;
+        double t = begin;
+        while (tau < block.sigma_maj * (end - t)) {
+          t += tau / block.sigma_maj;
+          tau = -std::log(random.uniform());
+          ++counts_.samples;
+          if (!visit(t, mediumAt(block, ray.at(t) - origin, space_.classifier.transfer()), block.sigma_maj))
+            return false;
+        }
+        tau -= block.sigma_maj * (end - t);
+        return true;
+      });
+}
+
+MonteCarloPixel::Collision MonteCarloPixel::collide(const IndexRay& ray, const Interval& part, Random& random) {
+  Collision collision;
+  trackBlocks(ray, part, random, [&](double t, const Medium& medium, double sigma_maj) {
+    if (random.uniform() * sigma_maj >= medium.sigma_t) return true;
+    collision = {true, t, medium};
+    return false;
+  });
+  return collision;
+}
+
+double MonteCarloPixel::estimateVisibility(const glm::dvec3& point, const glm::dvec3& towardsEye, Random& random) {
+  const Scene& scene = space_.scene;
+  if (scene.model == Model::emission) return 1;
+  const double aperture = scene.model == Model::ambient ? 3.14159265358979323846 : scene.occlusion.aperture;
+  const double u = random.uniform(), v = random.uniform();
+  const IndexRay light{point, space_.rays.toIndex(sampleCone(towardsEye, aperture, u, v))};
+  ++counts_.lightRays;
+  const Interval part = space_.region.clip(light, 0);
+  double transmittance = 1;
+  if (part.empty()) return transmittance;
+  trackBlocks(light, part, random, [&](double, const Medium& medium, double sigma_maj) {
+    transmittance *= 1 - medium.sigma_t / sigma_maj;
+    // Russian roulette: what is nearly dark goes on only now and then, and then counts for more.
+    if (transmittance < 0.1) {
+      if (random.uniform() >= 10 * transmittance) {
+        transmittance = 0;
+        return false;
+      }
+      transmittance = 0.1;
+    }
+    return true;
+  });
+  return transmittance;
+}
+
+PixelResult MonteCarloPixel::integrate(int x, int y) {
+  const EyeRays::Ray ray = space_.rays.through(x, y);
+  PixelResult result;
+  const Interval part = space_.region.clip(ray.index, 0);
+  if (part.empty()) return result;
+  const int width = space_.scene.camera.width;
+  Random random(options_.seed,
+                static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width) + static_cast<std::uint64_t>(x));
+  const glm::dvec3 towardsEye =
+      space_.scene.model == Model::coneRay ? -ray.direction : -cameraFrame(space_.scene.camera).forward;
+  RunningMoments moments;  // light, transmittance, visibility, depth
+  // An event that n paths did not see has a probability of the order of 1 / n: a pixel whose paths all agree is not
+  // known better than that.
+  const int least = options_.standardError > 0
+                        ? std::max(64, static_cast<int>(std::min(1e9, 1 / options_.standardError)))
+                        : options_.samples;
+  for (int path = 1; path <= options_.samples; ++path) {
+    ++counts_.eyeRays;
+    const Collision hit = collide(ray.index, part, random);
+    std::array<double, 6> found{0, 0, 0, 1, 0, 0};
+    if (hit.happened) {
+      const double visibility = estimateVisibility(ray.index.at(hit.t), towardsEye, random);
+      const glm::dvec3 light = visibility * hit.medium.albedo;
+      found = {light.x, light.y, light.z, 0, visibility, hit.t * ray.depthPerLength};
+    }
+    moments.add(found);
+    if (path < least || path % 16 != 0) continue;
+    double largest = 0;
+    for (std::size_t i = 0; i < 4; ++i) largest = std::max(largest, moments.variance(i));
+    if (options_.standardError > 0 && std::sqrt(largest) <= options_.standardError) break;
+  }
+  result.light = {moments.mean(0), moments.mean(1), moments.mean(2)};
+  result.transmittance = moments.mean(3);
+  result.visibility = moments.mean(4);
+  result.depth = moments.mean(5);
+  result.variance = {moments.variance(0), moments.variance(1), moments.variance(2), moments.variance(3)};
+  return result;
+}
+
+}  // namespace umbrick

@@ -1,0 +1,27 @@
+// What an integrator finds out about one pixel.
+#pragma once
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+namespace umbrick {
+
+struct PixelResult {
+  glm::dvec3 light{0};       // Int T sigma_s V ds, to be multiplied by L_a
+  double transmittance = 1;  // of the whole ray
+  double visibility = 0;     // V weighted by opacity
+  double depth = 0;          // weighted by opacity
+  glm::dvec4 variance{0};    // of the means: light, transmittance
+};
+
+struct RayCounts {
+  std::uint64_t eyeRays = 0, lightRays = 0, cells = 0, samples = 0;
+  void add(const RayCounts& other) {
+    eyeRays += other.eyeRays;
+    lightRays += other.lightRays;
+    cells += other.cells;
+    samples += other.samples;
+  }
+};
+
+}  // namespace umbrick

@@ -1,0 +1,164 @@
+#include "reference/quadrature.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace umbrick {
+namespace {
+constexpr double kDarkTau = 25;  // exp(-25) is 1.4e-11
+}
+
+double opticalDepth(const Field& field, Field::Accessor& accessor, const Classifier& classifier, const IndexRay& ray,
+                    const Interval& part, double limit, std::uint64_t& cells) {
+  double tau = 0;
+  field.walkBlocks(
+      accessor, ray, part, [&](const FieldBlock& block, const glm::dvec3& origin, double begin, double end) {
+        if (!block.values) {
+          ++cells;
+          tau += block.sigma_maj * (end - begin);
+          return tau < limit;
+        }
+        return walkCells(block, origin, ray, begin, end, [&](const glm::ivec3& cell, double enter, double leave) {
+          ++cells;
+          const glm::dvec3 corner = origin + glm::dvec3(cell);
+          const glm::dvec3 from = ray.at(enter) - corner, to = ray.at(leave) - corner;
+          Cubic gradient;
+          if (block.gradients) gradient = TrilinearCell(block.gradients, cell).along(from, to);
+          classifier.forEachPiece(
+              TrilinearCell(block.values, cell).along(from, to), gradient, [&](const CellPiece& piece) {
+                tau += (leave - enter) * std::max(0.0, piece.sigma_t.integral(piece.begin, piece.end));
+              });
+          return tau < limit;
+        });
+      });
+  return tau;
+}
+
+QuadraturePixel::QuadraturePixel(const ReferenceSpace& space, const ReferenceOptions& options, double step,
+                                 double voxelEdge)
+    : space_(space), options_(options), step_(step), voxelEdge_(voxelEdge), accessor_(space.field.accessor()) {
+  eyeOptions_.step = step;
+  // A part stands for the V at its centre: the error goes with the square of its optical depth.
+  eyeOptions_.largestTau = std::clamp(2 * std::sqrt(options.tolerance), 1e-3, 0.1);
+  eyeOptions_.darkest = std::min(1e-6, 0.01 * options.tolerance);
+  if (space.scene.model == Model::cone) aimLights(-cameraFrame(space.scene.camera).forward);
+  if (space.scene.model == Model::ambient) aimLights({0, 0, 1});
+}
+
+void QuadraturePixel::aimLights(const glm::dvec3& axis) {
+  const double aperture =
+      space_.scene.model == Model::ambient ? 3.14159265358979323846 : space_.scene.occlusion.aperture;
+  lights_.clear();
+  for (const auto& [direction, weight] : coneDirections(axis, aperture, options_.directions))
+    lights_.push_back({space_.rays.toIndex(direction), weight});
+}
+
+PixelResult QuadraturePixel::integrate(int x, int y) {
+  const EyeRays::Ray ray = space_.rays.through(x, y);
+  PixelResult result;
+  const Interval part = space_.region.clip(ray.index, 0);
+  if (part.empty()) return result;
+  ++counts_.eyeRays;
+  parts_.clear();
+  result.transmittance = collectScatterers(space_.field, accessor_, space_.classifier, ray.index, part, eyeOptions_,
+                                           parts_, counts_.cells);
+  if (parts_.empty()) return result;
+  if (space_.scene.model == Model::coneRay) aimLights(-ray.direction);
+  before_.assign(1, Scatterer{});
+  before_.reserve(parts_.size() + 1);
+  for (const Scatterer& p : parts_) {
+    const Scatterer& last = before_.back();
+    before_.push_back({last.t + p.alpha * p.t, last.alpha + p.alpha, last.light + p.light, 0});
+  }
+  result.depth = before_.back().t * ray.depthPerLength;
+  Sum sum;
+  if (space_.scene.model == Model::emission)
+    sum = {before_.back().light, before_.back().alpha};
+  else
+    sum = step_ > 0 ? integrateSteps(ray.index) : integrateAdaptive(ray.index);
+  result.light = sum.light;
+  result.visibility = sum.visibility;
+  return result;
+}
+
+double QuadraturePixel::visibilityAt(const IndexRay& ray, double t) {
+  ++counts_.samples;
+  IndexRay light{ray.at(t), {}};
+  double sum = 0;
+  for (const auto& [direction, weight] : lights_) {
+    ++counts_.lightRays;
+    light.direction = direction;
+    const Interval part = space_.region.clip(light, 0);
+    double tau = 0;
+    if (!part.empty())
+      tau = opticalDepth(space_.field, accessor_, space_.classifier, light, part, kDarkTau, counts_.cells);
+    sum += weight * std::exp(-tau);
+  }
+  return sum;
+}
+
+// V where the scattering of these parts has its centre.
+double QuadraturePixel::meanVisibility(const IndexRay& ray, std::size_t begin, std::size_t end) {
+  const Scatterer &first = before_[begin], &last = before_[end];
+  // Sums lose digits where there is little: the centre must stay inside.
+  const double centre = (last.t - first.t) / (last.alpha - first.alpha);
+  return visibilityAt(ray,
+                      std::isfinite(centre) ? std::clamp(centre, parts_[begin].t, parts_[end - 1].t) : parts_[begin].t);
+}
+
+QuadraturePixel::Sum QuadraturePixel::weigh(std::size_t begin, std::size_t end, double visibility) const {
+  const Scatterer &first = before_[begin], &last = before_[end];
+  return {visibility * (last.light - first.light), visibility * (last.alpha - first.alpha)};
+}
+
+// Halves by weight until the halves agree with the whole.
+QuadraturePixel::Sum QuadraturePixel::refine(const IndexRay& ray, std::size_t begin, std::size_t end, double visibility,
+                                             int depth) {
+  const Sum whole = weigh(begin, end, visibility);
+  if (end - begin < 2 || depth == 0) return whole;
+  const double middle = 0.5 * (before_[begin].alpha + before_[end].alpha);
+  const auto place = std::lower_bound(before_.begin() + static_cast<std::ptrdiff_t>(begin) + 1,
+                                      before_.begin() + static_cast<std::ptrdiff_t>(end) - 1, middle,
+                                      [](const Scatterer& a, double alpha) { return a.alpha < alpha; });
+  const auto split = static_cast<std::size_t>(place - before_.begin());
+  const double near = meanVisibility(ray, begin, split), far = meanVisibility(ray, split, end);
+  const Sum a = weigh(begin, split, near), b = weigh(split, end, far);
+  if (std::abs(a.visibility + b.visibility - whole.visibility) <= options_.tolerance)
+    return {a.light + b.light, a.visibility + b.visibility};
+  const Sum left = refine(ray, begin, split, near, depth - 1), right = refine(ray, split, end, far, depth - 1);
+  return {left.light + right.light, left.visibility + right.visibility};
+}
+
+// Begins with stretches short enough that the first comparison means something.
+QuadraturePixel::Sum QuadraturePixel::integrateAdaptive(const IndexRay& ray) {
+  Sum sum;
+  std::size_t begin = 0;
+  while (begin < parts_.size()) {
+    std::size_t end = begin + 1;
+    while (end < parts_.size() && before_[end + 1].alpha - before_[begin].alpha <= 0.25 &&
+           (parts_[end].t - parts_[begin].t <= 16 * voxelEdge_ ||
+            before_[end + 1].alpha - before_[begin].alpha <= options_.tolerance))
+      ++end;
+    const Sum part = refine(ray, begin, end, meanVisibility(ray, begin, end), 20);
+    sum.light += part.light;
+    sum.visibility += part.visibility;
+    begin = end;
+  }
+  return sum;
+}
+
+QuadraturePixel::Sum QuadraturePixel::integrateSteps(const IndexRay& ray) {
+  Sum sum;
+  for (std::size_t begin = 0; begin < parts_.size();) {
+    std::size_t end = begin + 1;
+    while (end < parts_.size() && parts_[end].stretch == parts_[begin].stretch) ++end;
+    const Sum part = weigh(begin, end, meanVisibility(ray, begin, end));
+    sum.light += part.light;
+    sum.visibility += part.visibility;
+    begin = end;
+  }
+  return sum;
+}
+
+}  // namespace umbrick

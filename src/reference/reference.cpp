@@ -1,0 +1,158 @@
+#include "umbrick/reference/reference.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <string>
+
+#include "reference/monte_carlo.h"
+#include "reference/quadrature.h"
+#include "umbrick/core/error.h"
+#include "umbrick/core/stopwatch.h"
+#include "umbrick/scene/resolve.h"
+
+namespace umbrick {
+namespace {
+
+constexpr int kTile = 8;  // pixels along the edge of what a thread takes at once
+
+template <class T>
+void checkAtLeast(const char* field, T value, T least) {
+  if (!(value >= least) || !std::isfinite(static_cast<double>(value)))
+    throw InvalidArgument(std::string(field) + " is " + std::to_string(value) + ", must be at least " +
+                          std::to_string(least));
+}
+
+void check(const ScalarGrid& grid, const Scene& scene, const ReferenceOptions& options) {
+  if (!grid.grid) throw InvalidArgument("reference: there is no grid");
+  if (!scene.transfer || scene.orbit || scene.sampling.spacingInVoxels)
+    throw InvalidArgument("reference: the scene is not resolved for its volume");
+  checkAtLeast("step", options.step, 0.0);
+  checkAtLeast("directions", options.directions, 1);
+  checkAtLeast("samples", options.samples, 2);
+  checkAtLeast("standard error", options.standardError, 0.0);
+  checkAtLeast("threads", options.threads, 0);
+  if (!(options.tolerance > 0 && options.tolerance <= 1))
+    throw InvalidArgument("tolerance is " + std::to_string(options.tolerance) + ", must be in (0, 1]");
+}
+
+ReferencePicture blankPicture(const Camera& camera) {
+  ReferencePicture picture;
+  picture.colour = Image(camera.width, camera.height, 4);
+  picture.visibility = Image(camera.width, camera.height, 1);
+  picture.depth = Image(camera.width, camera.height, 1);
+  picture.standardError = Image(camera.width, camera.height, 4);
+  return picture;
+}
+
+void store(const PixelResult& pixel, const Scene& scene, int x, int y, ReferencePicture& picture) {
+  const double alpha = 1 - pixel.transmittance;
+  const glm::dvec3 behind = scene.background ? *scene.background : glm::dvec3(0);
+  for (int i = 0; i < 3; ++i) {
+    picture.colour.at(x, y)[i] =
+        static_cast<float>(pixel.light[i] * scene.ambient[i] + pixel.transmittance * behind[i]);
+    // A path either scatters or gets through: the two never covary upwards, so this bounds the sum from above.
+    picture.standardError.at(x, y)[i] = static_cast<float>(
+        std::sqrt(pixel.variance[i] * scene.ambient[i] * scene.ambient[i] + pixel.variance[3] * behind[i] * behind[i]));
+  }
+  picture.colour.at(x, y)[3] = scene.background ? 1.0f : static_cast<float>(alpha);
+  picture.standardError.at(x, y)[3] = scene.background ? 0.0f : static_cast<float>(std::sqrt(pixel.variance[3]));
+  *picture.visibility.at(x, y) = static_cast<float>(pixel.visibility);
+  *picture.depth.at(x, y) =
+      alpha > 0 ? static_cast<float>(pixel.depth / alpha) : std::numeric_limits<float>::infinity();
+}
+
+// Tells how far the work is, from one thread at a time, and whether to go on.
+class Progress {
+ public:
+  Progress(const std::function<bool(double)>& report, std::size_t total) : report_(report), total_(total) {}
+  bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
+  void add() {
+    const std::size_t done = ++done_;
+    if (!report_) return;
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (lock.owns_lock() && !report_(static_cast<double>(done) / static_cast<double>(total_))) stopped_ = true;
+  }
+  std::size_t done() const { return done_; }
+
+ private:
+  const std::function<bool(double)>& report_;
+  std::size_t total_;
+  std::atomic<std::size_t> done_ = 0;
+  std::atomic<bool> stopped_ = false;
+  std::mutex mutex_;
+};
+
+// All pixels, each tile by one thread. What a pixel is does not depend on who takes it.
+template <class MakeIntegrator>
+RayCounts integrateAll(const Scene& scene, const ReferenceOptions& options, const MakeIntegrator& makeIntegrator,
+                       ReferencePicture& picture) {
+  const int width = scene.camera.width, height = scene.camera.height;
+  const int columns = (width + kTile - 1) / kTile, rows = (height + kTile - 1) / kTile;
+  const std::size_t tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  Progress progress(options.progress, tiles);
+  tbb::enumerable_thread_specific<decltype(makeIntegrator())> integrators(makeIntegrator);
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles, 1), [&](const auto& range) {
+      auto& integrator = integrators.local();
+      for (std::size_t tile = range.begin(); tile != range.end() && !progress.stopped(); ++tile) {
+        const int left = static_cast<int>(tile % static_cast<std::size_t>(columns)) * kTile;
+        const int bottom = static_cast<int>(tile / static_cast<std::size_t>(columns)) * kTile;
+        for (int y = bottom; y < std::min(bottom + kTile, height); ++y)
+          for (int x = left; x < std::min(left + kTile, width); ++x)
+            store(integrator.integrate(x, y), scene, x, y, picture);
+        progress.add();
+      }
+    });
+  });
+  picture.complete = progress.done() == tiles;
+  picture.stats.share = static_cast<double>(progress.done()) / static_cast<double>(tiles);
+  RayCounts counts;
+  for (const auto& integrator : integrators) counts.add(integrator.counts());
+  return counts;
+}
+
+}  // namespace
+
+ReferencePicture renderReference(const ScalarGrid& grid, const Scene& scene, const ReferenceOptions& options) {
+  check(grid, scene, options);
+  validateScene(scene);
+  ReferencePicture picture = blankPicture(scene.camera);
+  const glm::dmat4 indexToWorld = grid.indexToWorld();
+  const Stopwatch prepare;
+  const Field field(grid, *scene.transfer, options.skipEmpty);
+  picture.stats.fieldMs = prepare.elapsedMs();
+  picture.stats.nonFiniteVoxels = field.nonFiniteVoxels();
+  picture.stats.blocks = field.blocks();
+  const Classifier classifier(*scene.transfer);
+  const EyeRays rays(scene.camera, indexToWorld);
+  const bool behindEye = scene.model == Model::coneRay || scene.model == Model::ambient;
+  const ConvexRegion region(scene, field.domain(), indexToWorld, behindEye);
+  const ReferenceSpace space{field, classifier, rays, region, scene};
+  const Stopwatch integrate;
+  RayCounts counts;
+  if (options.integrator == Integrator::monteCarlo) {
+    counts = integrateAll(
+        scene, options, [&] { return MonteCarloPixel(space, options); }, picture);
+  } else {
+    const double edge = shortestVoxelEdge(indexToWorld);
+    counts = integrateAll(
+        scene, options, [&] { return QuadraturePixel(space, options, options.step * edge, edge); }, picture);
+  }
+  picture.stats.integrateMs = integrate.elapsedMs();
+  picture.stats.eyeRays = counts.eyeRays;
+  picture.stats.lightRays = counts.lightRays;
+  picture.stats.cells = counts.cells;
+  picture.stats.samples = counts.samples;
+  return picture;
+}
+
+}  // namespace umbrick
