@@ -22,6 +22,7 @@ struct UsageError : std::runtime_error {
 Command addCheck(CLI::App& app);
 Command addConvert(CLI::App& app);
 Command addInfo(CLI::App& app);
+Command addReference(CLI::App& app);
 Command addRender(CLI::App& app);
 
 }  // namespace umbrick::tools

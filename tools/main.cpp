@@ -18,10 +18,7 @@ int runProgram(int argc, char** argv) {
   app.failure_message(
       [](const CLI::App*, const CLI::Error& error) { return std::string("umbrick: ") + error.what() + "\n"; });
   const std::vector<Command> commands{
-      addConvert(app),
-      addInfo(app),
-      addRender(app),
-      addCheck(app),
+      addConvert(app), addInfo(app), addRender(app), addReference(app), addCheck(app),
   };
   try {
     app.parse(argc, argv);

@@ -1,0 +1,36 @@
+// How far a long job is, on a terminal, and whether the user wants it to stop.
+#pragma once
+#include <string>
+
+#include "umbrick/core/stopwatch.h"
+
+namespace umbrick::tools {
+
+/// While one lives, Ctrl-C (and SIGTERM) asks the job to stop instead of ending the program.
+class StopRequest {
+ public:
+  StopRequest();
+  ~StopRequest();
+  StopRequest(const StopRequest&) = delete;
+  StopRequest& operator=(const StopRequest&) = delete;
+  bool requested() const;
+};
+
+/// A bar with the time left on stderr; nothing when stderr is no terminal.
+class ProgressBar {
+ public:
+  explicit ProgressBar(std::string label);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+  /// @param share  done, in [0, 1]
+  void show(double share);
+
+ private:
+  std::string label_;
+  Stopwatch start_;
+  double shownMs_ = -1e9;
+  bool terminal_, drawn_ = false;
+};
+
+}  // namespace umbrick::tools

@@ -1,0 +1,147 @@
+// umbrick reference: the picture that a renderer should make, integrated on the CPU.
+#include "umbrick/reference/reference.h"
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "picture_output.h"
+#include "progress.h"
+#include "scene_options.h"
+#include "umbrick/core/pending_file.h"
+#include "umbrick/core/stopwatch.h"
+
+namespace umbrick::tools {
+namespace {
+
+struct ReferenceCommand {
+  std::shared_ptr<SceneOptions> scene;
+  std::shared_ptr<PictureOutput> output;
+  ReferenceOptions reference;
+  std::string integrator = "quadrature";
+  bool noSkipping = false;
+};
+
+std::string describe(const ReferenceOptions& options) {
+  nlohmann::ordered_json json;
+  if (options.integrator == Integrator::quadrature) {
+    json["integrator"] = "quadrature";
+    if (options.step > 0)
+      json["step_voxels"] = options.step;
+    else
+      json["tolerance"] = options.tolerance;
+    json["directions"] = options.directions;
+  } else {
+    json["integrator"] = "monte-carlo";
+    json["samples"] = options.samples;
+    if (options.standardError > 0) json["standard_error"] = options.standardError;
+    json["seed"] = options.seed;
+  }
+  return json.dump();
+}
+
+nlohmann::ordered_json printStats(const ReferenceCommand& command, const LoadedVolume& loaded,
+                                  const ReferencePicture& picture) {
+  const ReferenceStats& stats = picture.stats;
+  nlohmann::ordered_json json;
+  json["reference"] = nlohmann::ordered_json::parse(describe(command.reference));
+  json["size"] = {loaded.scene.camera.width, loaded.scene.camera.height};
+  json["complete"] = picture.complete;
+  json["share_done"] = stats.share;
+  json["time_ms"] = {{"load", loaded.loadMs}, {"field", stats.fieldMs}, {"integrate", stats.integrateMs}};
+  json["eye_rays"] = stats.eyeRays;
+  json["light_rays"] = stats.lightRays;
+  json["cells"] = stats.cells;
+  json["samples"] = stats.samples;
+  json["blocks"] = stats.blocks;
+  json["non_finite_voxels"] = stats.nonFiniteVoxels;
+  json["peak_memory_bytes"] = peakMemoryBytes();
+  json["scene"] = nlohmann::ordered_json::parse(printScene(loaded.scene));
+  return json;
+}
+
+int runReference(ReferenceCommand& command) {
+  const PictureOutput& output = *command.output;
+  checkOutputs(output);
+  const Scene scene = makeScene(*command.scene);
+  const LoadedVolume loaded = loadVolume(scene);
+  ReferenceOptions& options = command.reference;
+  options.integrator = command.integrator == "quadrature" ? Integrator::quadrature : Integrator::monteCarlo;
+  options.skipEmpty = !command.noSkipping;
+  const StopRequest stop;
+  ReferencePicture picture;
+  {
+    ProgressBar bar("reference");
+    options.progress = [&](double share) {
+      bar.show(share);
+      return !stop.requested();
+    };
+    picture = renderReference(loaded.grid, loaded.scene, options);
+  }
+  warnOfNonFinite(scene, picture.stats.nonFiniteVoxels);
+  std::vector<ImageLayer> layers{{"", picture.colour}, {"V", picture.visibility}, {"Z", picture.depth}};
+  if (options.integrator == Integrator::monteCarlo) layers.push_back({"standardError", picture.standardError});
+  writeOutputs(output, std::move(layers),
+               {{"umbrick.scene", printScene(loaded.scene)},
+                {"umbrick.renderer", "reference"},
+                {"umbrick.reference", describe(options)},
+                {"umbrick.complete", picture.complete ? "true" : "false"},
+                {"umbrick.version", UMBRICK_VERSION}});
+  if (!output.stats.empty()) writeTextFile(output.stats, printStats(command, loaded, picture).dump(2) + "\n");
+  if (picture.complete) return 0;
+  std::cerr << "umbrick: stopped; the picture holds " << static_cast<int>(100 * picture.stats.share)
+            << " % of its pixels, the rest is 0\n";
+  return 1;
+}
+
+}  // namespace
+
+Command addReference(CLI::App& app) {
+  const auto command = std::make_shared<ReferenceCommand>();
+  CLI::App* sub = app.add_subcommand("reference", "Integrate the same model on the CPU, as what to compare with.");
+  command->scene = addSceneOptions(*sub);
+  command->output = addPictureOutput(*sub, "float",
+                                     "V (visibility weighted by opacity), Z (mean depth, world units) and, with "
+                                     "monte-carlo, standardError");
+  ReferenceOptions& o = command->reference;
+  const std::string group = "Integration";
+  sub->add_option("--integrator", command->integrator, "quadrature (deterministic) or monte-carlo")
+      ->check(CLI::IsMember({"quadrature", "monte-carlo"}))
+      ->capture_default_str()
+      ->group(group);
+  sub->add_option("--tolerance", o.tolerance, "quadrature: of the radiance of a stretch of the ray, in (0, 1]")
+      ->check(CLI::Range(1e-9, 1.0))
+      ->capture_default_str()
+      ->group(group);
+  sub->add_option("--step", o.step,
+                  "quadrature: distance of the points where occlusion is computed, voxels (shortest "
+                  "edge); 0: as --tolerance asks for")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->group(group);
+  sub->add_option("--directions", o.directions, "quadrature: about so many over the cone or the sphere")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str()
+      ->group(group);
+  sub->add_option("--samples", o.samples, "monte-carlo: paths per pixel, at most")
+      ->check(CLI::Range(2, 1000000000))
+      ->capture_default_str()
+      ->group(group);
+  sub->add_option("--standard-error", o.standardError,
+                  "monte-carlo: a pixel is done at this estimated standard error; 0: takes all samples")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->group(group);
+  sub->add_option("--seed", o.seed, "monte-carlo: of the random numbers")->capture_default_str()->group(group);
+  sub->add_flag("--no-skipping", command->noSkipping, "visit empty space, too: slower, the same picture")->group(group);
+  sub->add_option("--threads", o.threads, "0: one per core")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str()
+      ->group(group);
+  return {sub, [command] { return runReference(*command); }};
+}
+
+}  // namespace umbrick::tools
