@@ -1,6 +1,7 @@
 // The transfer function along a cell of a ray, in pieces on which extinction is a polynomial.
 #pragma once
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "reference/cubic.h"
@@ -27,6 +28,14 @@ class Classifier {
 
   bool is2d() const { return transfer_.is2d(); }
   const TransferFunction& transfer() const { return transfer_; }
+
+  /// The stretch of a 1D function that all of these values lie in, if it is only one.
+  std::optional<std::size_t> onlyStretch(const Range& values) const {
+    if (is2d()) return std::nullopt;
+    const std::size_t index = locate(values.min);
+    return index == locate(values.max) ? std::optional(index) : std::nullopt;
+  }
+  const LinearStretch& stretch(std::size_t index) const { return stretches_[index]; }
 
   /// Calls visit(const CellPiece&) for the pieces of [0, 1] where the medium may scatter or absorb, in order.
   /// @param value,gradient  along the ray; gradient counts for a 2D function only
@@ -67,7 +76,9 @@ class Classifier {
     const std::size_t lowest = locate(std::min({c[0], b1, b2, b3}));
     if (lowest == values_.size() || std::max({c[0], b1, b2, b3}) < values_[lowest])
       return visitStretch(value, lowest, 0, 1, visit);
-    // Else between its turns it meets the points one after the other.
+    // Else between its turns it meets the points one after the other; ordered control points have no turn.
+    if ((c[0] <= b1 && b1 <= b2 && b2 <= b3) || (c[0] >= b1 && b1 >= b2 && b2 >= b3))
+      return forEachMonotonic(value, 0, 1, visit);
     std::array<double, 2> turns{};
     const int count = value.turns(turns);
     double begin = 0;

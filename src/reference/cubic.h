@@ -33,17 +33,18 @@ struct Cubic {
     if (count == 2 && places[0] > places[1]) std::swap(places[0], places[1]);
     return count;
   }
-  /// Where the cubic, monotonic on [a, b], takes a value that lies between those at the ends.
+  /// Where the cubic, monotonic on [a, b], takes a value that lies between those at the ends; to 1e-13. Newton's steps
+  /// from where the chord has it, inside a bracket that shrinks.
   double solve(double value, double a, double b) const {
-    const bool rising = (*this)(b) >= (*this)(a);
-    double s = 0.5 * (a + b);
-    for (int i = 0; i < 60 && b - a > 1e-15; ++i) {
+    const double fa = (*this)(a)-value, fb = (*this)(b)-value;
+    const bool rising = fb >= fa;
+    double s = fa != fb ? std::clamp(a + (b - a) * (fa / (fa - fb)), a, b) : a;
+    for (int i = 0; i < 60; ++i) {
       const double f = (*this)(s)-value;
       ((f < 0) == rising ? a : b) = s;
-      const double slope = c[1] + s * (2 * c[2] + 3 * s * c[3]);
-      const double newton = s - f / slope;
-      const double next = newton > a && newton < b ? newton : 0.5 * (a + b);
-      if (std::abs(next - s) < 1e-15) return next;
+      const double newton = s - f / (c[1] + s * (2 * c[2] + 3 * s * c[3]));
+      const double next = newton >= a && newton <= b ? newton : 0.5 * (a + b);
+      if (std::abs(next - s) < 1e-13) return next;
       s = next;
     }
     return s;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string_view>
@@ -99,45 +100,38 @@ Range rangeOfCell(const float* values, int x, int y, int z) {
   return range;
 }
 
-// Marks the cells that are not transparent and bounds sigma_t. False when there is no such cell.
-bool survey(FieldBlock& block, const TransferFunction& transfer, bool skipEmpty) {
+std::uint8_t kindOf(const Classifier& classifier, const Range& values) {
+  const std::optional<std::size_t> stretch = classifier.onlyStretch(values);
+  return stretch && *stretch + 1 < FieldBlock::kMixed ? static_cast<std::uint8_t>(*stretch + 1) : FieldBlock::kMixed;
+}
+
+// Tells what each cell is and bounds sigma_t. False when there is nothing to see.
+bool survey(FieldBlock& block, const Classifier& classifier, bool skipEmpty) {
+  const TransferFunction& transfer = classifier.transfer();
   const auto gradientsOf = [&](const auto& rangeOfPart) {
     return block.gradients ? rangeOfPart(block.gradients) : Range{0, 0};
   };
   const Range all = rangeOf(block.values, kBlockSize);
   const Range allGradients = gradientsOf([](const float* g) { return rangeOf(g, kBlockSize); });
   block.sigma_maj = transfer.majorant(all, allGradients);
-  if (!skipEmpty) {
-    block.visible.fill(~std::uint64_t(0));
-    return true;
-  }
-  if (transfer.isTransparent(all, allGradients)) return false;
+  if (skipEmpty && transfer.isTransparent(all, allGradients)) return false;
+  bool seen = false;
+  auto kind = block.kinds.begin();
   for (int z = 0; z < kCells; ++z)
     for (int y = 0; y < kCells; ++y)
-      for (int x = 0; x < kCells; ++x) {
+      for (int x = 0; x < kCells; ++x, ++kind) {
         const auto cell = [&](const float* v) { return rangeOfCell(v, x, y, z); };
-        const bool seen = !transfer.isTransparent(cell(block.values), gradientsOf(cell));
-        block.visible[static_cast<std::size_t>(z)] |= std::uint64_t(seen) << (8 * y + x);
+        const Range values = cell(block.values);
+        if (skipEmpty && transfer.isTransparent(values, gradientsOf(cell)))
+          *kind = FieldBlock::kTransparent;
+        else
+          *kind = kindOf(classifier, values);
+        seen = seen || *kind != FieldBlock::kTransparent;
       }
-  return std::any_of(block.visible.begin(), block.visible.end(), [](std::uint64_t word) { return word != 0; });
+  return seen;
 }
 
 }  // namespace
-
-TrilinearCell::TrilinearCell(const float* block, const glm::ivec3& cell) {
-  const float* v = block + (cell.z * kVoxels + cell.y) * kVoxels + cell.x;
-  constexpr int Y = kVoxels, Z = kVoxels * kVoxels;
-  const double v000 = v[0], v100 = v[1], v010 = v[Y], v110 = v[Y + 1];
-  const double v001 = v[Z], v101 = v[Z + 1], v011 = v[Z + Y], v111 = v[Z + Y + 1];
-  k0_ = v000;
-  kx_ = v100 - v000;
-  ky_ = v010 - v000;
-  kz_ = v001 - v000;
-  kxy_ = v110 - v100 - ky_;
-  kxz_ = v101 - v100 - kz_;
-  kyz_ = v011 - v010 - kz_;
-  kxyz_ = (v111 - v101 - v011 + v001) - kxy_;
-}
 
 Cubic TrilinearCell::along(const glm::dvec3& p, const glm::dvec3& to) const {
   const glm::dvec3 d = to - p;
@@ -150,7 +144,8 @@ Cubic TrilinearCell::along(const glm::dvec3& p, const glm::dvec3& to) const {
            kxyz_ * d.x * d.y * d.z}};
 }
 
-Field::Field(const ScalarGrid& grid, const TransferFunction& transfer, bool skipEmpty) : skipEmpty_(skipEmpty) {
+Field::Field(const ScalarGrid& grid, const Classifier& classifier, bool skipEmpty) : skipEmpty_(skipEmpty) {
+  const TransferFunction& transfer = classifier.transfer();
   const openvdb::FloatTree& tree = grid.grid->tree();
   background_ = std::isfinite(tree.background()) ? tree.background() : 0.0f;
   findDomain(tree);
@@ -158,7 +153,7 @@ Field::Field(const ScalarGrid& grid, const TransferFunction& transfer, bool skip
                              ? -1
                              : uniformBlock(background_, transfer);
   tree_ = std::make_unique<BlockTree>(background);
-  if (!domain_.empty()) addBlocks(tree, grid.indexToWorld(), transfer);
+  if (!domain_.empty()) addBlocks(tree, grid.indexToWorld(), classifier);
 }
 
 void Field::findDomain(const openvdb::FloatTree& tree) {
@@ -202,7 +197,7 @@ int Field::uniformBlock(float value, const TransferFunction& transfer) {
   FieldBlock block;
   block.uniform = value;
   block.sigma_maj = transfer(value, 0).sigma_t;
-  block.visible.fill(~std::uint64_t(0));
+  block.kinds.fill(FieldBlock::kMixed);
   if (!skipEmpty_) {
     storage_.push_back(std::make_unique<float[]>(2 * kBlockSize));
     std::fill_n(storage_.back().get(), kBlockSize, value);
@@ -213,8 +208,8 @@ int Field::uniformBlock(float value, const TransferFunction& transfer) {
   return static_cast<int>(blocks_.size()) - 1;
 }
 
-void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld,
-                      const TransferFunction& transfer) {
+void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, const Classifier& classifier) {
+  const TransferFunction& transfer = classifier.transfer();
   const bool gradients = transfer.is2d();
   const int reach = gradients ? 1 : 0;
   // Tiles first: all blocks inside one are alike, those at its faces are looked at one by one below.
@@ -258,7 +253,7 @@ void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToW
         reader.read(coords[i], voxels[i].get());
         found[i].values = voxels[i].get();
         if (gradients) found[i].gradients = voxels[i].get() + kBlockSize;
-        if (!survey(found[i], transfer, skipEmpty_)) voxels[i].reset();
+        if (!survey(found[i], classifier, skipEmpty_)) voxels[i].reset();
       }
     });
     for (std::size_t i = 0; i < coords.size(); ++i) {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "reference/classifier.h"
 #include "reference/convex_region.h"
 #include "reference/cubic.h"
 #include "umbrick/core/range.h"
@@ -25,12 +26,15 @@ struct FieldBlock {
   const float* values = nullptr;     // kVoxels^3, x fastest; none: every voxel is `uniform`
   const float* gradients = nullptr;  // magnitudes at the same voxels, for a 2D function
   float uniform = 0;
-  double sigma_maj = 0;                         // majorant, 1/world unit
-  std::array<std::uint64_t, kCells> visible{};  // word z, bit 8 y + x: cells that are not transparent
+  double sigma_maj = 0;  // majorant, 1/world unit
+  // By cell, x fastest: kTransparent, kMixed, or 1 + the stretch of a 1D function that all values of the cell lie in.
+  static constexpr std::uint8_t kTransparent = 0, kMixed = 255;
+  std::array<std::uint8_t, kCells * kCells * kCells> kinds{};
 
-  bool sees(const glm::ivec3& cell) const {
-    return visible[static_cast<std::size_t>(cell.z)] >> (8 * cell.y + cell.x) & 1;
+  std::uint8_t kind(const glm::ivec3& cell) const {
+    return kinds[static_cast<std::size_t>((cell.z * kCells + cell.y) * kCells + cell.x)];
   }
+  bool sees(const glm::ivec3& cell) const { return kind(cell) != kTransparent; }
 };
 
 /// A trilinear cell: its value at local coordinates in [0, 1]^3 and along a line.
@@ -42,10 +46,31 @@ class TrilinearCell {
   }
   /// Along from + s (to - from).
   Cubic along(const glm::dvec3& from, const glm::dvec3& to) const;
+  /// Of the values from `from` to `to`: two Gauss nodes are exact for a cubic.
+  double mean(const glm::dvec3& from, const glm::dvec3& to) const {
+    const glm::dvec3 middle = 0.5 * (from + to), offset = 0.28867513459481287 * (to - from);
+    return 0.5 * ((*this)(middle - offset) + (*this)(middle + offset));
+  }
 
  private:
   double k0_, kx_, ky_, kz_, kxy_, kxz_, kyz_, kxyz_;
 };
+
+inline TrilinearCell::TrilinearCell(const float* block, const glm::ivec3& cell) {
+  constexpr int kVoxels = FieldBlock::kVoxels;
+  const float* v = block + (cell.z * kVoxels + cell.y) * kVoxels + cell.x;
+  constexpr int Y = kVoxels, Z = kVoxels * kVoxels;
+  const double v000 = v[0], v100 = v[1], v010 = v[Y], v110 = v[Y + 1];
+  const double v001 = v[Z], v101 = v[Z + 1], v011 = v[Z + Y], v111 = v[Z + Y + 1];
+  k0_ = v000;
+  kx_ = v100 - v000;
+  ky_ = v010 - v000;
+  kz_ = v001 - v000;
+  kxy_ = v110 - v100 - ky_;
+  kxz_ = v101 - v100 - kz_;
+  kyz_ = v011 - v010 - kz_;
+  kxyz_ = (v111 - v101 - v011 + v001) - kxy_;
+}
 
 class Field {
  public:
@@ -53,7 +78,7 @@ class Field {
   using Accessor = openvdb::tree::ValueAccessor<const BlockTree, false>;
 
   /// @param skipEmpty  false: keep transparent blocks as well, and let rays visit each cell
-  Field(const ScalarGrid& grid, const TransferFunction& transfer, bool skipEmpty);
+  Field(const ScalarGrid& grid, const Classifier& classifier, bool skipEmpty);
 
   const IndexBox& domain() const { return domain_; }
   Accessor accessor() const { return Accessor(*tree_); }
@@ -69,7 +94,7 @@ class Field {
 
  private:
   void findDomain(const openvdb::FloatTree& tree);
-  void addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, const TransferFunction& transfer);
+  void addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, const Classifier& classifier);
   int uniformBlock(float value, const TransferFunction& transfer);
 
   bool skipEmpty_;

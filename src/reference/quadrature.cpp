@@ -23,6 +23,15 @@ double opticalDepth(const Field& field, Field::Accessor& accessor, const Classif
           ++cells;
           const glm::dvec3 corner = origin + glm::dvec3(cell);
           const glm::dvec3 from = ray.at(enter) - corner, to = ray.at(leave) - corner;
+          const std::uint8_t kind = block.kind(cell);
+          if (kind != FieldBlock::kMixed) {
+            const LinearStretch& stretch = classifier.stretch(kind - 1u);
+            double sigma_t = stretch.sigma_t;
+            if (stretch.sigmaSlope != 0)
+              sigma_t += stretch.sigmaSlope * (TrilinearCell(block.values, cell).mean(from, to) - stretch.origin);
+            tau += (leave - enter) * sigma_t;
+            return tau < limit;
+          }
           Cubic gradient;
           if (block.gradients) gradient = TrilinearCell(block.gradients, cell).along(from, to);
           classifier.forEachPiece(

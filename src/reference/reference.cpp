@@ -128,11 +128,11 @@ ReferencePicture renderReference(const ScalarGrid& grid, const Scene& scene, con
   ReferencePicture picture = blankPicture(scene.camera);
   const glm::dmat4 indexToWorld = grid.indexToWorld();
   const Stopwatch prepare;
-  const Field field(grid, *scene.transfer, options.skipEmpty);
+  const Classifier classifier(*scene.transfer);
+  const Field field(grid, classifier, options.skipEmpty);
   picture.stats.fieldMs = prepare.elapsedMs();
   picture.stats.nonFiniteVoxels = field.nonFiniteVoxels();
   picture.stats.blocks = field.blocks();
-  const Classifier classifier(*scene.transfer);
   const EyeRays rays(scene.camera, indexToWorld);
   const bool behindEye = scene.model == Model::coneRay || scene.model == Model::ambient;
   const ConvexRegion region(scene, field.domain(), indexToWorld, behindEye);
