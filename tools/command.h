@@ -25,5 +25,6 @@ Command addConvert(CLI::App& app);
 Command addInfo(CLI::App& app);
 Command addReference(CLI::App& app);
 Command addRender(CLI::App& app);
+Command addStudy(CLI::App& app);
 
 }  // namespace umbrick::tools

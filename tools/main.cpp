@@ -18,7 +18,7 @@ int runProgram(int argc, char** argv) {
   app.failure_message(
       [](const CLI::App*, const CLI::Error& error) { return std::string("umbrick: ") + error.what() + "\n"; });
   const std::vector<Command> commands{
-      addConvert(app), addInfo(app), addRender(app), addReference(app), addCompare(app), addCheck(app),
+      addConvert(app), addInfo(app), addRender(app), addReference(app), addCompare(app), addCheck(app), addStudy(app),
   };
   try {
     app.parse(argc, argv);

@@ -195,6 +195,7 @@ std::string JsonDocument::where(std::size_t offset) const {
          std::to_string(column);
 }
 
+bool JsonValue::isNull() const { return node().kind == JsonDocument::Kind::null; }
 bool JsonValue::isString() const { return node().kind == JsonDocument::Kind::string; }
 bool JsonValue::isArray() const { return node().kind == JsonDocument::Kind::array; }
 bool JsonValue::isObject() const { return node().kind == JsonDocument::Kind::object; }

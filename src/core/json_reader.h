@@ -52,6 +52,7 @@ class JsonDocument {
 /// found.
 class JsonValue {
  public:
+  bool isNull() const;
   bool isString() const;
   bool isArray() const;
   bool isObject() const;

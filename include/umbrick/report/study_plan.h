@@ -1,0 +1,109 @@
+// What a study measures: the methods, the values that are swept, and the list of cases that follows.
+#pragma once
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "umbrick/scene/scene.h"
+
+namespace umbrick {
+
+/// A way to compute a picture. One entry of studyMethods() is all that a study needs to know of it.
+struct StudyMethod {
+  std::string name;   // as on the command line: "dos"
+  std::string title;  // for readers: "dos, Algorithm 3"
+  Model model;        // that it approximates: emission or cone; the reference of this model is the truth
+  /// What makes it finer beside the slices; empty: nothing does.
+  struct Detail {
+    std::string name;     // "footprint": field and column name
+    std::string plural;   // "footprints": option of the study
+    std::string symbol;   // "n": in plots and names of cases
+    std::string meaning;  // "n x n samples over the cone's footprint": help text
+    int least = 1, most = 1;
+    std::vector<int> full, quick;  // values that are swept unless the user says others
+  } detail;
+  void (*apply)(int detail, Scene& scene);  // makes a scene of the model one of this method
+  std::string (*options)(int detail);       // the same as options of `umbrick render`
+  bool usual = true;                        // part of a study unless the user says otherwise
+};
+
+/// emission       slices, pixels that are opaque are shaded no more (as the scene says)
+/// emission-full  the same without that shortcut, the reference point of convergence
+/// dos            directional occlusion shading, Algorithm 3 of Schott et al. 2009
+/// dos-2          the same, Algorithm 2
+/// dos-two-pass   Algorithm 3 in two passes per slice
+const std::vector<StudyMethod>& studyMethods();
+/// @throw InvalidArgument  another name; lists those there are
+const StudyMethod& studyMethod(std::string_view name);
+
+/// Bits of the eye buffer and of the occlusion buffer, 16 or 32 each.
+struct BufferBits {
+  int eye = 32, occlusion = 32;
+  bool operator==(const BufferBits&) const = default;
+};
+
+/// The values that are swept. The order within a list does not matter.
+struct StudySettings {
+  std::vector<std::string> methods;                  // empty: the usual ones
+  std::vector<int> slices{64, 128, 256, 512, 1024};  // through the visible extent of the volume along the view axis
+  std::map<std::string, std::vector<int>> details;   // by name of the detail; one left out: as the method says
+  std::vector<BufferBits> bits{{32, 32}, {32, 16}, {16, 32}, {16, 16}};
+  std::vector<int> segments{1, 2, 4};  // of a slab along the ray
+  std::vector<int> sizes{128,
+                         256};  // height of picture, eye and occlusion buffer, pixels; the width follows the scene's
+  std::vector<double> thetas;   // rad; empty: the scene's and 80 degrees
+  int repeats = 7;              // timed pairs of baseline and case, at least
+  int directions = 256;         // of the references
+  double tolerance = 1e-3;      // of the references
+  bool operator==(const StudySettings&) const = default;
+};
+
+/// A small study, of minutes.
+StudySettings quickStudySettings();
+
+/// One picture that is timed and compared.
+struct StudyCase {
+  std::string method;
+  int slices = 0, segments = 1;
+  int detail = 0;   // footprint n, directions K, ...; 0 when the method has none
+  BufferBits bits;  // occlusion equals eye where there is no occlusion buffer
+  int size = 0;
+  double theta = 0;  // rad; 0 for emission
+  /// "dos-n3-N256-k1-e32o32-s256-t60"; also the name of its files.
+  std::string id() const;
+  bool operator==(const StudyCase&) const = default;
+};
+
+/// A picture of the reference.
+struct StudyReference {
+  Model model = Model::emission;
+  int size = 0;
+  double theta = 0;  // rad; 0 for emission and ambient
+  /// "cone-s256-t60"; also the name of its file.
+  std::string id() const;
+  bool operator==(const StudyReference&) const = default;
+};
+
+struct StudyPlan {
+  StudySettings settings;  // complete: every default written out, lists sorted
+  std::vector<StudyCase> cases;
+  std::vector<StudyReference> references;  // cases need them, or the model error at the base size
+  int baseSlices = 0, baseSegments = 1, baseSize = 0;
+  BufferBits baseBits;
+  double baseTheta = 0;
+  std::map<std::string, int> baseDetails;  // by name
+
+  StudyReference referenceOf(const StudyCase& one) const;
+};
+
+/// The cases of a study: not all combinations, which would be thousands, but around a base point
+///   slices x detail      at the base of everything else
+///   bits, segments, sizes, thetas    each alone, at the base of everything else
+/// for every method. The base is the middle of the slices and of the detail (the upper one of two), the most bits, the
+/// fewest segments, the largest size, and the scene's theta if it is swept, else the smallest.
+/// @param aperture  theta of the scene, rad
+/// @throw InvalidArgument  an unknown method, an empty list, a value out of range or given twice
+StudyPlan planStudy(const StudySettings& settings, double aperture);
+
+}  // namespace umbrick

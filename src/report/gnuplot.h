@@ -1,0 +1,14 @@
+// The program that draws the plots.
+#pragma once
+#include <filesystem>
+#include <string>
+
+namespace umbrick {
+
+/// "gnuplot 5.4 patchlevel 4". @throw IoError  it cannot be run, or draws no SVG
+std::string gnuplotVersion();
+
+/// Runs a script in its folder. @throw IoError  names the script and the last line that gnuplot said
+void runGnuplot(const std::filesystem::path& script);
+
+}  // namespace umbrick

@@ -1,0 +1,34 @@
+// index.html: the study for a reader, in one file.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "report/page_parts.h"
+#include "report/study_findings.h"
+#include "report/study_folder.h"
+#include "report/study_record.h"
+
+namespace umbrick {
+
+/// Draws the plots, then writes the page with all that it shows inside. An unfinished study says so.
+/// @throw IoError
+void writePage(const StudyRecord& record, const StudyFolder& folder);
+
+// --- sections, each a piece of HTML; empty where there is nothing to tell ---
+
+/// A case in words: "dos, Algorithm 3, n = 3, 256 slices"; what is at the base is left out, slices and detail are not.
+std::string describeCase(const StudyCase& what, const StudyPlan& plan);
+
+std::string frontTable(const StudyRecord& record, const ComparableCases& group);
+std::string aroundBaseTable(const StudyRecord& record);
+std::string modelErrorTable(const StudyRecord& record);
+std::string caseTable(const StudyRecord& record, const std::vector<ComparableCases>& groups);
+std::string referenceTable(const StudyRecord& record);
+
+/// Reference, case and error of the front of the base groups; and cone, ambient and error of the models.
+std::string casePictures(const StudyRecord& record, const StudyFolder& folder, const ComparableCases& group);
+std::string modelPictures(const StudyRecord& record, const StudyFolder& folder);
+
+std::string commandList(const StudyRecord& record);
+
+}  // namespace umbrick

@@ -1,0 +1,38 @@
+// Pieces of an HTML page that needs no other file. What they return is well-formed as XML, too.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace umbrick {
+
+/// For element text and attribute values.
+std::string escapeHtml(std::string_view text);
+/// Three significant digits; "-" for what is not finite.
+std::string printShort(double number);
+
+std::string base64(std::string_view bytes);
+/// An <img> that holds the PNG, or the word "missing" when there is no such file.
+std::string embeddedPicture(const std::filesystem::path& png, const std::string& alt);
+
+/// gnuplot's SVG as an element of a page: without prolog, its identifiers made unique by a prefix.
+std::string inlineSvg(std::string_view svg, const std::string& prefix);
+
+struct HtmlTable {
+  struct Cell {
+    std::string html;
+    std::string sortKey = {};  // empty: the text itself
+    bool text = false;         // left-aligned
+  };
+  std::vector<Cell> head;
+  struct Row {
+    std::vector<Cell> cells;
+    std::string kind = {};  // class of the row
+  };
+  std::vector<Row> rows;
+  bool sortable = false;
+};
+std::string printHtml(const HtmlTable& table);
+
+}  // namespace umbrick

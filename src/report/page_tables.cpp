@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <set>
+
+#include "core/json_writer.h"
+#include "report/case_scene.h"
+#include "report/page.h"
+
+namespace umbrick {
+namespace {
+
+using Cell = HtmlTable::Cell;
+
+Cell text(const std::string& html) { return {html, "", true}; }
+Cell words(const std::string& plain) { return text(escapeHtml(plain)); }
+Cell number(double value) { return {printShort(value), jsonNumber(std::isfinite(value) ? value : 1e300), false}; }
+Cell number(const std::optional<double>& value) { return value ? number(*value) : Cell{"-", "1e300", false}; }
+
+// "2.31", and on hovering the spread.
+Cell timeCell(const Spread& time) {
+  return {"<span title=\"quartiles " + printShort(time.lowerQuartile) + " to " + printShort(time.upperQuartile) +
+              ", extremes " + printShort(time.least) + " to " + printShort(time.most) + "\">" +
+              printShort(time.median) + "</span>",
+          jsonNumber(time.median), false};
+}
+
+std::vector<Cell> heads(const std::vector<std::string>& names, std::size_t texts) {
+  std::vector<Cell> cells;
+  for (const std::string& name : names) cells.push_back({name, "", cells.size() < texts});
+  return cells;
+}
+
+void appendError(std::vector<Cell>& cells, const ErrorMeasures& error) {
+  cells.insert(cells.end(), {number(error.rmse), number(error.p999), number(error.maxError), number(error.relMse),
+                             number(error.ssim), number(error.flip)});
+}
+
+const std::vector<std::string> kErrorHeads{"RMSE", "99.9 %", "max", "relMSE", "SSIM", "FLIP"};
+
+std::vector<std::string> withErrorHeads(std::vector<std::string> names) {
+  names.insert(names.end(), kErrorHeads.begin(), kErrorHeads.end());
+  return names;
+}
+
+std::string linked(const StudyCase& what, const StudyPlan& plan) {
+  return "<a href=\"#c-" + what.id() + "\">" + escapeHtml(describeCase(what, plan)) + "</a>";
+}
+
+// One field away from the base, or the base itself: what is varied and its value.
+struct Variation {
+  std::string field, value;
+};
+std::vector<Variation> variationsOf(const StudyCase& what, const StudyPlan& plan) {
+  std::vector<Variation> all;
+  const StudyMethod& method = studyMethod(what.method);
+  const bool occlusion = method.model != Model::emission;
+  if (what.slices != plan.baseSlices) all.push_back({"slices", std::to_string(what.slices)});
+  if (!method.detail.name.empty() && what.detail != plan.baseDetails.at(method.detail.name))
+    all.push_back({method.detail.name, method.detail.symbol + " = " + std::to_string(what.detail)});
+  if (what.segments != plan.baseSegments) all.push_back({"segments per slab", std::to_string(what.segments)});
+  if (what.bits.eye != plan.baseBits.eye || (occlusion && what.bits.occlusion != plan.baseBits.occlusion))
+    all.push_back({"bits", occlusion ? std::to_string(what.bits.eye) + " eye, " + std::to_string(what.bits.occlusion) +
+                                           " occlusion"
+                                     : std::to_string(what.bits.eye) + " eye"});
+  if (what.size != plan.baseSize) all.push_back({"size", std::to_string(what.size) + " pixels high"});
+  if (occlusion && what.theta != plan.baseTheta) all.push_back({"theta", jsonDegrees(what.theta) + " degrees"});
+  return all;
+}
+
+}  // namespace
+
+std::string describeCase(const StudyCase& what, const StudyPlan& plan) {
+  const StudyMethod& method = studyMethod(what.method);
+  std::string name = method.title;
+  if (!method.detail.name.empty()) name += ", " + method.detail.symbol + " = " + std::to_string(what.detail);
+  name += ", " + std::to_string(what.slices) + (what.slices == 1 ? " slice" : " slices");
+  for (const Variation& one : variationsOf(what, plan)) {
+    if (one.field == "slices" || one.field == method.detail.name) continue;
+    name += ", " + (one.field == "size" ? one.value : one.field + " " + one.value);
+  }
+  return name;
+}
+
+std::string frontTable(const StudyRecord& record, const ComparableCases& group) {
+  HtmlTable table;
+  table.head = heads(withErrorHeads({"cheapest first", "time"}), 1);
+  for (const CaseResult* result : group.front) {
+    HtmlTable::Row row{{text(linked(result->what, record.plan)), timeCell(result->timeRatio)}};
+    appendError(row.cells, result->error);
+    table.rows.push_back(row);
+  }
+  return printHtml(table);
+}
+
+std::string aroundBaseTable(const StudyRecord& record) {
+  HtmlTable table;
+  table.head = heads(withErrorHeads({"method", "varied", "value", "time"}), 3);
+  for (const std::string& name : record.plan.settings.methods) {
+    bool first = true;
+    for (const StudyCase& what : record.plan.cases) {
+      const CaseResult* result = record.find(what);
+      const std::vector<Variation> variations = variationsOf(what, record.plan);
+      if (!result || what.method != name || variations.size() > 1) continue;
+      const Variation variation = variations.empty() ? Variation{"base point", ""} : variations.front();
+      // Slices and detail have plots of their own.
+      if (variation.field == "slices" || variation.field == studyMethod(name).detail.name) continue;
+      HtmlTable::Row row{{words(first ? studyMethod(name).title : ""), words(variation.field), words(variation.value),
+                          timeCell(result->timeRatio)},
+                         first ? "new" : ""};
+      appendError(row.cells, result->error);
+      table.rows.push_back(row);
+      first = false;
+    }
+  }
+  if (table.rows.empty()) return {};
+  return "<p>One thing changed at a time. A picture of another size or theta is compared with a reference of its own, "
+         "and its time with a baseline of its size.</p>\n" +
+         printHtml(table);
+}
+
+std::string modelErrorTable(const StudyRecord& record) {
+  if (record.modelErrors.empty()) return {};
+  HtmlTable table;
+  table.head = heads(withErrorHeads({"theta, degrees", "size"}), 0);
+  for (const ModelError& error : record.modelErrors) {
+    HtmlTable::Row row{{{jsonDegrees(error.cone.theta)}, {std::to_string(error.cone.size)}}};
+    appendError(row.cells, error.error);
+    table.rows.push_back(row);
+  }
+  return "<p>What the model leaves out: the reference with light from the cone alone against the reference with light "
+         "from the whole sphere (Fig. 2 of <a href=\"https://doi.org/10.1111/j.1467-8659.2009.01464.x\">Schott et al. "
+         "2009</a>). No method can make this error smaller, and no method error contains it.</p>\n" +
+         printHtml(table);
+}
+
+std::string caseTable(const StudyRecord& record, const std::vector<ComparableCases>& groups) {
+  std::set<const CaseResult*> front;
+  for (const ComparableCases& group : groups) front.insert(group.front.begin(), group.front.end());
+  const bool milliseconds = !record.machine.software;
+  HtmlTable table;
+  table.sortable = true;
+  std::vector<std::string> names{"method", "detail", "slices", "segments", "bits", "size", "theta", "time"};
+  if (milliseconds) names.push_back("ms");
+  table.head = heads(withErrorHeads(names), 2);
+  for (const StudyCase& what : record.plan.cases) {
+    const CaseResult* result = record.find(what);
+    if (!result) continue;
+    const StudyMethod& method = studyMethod(what.method);
+    const bool occlusion = method.model != Model::emission;
+    HtmlTable::Row row;
+    if (front.contains(result)) row.kind = "front";
+    row.cells = {text("<a href=\"#c-" + what.id() + "\">" + escapeHtml(what.method) + "</a>"),
+                 words(method.detail.name.empty() ? "" : method.detail.symbol + " = " + std::to_string(what.detail)),
+                 {std::to_string(what.slices)},
+                 {std::to_string(what.segments)},
+                 {std::to_string(what.bits.eye) + (occlusion ? "/" + std::to_string(what.bits.occlusion) : "")},
+                 {std::to_string(what.size)},
+                 {occlusion ? jsonDegrees(what.theta) : ""},
+                 timeCell(result->timeRatio)};
+    if (milliseconds) row.cells.push_back(number(result->caseMs));
+    appendError(row.cells, result->error);
+    table.rows.push_back(row);
+  }
+  if (table.rows.empty()) return {};
+  return "<p>Shaded rows are on the Pareto front of their model, size and theta. Times are multiples of the baseline; "
+         "hover for their spread. Bits are those of the eye and the occlusion buffer. A click on a head sorts. The "
+         "same numbers are in <code>study.csv</code>.</p>\n" +
+         printHtml(table);
+}
+
+std::string referenceTable(const StudyRecord& record) {
+  if (record.references.empty()) return {};
+  HtmlTable table;
+  table.head = heads(withErrorHeads({"reference", "size", "theta", "time"}), 1);
+  for (const ReferenceResult& result : record.references) {
+    HtmlTable::Row row{{words(modelName(result.what.model)),
+                        {std::to_string(result.what.size)},
+                        {result.what.model == Model::cone ? jsonDegrees(result.what.theta) : ""},
+                        number(result.timeRatio)}};
+    appendError(row.cells, result.coarser);
+    table.rows.push_back(row);
+  }
+  return "<p><b>References.</b> Their times are single runs, as multiples of the baseline before and after; their "
+         "errors are differences to the coarser one.</p>\n" +
+         printHtml(table);
+}
+
+}  // namespace umbrick

@@ -1,0 +1,53 @@
+// A plot as gnuplot's script and data, from which anyone can draw it again.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace umbrick {
+
+struct PlotPoint {
+  double x = 0, y = 0;
+  double low = 0, high = 0;  // of x, where a series has bars
+  std::string label;         // beside the point; empty: none
+};
+
+enum class PlotStyle {
+  line,    // points, joined
+  points,  // small grey points
+  front,   // a grey staircase under everything else
+};
+
+struct PlotSeries {
+  std::string title;
+  PlotStyle style = PlotStyle::line;
+  std::vector<PlotPoint> points;  // in the order in which they are joined
+  bool bars = false;              // draw low to high
+};
+
+/// A horizontal line, dashed.
+struct PlotLevel {
+  std::string title;
+  double y = 0;
+};
+
+struct Plot {
+  std::string name;  // of its files: letters, digits and '-'
+  std::string xLabel, yLabel;
+  bool wholeX = false;  // x counts something: a linear axis with its values as tics; else both axes are logarithmic
+  std::vector<PlotSeries> series;
+  std::vector<PlotLevel> levels;
+};
+
+/// Tics of a logarithmic axis: 1, 2 and 5 of each decade over a few decades, else powers of ten.
+std::vector<double> logarithmicTics(double low, double high);
+
+/// A text in double quotes, as gnuplot reads it.
+std::string gnuplotString(const std::string& text);
+
+/// Writes NAME.dat and NAME.gp and draws NAME.svg. Points that a logarithmic axis does not have are left out.
+/// @return false: nothing to draw, nothing written
+/// @throw IoError
+bool drawPlot(const std::filesystem::path& folder, const Plot& plot);
+
+}  // namespace umbrick

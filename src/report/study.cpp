@@ -1,0 +1,44 @@
+#include "umbrick/report/study.h"
+
+#include "report/case_scene.h"
+#include "report/gnuplot.h"
+#include "report/page.h"
+#include "report/study_run.h"
+#include "report/study_table.h"
+#include "umbrick/core/error.h"
+#include "umbrick/core/pending_file.h"
+#include "umbrick/scene/resolve.h"
+
+namespace umbrick {
+
+StudyOutcome runStudy(const GlContext& context, const ScalarGrid& grid, const Scene& scene,
+                      const StudySettings& settings, const std::filesystem::path& root,
+                      const std::function<bool(const StudyProgress&)>& progress) {
+  // Everything that can be refused is refused before anything is written.
+  StudyRecord record;
+  record.plan = planStudy(settings, scene.occlusion.aperture);
+  validateScene(scene);
+  record.scene = studyScene(scene, record.plan, shortestVoxelEdge(grid.indexToWorld()));
+  record.volume = identify(scene.volume.file);
+  record.scene.volume.file = record.volume.file;
+  record.machine = describeMachine(context, gnuplotVersion());
+  const StudyFolder folder(root);
+  folder.restore(record);
+  if (record.extent == 0) record.extent = visibleExtent(context, grid, record.scene);
+  if (!record.complete()) checkCases(context, grid, record);
+
+  folder.create(record);
+  StudyOutcome outcome;
+  StudyRun(context, grid, record, folder, progress).measure();
+  outcome.complete = record.complete();
+  outcome.casesDone = record.cases.size();
+  outcome.cases = record.plan.cases.size();
+  outcome.page = folder.page();
+  outcome.table = folder.table();
+  outcome.record = folder.record();
+  writeTextFile(folder.table(), printTable(record));
+  writePage(record, folder);
+  return outcome;
+}
+
+}  // namespace umbrick

@@ -1,0 +1,83 @@
+#include "report/study_findings.h"
+
+#include <algorithm>
+
+namespace umbrick {
+namespace {
+
+void findFront(ComparableCases& group) {
+  std::vector<CostAndError> points;
+  for (const CaseResult* result : group.all) points.push_back({result->timeRatio.median, result->error.rmse});
+  for (const std::size_t i : paretoFront(points)) group.front.push_back(group.all[i]);
+}
+
+std::optional<double> observedOrder(const SliceSeries& series, double floor) {
+  std::vector<double> spacing, error;
+  for (const CaseResult* result : series.cases)
+    if (result->error.rmse > 2 * floor) {
+      spacing.push_back(result->spacing);
+      error.push_back(result->error.rmse);
+    }
+  return orderOfConvergence(spacing, error);
+}
+
+}  // namespace
+
+std::vector<ComparableCases> comparableCases(const StudyRecord& record) {
+  std::vector<ComparableCases> groups;
+  for (const StudyCase& what : record.plan.cases) {
+    const CaseResult* result = record.find(what);
+    if (!result) continue;
+    const StudyReference reference = record.plan.referenceOf(what);
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const ComparableCases& g) {
+      return g.model == reference.model && g.size == reference.size && g.theta == reference.theta;
+    });
+    if (group == groups.end())
+      group = groups.insert(groups.end(), {reference.model, reference.size, reference.theta, {}, {}});
+    group->all.push_back(result);
+  }
+  for (ComparableCases& group : groups) findFront(group);
+  return groups;
+}
+
+const ComparableCases* baseGroup(const std::vector<ComparableCases>& groups, const StudyPlan& plan, Model model) {
+  const double theta = model == Model::emission ? 0 : plan.baseTheta;
+  const auto at = std::find_if(groups.begin(), groups.end(), [&](const ComparableCases& g) {
+    return g.model == model && g.size == plan.baseSize && g.theta == theta;
+  });
+  return at == groups.end() ? nullptr : &*at;
+}
+
+std::vector<SliceSeries> sliceSeries(const StudyRecord& record, Model model) {
+  const StudyPlan& plan = record.plan;
+  std::vector<SliceSeries> all;
+  for (const std::string& name : plan.settings.methods) {
+    const StudyMethod& method = studyMethod(name);
+    if (method.model != model) continue;
+    const std::vector<int> none{0};
+    const bool hasDetail = !method.detail.name.empty();
+    for (const int detail : hasDetail ? plan.settings.details.at(method.detail.name) : none) {
+      SliceSeries series{method.title, &method, detail, {}, {}};
+      if (hasDetail) series.title += ", " + method.detail.symbol + " = " + std::to_string(detail);
+      for (const int slices : plan.settings.slices) {
+        StudyCase what{name, slices, plan.baseSegments, detail, plan.baseBits, plan.baseSize, plan.baseTheta};
+        if (model == Model::emission) {
+          what.theta = 0;
+          what.bits.occlusion = what.bits.eye;
+        }
+        if (const CaseResult* result = record.find(what)) series.cases.push_back(result);
+      }
+      if (series.cases.empty()) continue;
+      series.order = observedOrder(series, referenceError(record, plan.referenceOf(series.cases.front()->what)));
+      all.push_back(std::move(series));
+    }
+  }
+  return all;
+}
+
+double referenceError(const StudyRecord& record, const StudyReference& reference) {
+  const ReferenceResult* result = record.find(reference);
+  return result ? result->coarser.rmse : 0;
+}
+
+}  // namespace umbrick

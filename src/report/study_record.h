@@ -1,0 +1,77 @@
+// All that is known of a study: what it is of, where it ran, and what was measured so far. Kept as study.json.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "report/error_measures.h"
+#include "report/machine.h"
+#include "report/statistics.h"
+#include "umbrick/report/study_plan.h"
+
+namespace umbrick {
+
+struct CaseResult {
+  StudyCase what;
+  double spacing = 0;                 // of slices, world units
+  std::int64_t slicesDrawn = 0;       // between the nearest and the farthest visible brick
+  ErrorMeasures error;                // against the reference of its model
+  Spread timeRatio;                   // over the baseline
+  double caseMs = 0, baselineMs = 0;  // medians
+  int pairs = 0;                      // of which these are
+  std::uint64_t bufferBytes = 0, textureBytes = 0;
+  double load = 0;  // 1-minute load average when it was timed
+};
+
+struct ReferenceResult {
+  StudyReference what;
+  double integrateMs = 0;
+  double timeRatio = 0;   // over the baseline of its size
+  ErrorMeasures coarser;  // its difference to half of the directions and four times the tolerance
+  bool operator==(const ReferenceResult&) const = default;
+};
+
+/// Reference `cone` against reference `ambient`.
+struct ModelError {
+  StudyReference cone;
+  ErrorMeasures error;
+};
+
+/// The volume's file, by what it holds.
+struct VolumeIdentity {
+  std::string file;
+  std::uint64_t bytes = 0;
+  std::uint32_t crc32 = 0;
+};
+/// @throw IoError
+VolumeIdentity identify(const std::filesystem::path& file);
+
+struct StudyRecord {
+  StudyPlan plan;
+  Scene scene;  // resolved; what the plan sweeps has a fixed value
+  VolumeIdentity volume;
+  Machine machine;
+  double extent = 0;  // of what is visible along the view axis, world units
+  std::vector<ReferenceResult> references;
+  std::vector<ModelError> modelErrors;
+  std::vector<CaseResult> cases;
+
+  bool complete() const;
+  const CaseResult* find(const StudyCase& what) const;
+  const ReferenceResult* find(const StudyReference& what) const;
+  const ModelError* findModelError(const StudyReference& cone) const;
+};
+
+/// JSON; parseRecord reads back the same.
+std::string printRecord(const StudyRecord& record);
+/// Takes over what was measured from the text of a study.json.
+/// @param record  what is to be studied
+/// @param source  what messages call the text
+/// @throw IoError          not a study.json, or damaged
+/// @throw InvalidArgument  of another study: names the first setting that differs, there and here; or unfinished and
+///                         of another machine
+void restoreRecord(StudyRecord& record, std::string_view text, const std::string& source);
+
+}  // namespace umbrick

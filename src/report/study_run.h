@@ -1,0 +1,57 @@
+// The measuring part of a study.
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "report/study_folder.h"
+#include "umbrick/brick/brick_grid.h"
+#include "umbrick/report/study.h"
+#include "umbrick/shade/slice_renderer.h"
+
+namespace umbrick {
+
+using StudyCallback = std::function<bool(const StudyProgress&)>;
+
+/// Depth between the nearest and the farthest visible brick in the picture of a scene, world units.
+/// @throw InvalidArgument  nothing is visible
+double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Scene& scene);
+
+/// Could all cases be drawn? @throw InvalidArgument  says which value of the plan is the reason
+void checkCases(const GlContext& context, const ScalarGrid& grid, const StudyRecord& record);
+
+class StudyRun {
+ public:
+  /// @param record  what is there already; grows, and is written to the folder after each step
+  StudyRun(const GlContext& context, const ScalarGrid& grid, StudyRecord& record, const StudyFolder& folder,
+           const StudyCallback& progress);
+  ~StudyRun();
+
+  /// Measures what is missing, until the callback asks to stop.
+  void measure();
+
+ private:
+  struct Baseline;
+  const Bricks& bricksFor(const Scene& scene);
+  Baseline& baselineOf(int size);
+  const Image& referenceImage(const StudyReference& what);
+  bool report(const std::string& step, double share);
+  bool integrate(const StudyReference& what, bool coarser, Image& image, double& milliseconds);
+  bool measureReference(const StudyReference& what);
+  void measureModelError(const StudyReference& cone);
+  void measureCase(const StudyCase& what);
+  void save() const;
+
+  const GlContext& context_;
+  const ScalarGrid& grid_;
+  StudyRecord& record_;
+  const StudyFolder& folder_;
+  const StudyCallback& progress_;
+  std::map<int, std::unique_ptr<Bricks>> bricks_;  // by apron
+  std::unique_ptr<Baseline> baseline_;             // of the last size
+  std::map<std::string, Image> references_;        // by id
+  double work_ = 0, done_ = 0;                     // seconds that steps may take, only for their ratio
+};
+
+}  // namespace umbrick

@@ -1,0 +1,198 @@
+// umbrick study: what accuracy costs on a scene, as a table, plots and a page.
+#include "umbrick/report/study.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "progress.h"
+#include "scene_options.h"
+#include "umbrick/core/error.h"
+#include "validators.h"
+
+namespace umbrick::tools {
+namespace {
+constexpr long double kDegree = 3.14159265358979323846 / 180.0L;
+
+struct StudyCommand {
+  std::shared_ptr<SceneOptions> scene;
+  std::filesystem::path folder;
+  std::string backend = "auto";
+  bool quick = false;
+  std::vector<std::string> methods, bits;
+  std::vector<int> slices, segments, sizes;
+  std::vector<double> thetas;
+  std::map<std::string, std::vector<int>> details;  // by name
+  std::optional<int> repeats, directions;
+  std::optional<double> tolerance;
+};
+
+// "32", or "32/16": eye buffer, occlusion buffer.
+BufferBits parseBits(const std::string& text) {
+  BufferBits bits;
+  int used = 0;
+  const int count = std::sscanf(text.c_str(), "%d%n/%d%n", &bits.eye, &used, &bits.occlusion, &used);
+  if (count < 1 || used != static_cast<int>(text.size()))
+    throw UsageError("--bits: expected BITS or EYE/OCCLUSION, found '" + text + "'");
+  if (count == 1) bits.occlusion = bits.eye;
+  return bits;
+}
+
+template <class T>
+void apply(const std::vector<T>& option, std::vector<T>& field) {
+  if (!option.empty()) field = option;
+}
+
+StudySettings makeSettings(const StudyCommand& command) {
+  StudySettings settings = command.quick ? quickStudySettings() : StudySettings{};
+  // The values of a quick study go with its methods.
+  if (!command.methods.empty()) {
+    settings.methods = command.methods;
+    std::erase_if(settings.details, [&](const auto& detail) {
+      return std::none_of(command.methods.begin(), command.methods.end(),
+                          [&](const std::string& name) { return studyMethod(name).detail.name == detail.first; });
+    });
+  }
+  for (const auto& [name, values] : command.details)
+    if (!values.empty()) settings.details[name] = values;
+  apply(command.slices, settings.slices);
+  apply(command.segments, settings.segments);
+  apply(command.sizes, settings.sizes);
+  if (!command.bits.empty()) {
+    settings.bits.clear();
+    for (const std::string& text : command.bits) settings.bits.push_back(parseBits(text));
+  }
+  if (!command.thetas.empty()) {
+    settings.thetas.clear();
+    for (const double degrees : command.thetas) settings.thetas.push_back(static_cast<double>(degrees * kDegree));
+  }
+  settings.repeats = command.repeats.value_or(settings.repeats);
+  settings.directions = command.directions.value_or(settings.directions);
+  settings.tolerance = command.tolerance.value_or(settings.tolerance);
+  return settings;
+}
+
+int study(const StudyCommand& command) {
+  const StudySettings settings = makeSettings(command);
+  const Scene scene = makeScene(*command.scene);
+  planStudy(settings, scene.occlusion.aperture);  // before a volume is loaded that may take long
+  const LoadedVolume loaded = loadVolume(scene);
+  const auto context = createGlContext(parseBackend(command.backend));
+  const StopRequest stop;
+  StudyOutcome outcome;
+  {
+    ProgressBar bar("study");
+    outcome = runStudy(*context, loaded.grid, loaded.scene, settings, command.folder, [&](const StudyProgress& p) {
+      bar.show(p.share);
+      return !stop.requested();
+    });
+  }
+  for (const std::filesystem::path& path : {outcome.page, outcome.table, outcome.record})
+    std::cout << path.string() << '\n';
+  if (outcome.complete) return 0;
+  std::cerr << "umbrick: stopped after " << outcome.casesDone << " of " << outcome.cases
+            << " cases; the same command goes on\n";
+  return 1;
+}
+
+std::string methodNames() {
+  std::string text;
+  for (const StudyMethod& method : studyMethods())
+    text += (text.empty() ? "" : ", ") + method.name + (method.usual ? "" : " (not unless named)");
+  return text;
+}
+
+std::string printedList(const std::vector<int>& values) {
+  std::string text;
+  for (const int value : values) text += (text.empty() ? "" : " ") + std::to_string(value);
+  return text;
+}
+
+void addSweeps(CLI::App& sub, StudyCommand& c) {
+  const StudySettings full, quick = quickStudySettings();
+  const std::string group = "Sweeps";
+  const auto defaults = [](const std::string& usual, const std::string& small) {
+    return " [" + usual + "; quick: " + small + "]";
+  };
+  sub.add_option("--methods", c.methods, methodNames() + " [all; quick: emission dos]")->group(group);
+  sub.add_option("--slices", c.slices,
+                 "through the visible extent along the view axis" +
+                     defaults(printedList(full.slices), printedList(quick.slices)))
+      ->group(group);
+  // One option per name; several methods may share it.
+  for (const StudyMethod& method : studyMethods()) {
+    const StudyMethod::Detail& detail = method.detail;
+    if (detail.name.empty() || c.details.contains(detail.name)) continue;
+    sub.add_option(
+           "--" + detail.plural, c.details[detail.name],
+           detail.symbol + ": " + detail.meaning + defaults(printedList(detail.full), printedList(detail.quick)))
+        ->group(group);
+  }
+  sub.add_option("--bits", c.bits,
+                 "of the buffers: 16 or 32 for both, or EYE/OCCLUSION [32 32/16 16/32 16; quick: 32 16]")
+      ->group(group);
+  sub.add_option("--segments", c.segments,
+                 "of a slab along the ray, 1 to 8" + defaults(printedList(full.segments), printedList(quick.segments)))
+      ->group(group);
+  sub.add_option("--sizes", c.sizes,
+                 "height of the picture and of both buffers, pixels; the width follows from the scene's --size" +
+                     defaults(printedList(full.sizes), printedList(quick.sizes)))
+      ->group(group);
+  sub.add_option("--thetas", c.thetas, "half-angles of the cone, degrees, in [0, 90) [the scene's and 80]")
+      ->group(group);
+}
+
+void addMeasuring(CLI::App& sub, StudyCommand& c) {
+  const StudySettings full, quick = quickStudySettings();
+  const std::string group = "Measuring";
+  sub.add_option("--repeats", c.repeats,
+                 "timed turns of baseline and case, at least [" + std::to_string(full.repeats) +
+                     "; quick: " + std::to_string(quick.repeats) + "]")
+      ->check(CLI::Range(1, 1000))
+      ->group(group);
+  sub.add_option("--reference-directions", c.directions,
+                 "of the references: about so many over the cone or the sphere [" + std::to_string(full.directions) +
+                     "; quick: " + std::to_string(quick.directions) + "]")
+      ->check(CLI::Range(2, 1000000))
+      ->group(group);
+  sub.add_option("--reference-tolerance", c.tolerance,
+                 "of the references: of the radiance of a stretch of the ray, in (0, 1] [0.001; quick: 0.004]")
+      ->check(CLI::Range(1e-9, 1.0))
+      ->group(group);
+}
+
+}  // namespace
+
+Command addStudy(CLI::App& app) {
+  const auto command = std::make_shared<StudyCommand>();
+  CLI::App* sub = app.add_subcommand(
+      "study",
+      "Measure speed against error. Around a base point (the middle of the slices and of the detail, the most bits, "
+      "fewest segments, largest size, the scene's theta) slices x detail and each other list alone are swept; the "
+      "folder gets index.html, study.csv and study.json. A stopped study goes on when it is started again.");
+  command->scene = addSceneOptions(*sub);
+  addBackendOption(*sub, command->backend);
+  // What is swept is no option of the scene; and errors are measured without background radiance.
+  for (const char* option :
+       {"--model", "--method", "--theta", "--footprint", "--algorithm", "--passes", "--occlusion-bits", "--eye-bits",
+        "--spacing", "--spacing-unit", "--segments", "--background"})
+    sub->remove_option(sub->get_option(option));
+  sub->get_option("--size")->description("its shape is that of the study's pictures [512x512]");
+  sub->add_option("-o,--output", command->folder, "folder of the report: new, empty, or of the same study")
+      ->required()
+      ->group("Output");
+  sub->add_flag("--quick", command->quick, "a small study, about two minutes on two cores for the bundled CT");
+  addSweeps(*sub, *command);
+  addMeasuring(*sub, *command);
+  return {sub, [command] { return study(*command); }};
+}
+
+}  // namespace umbrick::tools
