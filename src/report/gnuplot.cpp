@@ -75,10 +75,10 @@ std::string reason(const Outcome& outcome) {
 }  // namespace
 
 std::string gnuplotVersion() {
-  const Outcome outcome = run({"gnuplot", "-e", "set terminal svg; print 'gnuplot ', GPVAL_VERSION"}, {});
+  const Outcome outcome = run({"gnuplot", "-e", "set terminal svg; print GPVAL_VERSION"}, {});
   if (!succeeded(outcome))
     throw IoError("gnuplot: cannot be run (" + reason(outcome) + "); the plots need it: Debian package gnuplot-nox");
-  return lastLine(outcome.output);
+  return "gnuplot " + lastLine(outcome.output);
 }
 
 void runGnuplot(const std::filesystem::path& script) {

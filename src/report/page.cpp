@@ -74,11 +74,11 @@ std::string speedSections(const StudyRecord& record, const StudyFolder& folder,
   for (const Model model : {Model::cone, Model::emission}) {
     const ComparableCases* group = baseGroup(groups, record.plan, model);
     if (!group) continue;
-    const std::string pareto =
-        plotFigure(folder, paretoPlot(record, model),
-                   "Lines join cases that differ in their slices alone, from N to N slices; bars are the quartiles of "
-                   "the time. No case lies below and left of the staircase. " +
-                       floorText(record, model));
+    const std::string pareto = plotFigure(
+        folder, paretoPlot(record, model),
+        "Lines join cases that differ in their slices (N) alone, the same N on each; bars are the quartiles of "
+        "the time. No case lies below and left of the staircase. " +
+            floorText(record, model));
     const std::string convergence =
         plotFigure(folder, convergencePlot(record, model),
                    model == Model::emission

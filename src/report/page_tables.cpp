@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <set>
 
 #include "core/json_writer.h"
@@ -13,7 +15,14 @@ using Cell = HtmlTable::Cell;
 Cell text(const std::string& html) { return {html, "", true}; }
 Cell words(const std::string& plain) { return text(escapeHtml(plain)); }
 Cell number(double value) { return {printShort(value), jsonNumber(std::isfinite(value) ? value : 1e300), false}; }
-Cell number(const std::optional<double>& value) { return value ? number(*value) : Cell{"-", "1e300", false}; }
+// Many a good picture has 0.99-something.
+Cell similarity(const std::optional<double>& ssim) {
+  if (!ssim) return {"-", "-2", false};
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4f", *ssim);
+  return {text, jsonNumber(*ssim), false};
+}
+Cell optionalNumber(const std::optional<double>& value) { return value ? number(*value) : Cell{"-", "1e300", false}; }
 
 // "2.31", and on hovering the spread.
 Cell timeCell(const Spread& time) {
@@ -31,7 +40,7 @@ std::vector<Cell> heads(const std::vector<std::string>& names, std::size_t texts
 
 void appendError(std::vector<Cell>& cells, const ErrorMeasures& error) {
   cells.insert(cells.end(), {number(error.rmse), number(error.p999), number(error.maxError), number(error.relMse),
-                             number(error.ssim), number(error.flip)});
+                             similarity(error.ssim), optionalNumber(error.flip)});
 }
 
 const std::vector<std::string> kErrorHeads{"RMSE", "99.9 %", "max", "relMSE", "SSIM", "FLIP"};
@@ -45,24 +54,26 @@ std::string linked(const StudyCase& what, const StudyPlan& plan) {
   return "<a href=\"#c-" + what.id() + "\">" + escapeHtml(describeCase(what, plan)) + "</a>";
 }
 
-// One field away from the base, or the base itself: what is varied and its value.
+// What of a case is not at the base.
 struct Variation {
-  std::string field, value;
+  std::string field, value;  // "segments per slab", "4 segments per slab"
 };
 std::vector<Variation> variationsOf(const StudyCase& what, const StudyPlan& plan) {
   std::vector<Variation> all;
   const StudyMethod& method = studyMethod(what.method);
   const bool occlusion = method.model != Model::emission;
-  if (what.slices != plan.baseSlices) all.push_back({"slices", std::to_string(what.slices)});
+  if (what.slices != plan.baseSlices) all.push_back({"slices", std::to_string(what.slices) + " slices"});
   if (!method.detail.name.empty() && what.detail != plan.baseDetails.at(method.detail.name))
     all.push_back({method.detail.name, method.detail.symbol + " = " + std::to_string(what.detail)});
-  if (what.segments != plan.baseSegments) all.push_back({"segments per slab", std::to_string(what.segments)});
+  if (what.segments != plan.baseSegments)
+    all.push_back(
+        {"segments", std::to_string(what.segments) + (what.segments == 1 ? " segment" : " segments") + " per slab"});
+  const std::string eye = std::to_string(what.bits.eye);
   if (what.bits.eye != plan.baseBits.eye || (occlusion && what.bits.occlusion != plan.baseBits.occlusion))
-    all.push_back({"bits", occlusion ? std::to_string(what.bits.eye) + " eye, " + std::to_string(what.bits.occlusion) +
-                                           " occlusion"
-                                     : std::to_string(what.bits.eye) + " eye"});
+    all.push_back({"bits", occlusion ? eye + "/" + std::to_string(what.bits.occlusion) + " bits" : eye + " bits"});
   if (what.size != plan.baseSize) all.push_back({"size", std::to_string(what.size) + " pixels high"});
-  if (occlusion && what.theta != plan.baseTheta) all.push_back({"theta", jsonDegrees(what.theta) + " degrees"});
+  if (occlusion && what.theta != plan.baseTheta)
+    all.push_back({"theta", "theta " + jsonDegrees(what.theta) + " degrees"});
   return all;
 }
 
@@ -75,7 +86,7 @@ std::string describeCase(const StudyCase& what, const StudyPlan& plan) {
   name += ", " + std::to_string(what.slices) + (what.slices == 1 ? " slice" : " slices");
   for (const Variation& one : variationsOf(what, plan)) {
     if (one.field == "slices" || one.field == method.detail.name) continue;
-    name += ", " + (one.field == "size" ? one.value : one.field + " " + one.value);
+    name += ", " + one.value;
   }
   return name;
 }
@@ -93,19 +104,20 @@ std::string frontTable(const StudyRecord& record, const ComparableCases& group) 
 
 std::string aroundBaseTable(const StudyRecord& record) {
   HtmlTable table;
-  table.head = heads(withErrorHeads({"method", "varied", "value", "time"}), 3);
+  table.head = heads(withErrorHeads({"method", "varied", "time"}), 2);
   for (const std::string& name : record.plan.settings.methods) {
     bool first = true;
     for (const StudyCase& what : record.plan.cases) {
       const CaseResult* result = record.find(what);
       const std::vector<Variation> variations = variationsOf(what, record.plan);
       if (!result || what.method != name || variations.size() > 1) continue;
-      const Variation variation = variations.empty() ? Variation{"base point", ""} : variations.front();
+      const Variation variation = variations.empty() ? Variation{"", "base point"} : variations.front();
       // Slices and detail have plots of their own.
-      if (variation.field == "slices" || variation.field == studyMethod(name).detail.name) continue;
-      HtmlTable::Row row{{words(first ? studyMethod(name).title : ""), words(variation.field), words(variation.value),
-                          timeCell(result->timeRatio)},
-                         first ? "new" : ""};
+      if (!variations.empty() && (variation.field == "slices" || variation.field == studyMethod(name).detail.name))
+        continue;
+      HtmlTable::Row row{
+          {words(first ? studyMethod(name).title : ""), words(variation.value), timeCell(result->timeRatio)},
+          first ? "new" : ""};
       appendError(row.cells, result->error);
       table.rows.push_back(row);
       first = false;
@@ -133,8 +145,7 @@ std::string modelErrorTable(const StudyRecord& record) {
 }
 
 std::string caseTable(const StudyRecord& record, const std::vector<ComparableCases>& groups) {
-  std::set<const CaseResult*> front;
-  for (const ComparableCases& group : groups) front.insert(group.front.begin(), group.front.end());
+  const std::set<const CaseResult*> front = frontCases(groups);
   const bool milliseconds = !record.machine.software;
   HtmlTable table;
   table.sortable = true;

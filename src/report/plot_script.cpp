@@ -79,13 +79,19 @@ std::string axes(const Plot& plot) {
          gnuplotString(plot.xLabel) + "\nset ylabel " + gnuplotString(plot.yLabel) + "\n";
 }
 
+// In a data file a text has double quotes, and no way to hold one.
+std::string dataString(std::string text) {
+  std::erase_if(text, [](char c) { return c == '"' || c == '\n'; });
+  return '"' + text + '"';
+}
+
 std::string dataOf(const Plot& plot) {
   std::string text = "# x  y  x low  x high  label; a block per series, two empty lines between blocks\n";
   for (const PlotSeries& series : plot.series) {
     text += "# " + series.title + "\n";
     for (const PlotPoint& point : series.points)
       text += jsonNumber(point.x) + " " + jsonNumber(point.y) + " " + jsonNumber(series.bars ? point.low : point.x) +
-              " " + jsonNumber(series.bars ? point.high : point.x) + " " + gnuplotString(point.label) + "\n";
+              " " + jsonNumber(series.bars ? point.high : point.x) + " " + dataString(point.label) + "\n";
     text += "\n\n";
   }
   return text;
@@ -112,14 +118,14 @@ void appendSeries(std::vector<std::string>& parts, const Plot& plot, std::size_t
   const bool labels = std::any_of(series.points.begin(), series.points.end(),
                                   [](const PlotPoint& point) { return !point.label.empty(); });
   if (labels)
-    parts.push_back(data + " using 1:2:5 with labels offset 0,0.8 font \",10\"" +
+    parts.push_back(data + " using 1:2:5 with labels left offset 0.7,0.7 font \",10\"" +
                     " tc rgb \"#555555\" noenhanced notitle");
 }
 
 std::string scriptOf(const Plot& plot) {
   std::string text = "# gnuplot " + plot.name + ".gp draws " + plot.name + ".svg from " + plot.name + ".dat\n" +
-                     "set terminal svg size 860,470 dynamic font \"Helvetica,13\"" +
-                     "\nset output " + gnuplotString(plot.name + ".svg") +
+                     "set terminal svg size 860,470 dynamic font \"Helvetica,13\"" + "\nset output " +
+                     gnuplotString(plot.name + ".svg") +
                      "\nset encoding utf8\nset border 3 lw 0.8\nset tics nomirror out scale 0.6\n"
                      "set grid lc rgb \"#e6e6e6\" lw 0.6\nset key outside right center vertical Left reverse samplen 2 "
                      "spacing 1.25\n" +
@@ -141,27 +147,29 @@ std::string scriptOf(const Plot& plot) {
 }  // namespace
 
 std::vector<double> logarithmicTics(double low, double high) {
-  constexpr double kFewDecades = 3.2;
+  const double decades = std::log10(high / low);
+  const std::vector<double> steps = decades <= 1.2   ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 7}
+                                    : decades <= 3.2 ? std::vector<double>{1, 2, 5}
+                                                     : std::vector<double>{1};
   std::vector<double> tics;
-  const bool few = std::log10(high / low) <= kFewDecades;
   const int first = static_cast<int>(std::floor(std::log10(low)));
   const int last = static_cast<int>(std::ceil(std::log10(high)));
   for (int decade = first; decade <= last; ++decade)
-    for (const int step : {1, 2, 5}) {
+    for (const double step : steps) {
       // 10^-3 as the quotient: 0.002 and not 0.0020000000000000001.
       const double tic = decade < 0 ? step / std::pow(10, -decade) : step * std::pow(10, decade);
-      if ((step == 1 || few) && tic >= low && tic <= high) tics.push_back(tic);
+      if (tic >= low && tic <= high) tics.push_back(tic);
     }
   return tics;
 }
 
 std::string gnuplotString(const std::string& text) {
-  std::string quoted = "\"";
+  std::string quoted = "'";
   for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
+    if (c == '\'') quoted += c;
     quoted += c == '\n' ? ' ' : c;
   }
-  return quoted + "\"";
+  return quoted + "'";
 }
 
 bool drawPlot(const std::filesystem::path& folder, const Plot& given) {

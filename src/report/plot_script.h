@@ -39,10 +39,10 @@ struct Plot {
   std::vector<PlotLevel> levels;
 };
 
-/// Tics of a logarithmic axis: 1, 2 and 5 of each decade over a few decades, else powers of ten.
+/// Tics of a logarithmic axis: seven of each decade, 1, 2 and 5, or powers of ten alone, by how many decades it spans.
 std::vector<double> logarithmicTics(double low, double high);
 
-/// A text in double quotes, as gnuplot reads it.
+/// A text in single quotes: in double ones gnuplot would run what stands between backquotes.
 std::string gnuplotString(const std::string& text);
 
 /// Writes NAME.dat and NAME.gp and draws NAME.svg. Points that a logarithmic axis does not have are left out.

@@ -40,6 +40,13 @@ std::vector<ComparableCases> comparableCases(const StudyRecord& record) {
   return groups;
 }
 
+std::set<const CaseResult*> frontCases(const std::vector<ComparableCases>& groups) {
+  std::set<const CaseResult*> front;
+  for (const ComparableCases& group : groups)
+    if (group.all.size() > 1) front.insert(group.front.begin(), group.front.end());
+  return front;
+}
+
 const ComparableCases* baseGroup(const std::vector<ComparableCases>& groups, const StudyPlan& plan, Model model) {
   const double theta = model == Model::emission ? 0 : plan.baseTheta;
   const auto at = std::find_if(groups.begin(), groups.end(), [&](const ComparableCases& g) {

@@ -1,6 +1,7 @@
 // What follows from the measurements of a study: who is on the Pareto front, the orders of convergence.
 #pragma once
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct ComparableCases {
 
 /// Groups in the order of the plan, of the cases that are measured. Valid as long as the record.
 std::vector<ComparableCases> comparableCases(const StudyRecord& record);
+
+/// All that are on a front, but for cases that nothing compares with.
+std::set<const CaseResult*> frontCases(const std::vector<ComparableCases>& groups);
 
 /// The group at the base size (and theta); nothing measured: none.
 const ComparableCases* baseGroup(const std::vector<ComparableCases>& groups, const StudyPlan& plan, Model model);

@@ -93,7 +93,8 @@ StudySettings completed(StudySettings settings, double aperture) {
   }
   for (const double theta : settings.thetas)
     if (!(theta >= 0 && theta < kRightAngle))
-      throw InvalidArgument("thetas: is " + jsonDegrees(theta) + " degrees, must be in [0, 90)");
+      throw InvalidArgument("thetas: is " + (std::isfinite(theta) ? jsonDegrees(theta) : std::to_string(theta)) +
+                            " degrees, must be in [0, 90)");
   sortList("thetas", settings.thetas);
   checkRange("repeats", {settings.repeats}, 1, 1000);
   checkRange("reference directions", {settings.directions}, 2, 1'000'000);
@@ -178,7 +179,7 @@ StudySettings quickStudySettings() {
       quick.details[method.detail.name] = method.detail.quick;
   quick.bits = {{32, 32}, {16, 16}};
   quick.segments = {1, 4};
-  quick.sizes = {64, 96};
+  quick.sizes = {64, 128};
   quick.repeats = 3;
   quick.directions = 64;
   quick.tolerance = 4e-3;

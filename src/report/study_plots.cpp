@@ -46,10 +46,10 @@ Plot paretoPlot(const StudyRecord& record, Model model) {
     PlotSeries line{series.title, PlotStyle::line, {}, true};
     for (const CaseResult* result : series.cases) {
       line.points.push_back(timePoint(*result));
+      // All lines have the same numbers of slices: one of them says which.
+      if (plot.series.empty()) line.points.back().label = "N=" + std::to_string(result->what.slices);
       shown.insert(result);
     }
-    line.points.front().label = "N=" + std::to_string(series.cases.front()->what.slices);
-    line.points.back().label = "N=" + std::to_string(series.cases.back()->what.slices);
     plot.series.push_back(line);
   }
   PlotSeries others{"other bits or segments", PlotStyle::points, {}, false};

@@ -196,10 +196,12 @@ std::string firstDifference(const std::string& path, const Json& there, const Js
 }
 
 // The scene without the name of the volume's file, which may move.
-Json sceneIdentity(const StudyRecord& record) {
-  Json json = Json::parse(printScene(record.scene));
-  json["volume"].erase("file");
-  return json;
+Json withoutFile(Json scene) {
+  if (const auto volume = scene.find("volume"); volume != scene.end() && volume->is_object()) {
+    volume->erase("file");
+    if (volume->empty()) scene.erase(volume);
+  }
+  return scene;
 }
 
 void refuseOther(const std::string& what, const std::string& difference, const std::string& source) {
@@ -212,10 +214,11 @@ void checkSame(const StudyRecord& record, const Json& stored, const std::string&
   for (const char* key : {"bytes", "crc32"})
     refuseOther("of another volume",
                 firstDifference("volume." + std::string(key), stored.at("volume").at(key), volume.at(key)), source);
-  Json scene = stored.at("scene");
-  if (scene.contains("volume")) scene["volume"].erase("file");
-  refuseOther("of another scene", firstDifference("", scene, sceneIdentity(record)), source);
+  // First, since the scene has the base size.
   refuseOther("with other settings", firstDifference("", stored.at("settings"), toJson(record.plan.settings)), source);
+  refuseOther("of another scene",
+              firstDifference("", withoutFile(stored.at("scene")), withoutFile(Json::parse(printScene(record.scene)))),
+              source);
 }
 
 }  // namespace

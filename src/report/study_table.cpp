@@ -98,8 +98,7 @@ std::vector<std::string> cells(const StudyRecord& record, const CaseResult& resu
 }  // namespace
 
 std::string printTable(const StudyRecord& record) {
-  std::set<const CaseResult*> front;
-  for (const ComparableCases& group : comparableCases(record)) front.insert(group.front.begin(), group.front.end());
+  const std::set<const CaseResult*> front = frontCases(comparableCases(record));
   std::string text = row(header(!record.machine.software));
   for (const StudyCase& what : record.plan.cases)
     if (const CaseResult* result = record.find(what)) text += row(cells(record, *result, front.contains(result)));

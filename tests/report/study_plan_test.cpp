@@ -1,0 +1,143 @@
+#include "umbrick/report/study_plan.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <functional>
+#include <set>
+#include <string>
+
+#include "report/case_scene.h"
+#include "support/complaint.h"
+#include "umbrick/core/error.h"
+
+using namespace umbrick;
+
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+StudySettings small() {
+  StudySettings settings;
+  settings.methods = {"dos", "emission"};
+  settings.slices = {16, 4, 8};
+  settings.details["footprint"] = {5, 2, 3};
+  settings.bits = {{16, 16}, {32, 32}};
+  settings.segments = {2, 1};
+  settings.sizes = {32, 16};
+  settings.thetas = {80 * kDegree, 60 * kDegree};
+  return settings;
+}
+
+std::set<std::string> idsOf(const StudyPlan& plan) {
+  std::set<std::string> ids;
+  for (const StudyCase& one : plan.cases) ids.insert(one.id());
+  return ids;
+}
+
+}  // namespace
+
+TEST_CASE("A plan is a product of slices and detail, and one sweep per other axis, around the base", "[report]") {
+  const StudyPlan plan = planStudy(small(), 60 * kDegree);
+  std::set<std::string> expected;
+  for (const char* n : {"2", "3", "5"})
+    for (const char* slices : {"4", "8", "16"})
+      expected.insert(std::string("dos-n") + n + "-N" + slices + "-k1-e32o32-s32-t60");
+  for (const char* other : {"k2-e32o32-s32-t60", "k1-e16o16-s32-t60", "k1-e32o32-s16-t60", "k1-e32o32-s32-t80"})
+    expected.insert(std::string("dos-n3-N8-") + other);
+  for (const char* slices : {"4", "8", "16"}) expected.insert(std::string("emission-N") + slices + "-k1-e32-s32");
+  for (const char* other : {"k2-e32-s32", "k1-e16-s32", "k1-e32-s16"})
+    expected.insert(std::string("emission-N8-") + other);
+  CHECK(idsOf(plan) == expected);
+  CHECK(plan.cases.size() == expected.size());
+}
+
+TEST_CASE("A plan has the references that its cases need, and the whole sphere at the base size", "[report]") {
+  const StudyPlan plan = planStudy(small(), 60 * kDegree);
+  std::set<std::string> ids;
+  for (const StudyReference& reference : plan.references) ids.insert(reference.id());
+  CHECK(ids == std::set<std::string>{"emission-s32", "emission-s16", "cone-s32-t60", "cone-s16-t60", "cone-s32-t80",
+                                     "ambient-s32"});
+  CHECK(plan.references.size() == ids.size());
+  for (const StudyCase& one : plan.cases) CHECK(ids.contains(plan.referenceOf(one).id()));
+}
+
+TEST_CASE("A study without occlusion needs no sphere", "[report]") {
+  StudySettings settings = small();
+  settings.methods = {"emission"};
+  settings.details.clear();
+  for (const StudyReference& reference : planStudy(settings, 1).references) CHECK(reference.model == Model::emission);
+}
+
+TEST_CASE("The order of the values does not matter", "[report]") {
+  StudySettings turned = small();
+  std::reverse(turned.methods.begin(), turned.methods.end());
+  for (auto* list : {&turned.slices, &turned.details["footprint"], &turned.segments, &turned.sizes})
+    std::sort(list->begin(), list->end());
+  std::reverse(turned.bits.begin(), turned.bits.end());
+  std::reverse(turned.thetas.begin(), turned.thetas.end());
+  const StudyPlan a = planStudy(small(), 60 * kDegree), b = planStudy(turned, 60 * kDegree);
+  CHECK(a.cases == b.cases);
+  CHECK(a.references == b.references);
+  CHECK(a.settings == b.settings);
+}
+
+TEST_CASE("The base is the scene's theta when it is swept, however its degrees were read", "[report]") {
+  CHECK(planStudy(small(), std::nextafter(80 * kDegree, 0.0)).baseTheta == 80 * kDegree);
+  CHECK(planStudy(small(), 1.0).baseTheta == 60 * kDegree);
+  StudySettings own = small();
+  own.thetas.clear();
+  CHECK(planStudy(own, 1.0).settings.thetas == std::vector<double>{1.0, 80 * kDegree});
+  CHECK(planStudy(own, 1.0).baseTheta == 1.0);
+  CHECK(planStudy(own, 80 * kDegree).settings.thetas.size() == 1);
+}
+
+TEST_CASE("Every method of the registry can be planned, and makes a valid scene of its model", "[report]") {
+  for (const StudyMethod& method : studyMethods()) {
+    CAPTURE(method.name);
+    StudySettings settings = small();
+    settings.methods = {method.name};
+    settings.details.clear();
+    const StudyPlan plan = planStudy(settings, 1);
+    REQUIRE(!plan.cases.empty());
+    Scene scene;
+    scene.transfer = loadTransferFunction("smoke");
+    for (const StudyCase& one : plan.cases) {
+      const Scene made = caseScene(scene, one, 10.0);
+      CHECK_NOTHROW(validateScene(made));
+      CHECK(made.model == method.model);
+      CHECK(made.sampling.spacing == 10.0 / one.slices);
+      CHECK(made.camera.height == one.size);
+    }
+  }
+}
+
+TEST_CASE("The quick study is a plan of at most 30 pictures", "[report]") {
+  const StudyPlan plan = planStudy(quickStudySettings(), 60 * kDegree);
+  CHECK(plan.cases.size() <= 30);
+  CHECK(plan.settings.methods.size() >= 2);
+}
+
+TEST_CASE("A plan refuses what cannot be swept", "[report]") {
+  const auto refusal = [](const std::function<void(StudySettings&)>& change) {
+    StudySettings settings = small();
+    change(settings);
+    return complaint<InvalidArgument>([&] { planStudy(settings, 1); });
+  };
+  using Settings = StudySettings;
+  CHECK(refusal([](Settings& s) { s.methods = {"raytracing"}; }).find("methods: no method 'raytracing': there are ") ==
+        0);
+  CHECK(refusal([](Settings& s) { s.methods = {"dos", "dos"}; }) == "methods: dos is given twice");
+  CHECK(refusal([](Settings& s) { s.slices = {}; }) == "slices: nothing to sweep, expected at least one");
+  CHECK(refusal([](Settings& s) { s.slices = {0}; }) == "slices: is 0, must be in [1, 100000]");
+  CHECK(refusal([](Settings& s) { s.slices = {8, 16, 8}; }) == "slices: 8 is given twice");
+  CHECK(refusal([](Settings& s) { s.details["footprint"] = {17}; }) == "footprints: is 17, must be in [1, 16]");
+  CHECK(refusal([](Settings& s) { s.bits = {{8, 32}}; }) == "bits: is 8, must be 16 or 32");
+  CHECK(refusal([](Settings& s) { s.segments = {9}; }) == "segments: is 9, must be in [1, 8]");
+  CHECK(refusal([](Settings& s) { s.sizes = {0}; }) == "sizes: is 0, must be in [1, 65536]");
+  CHECK(refusal([](Settings& s) { s.thetas = {90 * kDegree}; }) == "thetas: is 90 degrees, must be in [0, 90)");
+  CHECK(refusal([](Settings& s) { s.thetas = {std::nan("")}; }).find("thetas: is ") == 0);
+  CHECK(refusal([](Settings& s) { s.repeats = 0; }) == "repeats: is 0, must be in [1, 1000]");
+  CHECK(refusal([](Settings& s) { s.directions = 1; }) == "reference directions: is 1, must be in [2, 1000000]");
+  CHECK(refusal([](Settings& s) { s.tolerance = 0; }) == "reference tolerance: is 0, must be in [1e-9, 1]");
+  CHECK(refusal([](Settings& s) { s.methods = {"emission"}; }) == "no method of this study has a footprint to sweep");
+}
