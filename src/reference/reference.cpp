@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "reference/monte_carlo.h"
@@ -99,6 +101,10 @@ RayCounts integrateAll(const Scene& scene, const ReferenceOptions& options, cons
   const std::size_t tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   Progress progress(options.progress, tiles);
   tbb::enumerable_thread_specific<decltype(makeIntegrator())> integrators(makeIntegrator);
+  // More threads than cores are granted, too.
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles, 1), [&](const auto& range) {
