@@ -20,6 +20,7 @@ struct UsageError : std::runtime_error {
 
 // Each in the file of its name. Adds a sub-command with its options to `app`.
 Command addCheck(CLI::App& app);
+Command addCompare(CLI::App& app);
 Command addConvert(CLI::App& app);
 Command addInfo(CLI::App& app);
 Command addReference(CLI::App& app);

@@ -21,6 +21,7 @@
 #include "umbrick/grid/build_grid.h"
 #include "umbrick/ingest/nrrd_volume.h"
 #include "umbrick/ingest/raw_volume.h"
+#include "validators.h"
 
 namespace umbrick::tools {
 namespace {
@@ -176,13 +177,7 @@ int convert(ConvertOptions options) {
 Command addConvert(CLI::App& app) {
   const auto options = std::make_shared<ConvertOptions>();
   CLI::App* command = app.add_subcommand("convert", "Turn raw, NRRD or .vdb into a sparse .vdb; prints what was lost.");
-  const auto finite = CLI::Validator(
-      [](const std::string& text) {
-        double value = 0;
-        return CLI::detail::lexical_cast(text, value) && std::isfinite(value) ? std::string()
-                                                                              : "expected a number, found " + text;
-      },
-      "NUMBER");
+  const CLI::Validator finite = finiteNumber();
   command->add_option("input", options->input, ".nrrd, .nhdr, .vdb; any other name is headerless raw, plain or gzip'd")
       ->required();
   command->add_option("-o,--output", options->output, "the .vdb file to write")->required();
@@ -196,7 +191,7 @@ Command addConvert(CLI::App& app) {
   command
       ->add_option("--tolerance", options->build.tolerance,
                    "leave out voxels this close to the background and merge what is this close, grid units")
-      ->check(finite & CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->capture_default_str();
   command->add_option("--clip-below", options->build.clipBelow, "voxels below become background, grid units [none]")
       ->check(finite);

@@ -11,14 +11,14 @@ using namespace umbrick::tools;
 
 // Exit status: 0 success, 1 a failed job or comparison, 2 wrong usage.
 int runProgram(int argc, char** argv) {
-  CLI::App app{"Sparse volumes: convert, inspect, render, check.", "umbrick"};
+  CLI::App app{"Sparse volumes: convert, inspect, render, compare, check.", "umbrick"};
   app.set_version_flag("--version", "umbrick " UMBRICK_VERSION);
   app.require_subcommand(1);
   // One line, like every other error.
   app.failure_message(
       [](const CLI::App*, const CLI::Error& error) { return std::string("umbrick: ") + error.what() + "\n"; });
   const std::vector<Command> commands{
-      addConvert(app), addInfo(app), addRender(app), addReference(app), addCheck(app),
+      addConvert(app), addInfo(app), addRender(app), addReference(app), addCompare(app), addCheck(app),
   };
   try {
     app.parse(argc, argv);

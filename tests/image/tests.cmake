@@ -1,1 +1,1 @@
-umbrick_tests(image exr_test.cpp png_test.cpp)
+umbrick_tests(image colour_map_test.cpp exr_test.cpp flip_test.cpp image_difference_test.cpp png_test.cpp ssim_test.cpp)

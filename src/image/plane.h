@@ -1,0 +1,33 @@
+// One channel in double precision, and filters that act along rows and columns.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+namespace umbrick {
+
+/// width x height values, row by row.
+struct Plane {
+  int width = 0;
+  int height = 0;
+  std::vector<double> values;
+
+  Plane(int w, int h) : width(w), height(h), values(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+  double* row(int y) { return values.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width); }
+  const double* row(int y) const {
+    return values.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+  }
+};
+
+/// Weights at offsets -radius to radius, an odd number of them.
+using Kernel = std::vector<double>;
+
+/// exp(-x^2 / (2 sigma^2)), not normalised.
+Kernel gaussian(double sigma, int radius);
+/// The kernel divided by its sum.
+Kernel normalised(Kernel kernel);
+
+/// out(x, y) = sum over i, j of alongX[i] alongY[j] in(x + i, y + j), on all threads; beyond the border the image
+/// continues with the border's values.
+Plane filtered(const Plane& in, const Kernel& alongX, const Kernel& alongY);
+
+}  // namespace umbrick

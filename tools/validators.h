@@ -1,0 +1,35 @@
+// Checks of option values: finite numbers, with messages that say what was expected.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <string>
+
+namespace umbrick::tools {
+
+/// A number that is finite, which CLI11's own ranges do not ask for, and that `accept` agrees to.
+/// @param expected  completes "expected ..., found -1"; also shown in the help
+template <typename Accept>
+CLI::Validator finiteNumber(Accept accept, const std::string& expected) {
+  return CLI::Validator(
+      [accept, expected](const std::string& text) {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && accept(value);
+        return good ? std::string() : "expected " + expected + ", found " + text;
+      },
+      "(" + expected + ")");
+}
+inline CLI::Validator finiteNumber() {
+  return finiteNumber([](double) { return true; }, "a number");
+}
+inline CLI::Validator nonNegativeNumber() {
+  return finiteNumber([](double value) { return value >= 0; }, "a number >= 0");
+}
+inline CLI::Validator positiveNumber() {
+  return finiteNumber([](double value) { return value > 0; }, "a number > 0");
+}
+/// @param range  as messages say it, e.g. "0 to 1"
+inline CLI::Validator numberIn(double low, double high, const std::string& range) {
+  return finiteNumber([low, high](double value) { return value >= low && value <= high; }, "a number from " + range);
+}
+
+}  // namespace umbrick::tools
