@@ -99,7 +99,8 @@ RayCounts integrateAll(const Scene& scene, const ReferenceOptions& options, cons
   const int width = scene.camera.width, height = scene.camera.height;
   const int columns = (width + kTile - 1) / kTile, rows = (height + kTile - 1) / kTile;
   const std::size_t tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-  Progress progress(options.progress, tiles);
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  Progress progress(options.progress, pixels);
   tbb::enumerable_thread_specific<decltype(makeIntegrator())> integrators(makeIntegrator);
   // More threads than cores are granted, too.
   std::optional<tbb::global_control> limit;
@@ -113,14 +114,15 @@ RayCounts integrateAll(const Scene& scene, const ReferenceOptions& options, cons
         const int left = static_cast<int>(tile % static_cast<std::size_t>(columns)) * kTile;
         const int bottom = static_cast<int>(tile / static_cast<std::size_t>(columns)) * kTile;
         for (int y = bottom; y < std::min(bottom + kTile, height); ++y)
-          for (int x = left; x < std::min(left + kTile, width); ++x)
+          for (int x = left; x < std::min(left + kTile, width) && !progress.stopped(); ++x) {
             store(integrator.integrate(x, y), scene, x, y, picture);
-        progress.add();
+            progress.add();
+          }
       }
     });
   });
-  picture.complete = progress.done() == tiles;
-  picture.stats.share = static_cast<double>(progress.done()) / static_cast<double>(tiles);
+  picture.complete = progress.done() == pixels;
+  picture.stats.share = static_cast<double>(progress.done()) / static_cast<double>(pixels);
   RayCounts counts;
   for (const auto& integrator : integrators) counts.add(integrator.counts());
   return counts;
