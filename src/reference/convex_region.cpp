@@ -1,5 +1,6 @@
 #include "reference/convex_region.h"
 
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 

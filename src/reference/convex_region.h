@@ -1,26 +1,14 @@
 // The space that holds the medium: an intersection of half-spaces.
 #pragma once
-#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
-#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "reference/index_ray.h"
 #include "umbrick/core/box.h"
 #include "umbrick/scene/scene.h"
 
 namespace umbrick {
-
-/// A line in continuous index space, origin + t direction. t is a length in world units.
-struct IndexRay {
-  glm::dvec3 origin{0}, direction{0};
-  glm::dvec3 at(double t) const { return origin + t * direction; }
-};
-
-struct Interval {
-  double begin = 0, end = 0;
-  bool empty() const { return !(begin < end); }
-};
 
 /// Half-spaces dot(xyz, point) + w >= 0 in index space.
 class ConvexRegion {

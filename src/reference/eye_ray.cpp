@@ -103,8 +103,8 @@ EyeRays::Ray EyeRays::through(int x, int y) const {
   Ray ray;
   ray.direction = perspective ? glm::normalize(frame_.forward + aside) : frame_.forward;
   ray.depthPerLength = glm::dot(ray.direction, frame_.forward);
-  ray.index.origin = glm::dvec3(worldToIndex_ * glm::dvec4(perspective ? camera_.eye : camera_.eye + aside, 1));
-  ray.index.direction = toIndex(ray.direction);
+  const glm::dvec3 origin(worldToIndex_ * glm::dvec4(perspective ? camera_.eye : camera_.eye + aside, 1));
+  ray.index = IndexRay(origin, toIndex(ray.direction));
   return ray;
 }
 

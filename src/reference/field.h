@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "reference/classifier.h"
-#include "reference/convex_region.h"
 #include "reference/cubic.h"
+#include "reference/index_ray.h"
 #include "umbrick/core/range.h"
 #include "umbrick/grid/scalar_grid.h"
 #include "umbrick/optics/transfer_function.h"
@@ -106,30 +106,13 @@ class Field {
   std::unique_ptr<BlockTree> tree_;
 };
 
-/// Where a ray leaves the box [low, high] that it is in.
-inline double exitOf(const IndexRay& ray, const glm::dvec3& low, const glm::dvec3& high) {
-  double exit = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double d = ray.direction[axis];
-    if (d != 0) exit = std::min(exit, ((d > 0 ? high[axis] : low[axis]) - ray.origin[axis]) / d);
-  }
-  return exit;
-}
-
-/// A step along the ray that is nothing to the field and yet leads off a face: 1e-7 voxels, or more where coordinates
-/// are so large that double precision has no such step.
-inline double nudgeOf(const IndexRay& ray, const glm::dvec3& at) {
-  const auto largest = [](const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
-  return std::max(1e-7, 0x1p-48 * largest(at)) / largest(ray.direction);
-}
-
 template <class Visit>
 void Field::walkBlocks(Accessor& accessor, const IndexRay& ray, const Interval& part, const Visit& visit) const {
   double t = part.begin;
   while (t < part.end) {
     const double nudge = nudgeOf(ray, ray.at(t));
-    const glm::dvec3 p = glm::floor(ray.at(t + nudge) / double(FieldBlock::kCells));
-    const openvdb::Coord at(static_cast<int>(p.x), static_cast<int>(p.y), static_cast<int>(p.z));
+    const glm::dvec3 p = ray.at(t + nudge) * (1.0 / FieldBlock::kCells);
+    const openvdb::Coord at(floorToInt(p.x), floorToInt(p.y), floorToInt(p.z));
     const int index = accessor.getValue(at);
     const FieldBlock* found = index < 0 ? nullptr : &blocks_[static_cast<std::size_t>(index)];
     // Tiles are constant: the ray leaves them at once. Blocks with voxels stand at the lowest level.
@@ -156,12 +139,12 @@ bool walkCells(const FieldBlock& block, const glm::dvec3& origin, const IndexRay
   glm::ivec3 cell, step(0);
   glm::dvec3 next(std::numeric_limits<double>::infinity()), width(0);
   for (int axis = 0; axis < 3; ++axis) {
-    cell[axis] = std::clamp(static_cast<int>(std::floor(start[axis])), 0, FieldBlock::kCells - 1);
+    cell[axis] = std::clamp(floorToInt(start[axis]), 0, FieldBlock::kCells - 1);
     const double d = ray.direction[axis];
     if (d == 0) continue;
     step[axis] = d > 0 ? 1 : -1;
-    width[axis] = std::abs(1 / d);
-    next[axis] = (origin[axis] + cell[axis] + (d > 0) - ray.origin[axis]) / d;
+    width[axis] = std::abs(ray.inverse[axis]);
+    next[axis] = (origin[axis] + cell[axis] + (d > 0) - ray.origin[axis]) * ray.inverse[axis];
   }
   for (double t = begin; t < end;) {
     const int axis = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);

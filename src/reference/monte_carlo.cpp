@@ -73,7 +73,7 @@ double MonteCarloPixel::estimateVisibility(const glm::dvec3& point, const glm::d
   if (scene.model == Model::emission) return 1;
   const double aperture = scene.model == Model::ambient ? 3.14159265358979323846 : scene.occlusion.aperture;
   const double u = random.uniform(), v = random.uniform();
-  const IndexRay light{point, space_.rays.toIndex(sampleCone(towardsEye, aperture, u, v))};
+  const IndexRay light(point, space_.rays.toIndex(sampleCone(towardsEye, aperture, u, v)));
   ++counts_.lightRays;
   const Interval part = space_.region.clip(light, 0);
   double transmittance = 1;

@@ -93,11 +93,11 @@ PixelResult QuadraturePixel::integrate(int x, int y) {
 
 double QuadraturePixel::visibilityAt(const IndexRay& ray, double t) {
   ++counts_.samples;
-  IndexRay light{ray.at(t), {}};
+  const glm::dvec3 point = ray.at(t);
   double sum = 0;
   for (const auto& [direction, weight] : lights_) {
     ++counts_.lightRays;
-    light.direction = direction;
+    const IndexRay light(point, direction);
     const Interval part = space_.region.clip(light, 0);
     double tau = 0;
     if (!part.empty())

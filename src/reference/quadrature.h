@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 
+#include "reference/convex_region.h"
 #include "reference/eye_ray.h"
 #include "reference/pixel.h"
 #include "umbrick/optics/directions.h"

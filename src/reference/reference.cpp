@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "reference/monte_carlo.h"
@@ -97,8 +99,13 @@ RayCounts integrateAll(const Scene& scene, const ReferenceOptions& options, cons
   const int width = scene.camera.width, height = scene.camera.height;
   const int columns = (width + kTile - 1) / kTile, rows = (height + kTile - 1) / kTile;
   const std::size_t tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-  Progress progress(options.progress, tiles);
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  Progress progress(options.progress, pixels);
   tbb::enumerable_thread_specific<decltype(makeIntegrator())> integrators(makeIntegrator);
+  // More threads than cores are granted, too.
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles, 1), [&](const auto& range) {
@@ -107,14 +114,15 @@ RayCounts integrateAll(const Scene& scene, const ReferenceOptions& options, cons
         const int left = static_cast<int>(tile % static_cast<std::size_t>(columns)) * kTile;
         const int bottom = static_cast<int>(tile / static_cast<std::size_t>(columns)) * kTile;
         for (int y = bottom; y < std::min(bottom + kTile, height); ++y)
-          for (int x = left; x < std::min(left + kTile, width); ++x)
+          for (int x = left; x < std::min(left + kTile, width) && !progress.stopped(); ++x) {
             store(integrator.integrate(x, y), scene, x, y, picture);
-        progress.add();
+            progress.add();
+          }
       }
     });
   });
-  picture.complete = progress.done() == tiles;
-  picture.stats.share = static_cast<double>(progress.done()) / static_cast<double>(tiles);
+  picture.complete = progress.done() == pixels;
+  picture.stats.share = static_cast<double>(progress.done()) / static_cast<double>(pixels);
   RayCounts counts;
   for (const auto& integrator : integrators) counts.add(integrator.counts());
   return counts;

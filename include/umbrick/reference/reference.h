@@ -62,10 +62,11 @@ struct ReferencePicture {
 /// Quadrature: a ray meets voxel cells in order. In a cell the value along the ray is a cubic; a 1D function is linear
 /// between its points, so the optical depth over each piece is a polynomial that is integrated exactly. V is evaluated
 /// at the centre of the scattering of each stretch of the ray; stretches are halved until that changes the radiance by
-/// less than the tolerance. With a 2D function a cell takes Gauss-Legendre nodes. Monte Carlo: delta tracking to one
-/// collision per path with majorants per block of 8^3 cells (Woodcock et al. 1965), ratio tracking along one direction
-/// from there (Novák et al. 2014, doi:10.1145/2661229.2661292). Numbers come from one stream per pixel: the picture is
-/// the same for any number of threads.
+/// less than the tolerance, and end where less than a hundredth of it, at most 1e-6, gets through. A 2D function, whose
+/// extinction is of degree six along a cell, is taken for a cubic over each quarter of it. Monte Carlo: delta tracking
+/// to one collision per path with majorants per block of 8^3 cells (Woodcock et al. 1965), ratio tracking along one
+/// direction from there (Novák et al. 2014, doi:10.1145/2661229.2661292). Numbers come from one stream per pixel: the
+/// picture is the same for any number of threads.
 ///
 /// Sources of the model: Max 1995, doi:10.1109/2945.468400; Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
 /// @param scene  resolved, see resolveScene

@@ -1,0 +1,281 @@
+// The two integrators against each other, and what must not change a picture.
+#include <catch2/catch.hpp>
+
+#include "reference/reference_fixture.h"
+#include "umbrick/core/error.h"
+
+using namespace umbrick;
+
+namespace {
+
+// Soft and hard parts: a steep peak, a step and a slope.
+TransferFunction variedTransfer() {
+  return TransferFunction({{0.05, {{0.9, 0.3, 0.1}, 0}},
+                           {0.4, {{0.9, 0.5, 0.2}, 0.15}},
+                           {0.41, {{0.2, 0.4, 1}, 1.5}},
+                           {0.42, {{0.3, 0.8, 0.6}, 0.1}},
+                           {0.6, {{0.3, 0.8, 0.6}, 0.3}},
+                           {0.6, {{1, 1, 1}, 3}},
+                           {0.8, {{1, 0.9, 0.8}, 5}}});
+}
+
+// Bilinear between lattice lines, opaque where the gradient is large.
+TransferFunction variedTransfer2d() {
+  return TransferFunction({0.05, 0.5, 1}, {0, 0.05, 0.2},
+                          {{{1, 0, 0}, 0},
+                           {{1, 0.5, 0}, 0.05},
+                           {{1, 1, 0}, 0.3},
+                           {{0, 1, 0}, 0},
+                           {{0, 1, 0.5}, 0.4},
+                           {{0, 1, 1}, 1.5},
+                           {{0, 0, 1}, 0.1},
+                           {{0.5, 0, 1}, 1},
+                           {{1, 0, 1}, 2}});
+}
+
+struct Case {
+  std::string name;
+  ScalarGrid grid;
+  Scene scene;
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const Model model : {Model::emission, Model::cone, Model::coneRay, Model::ambient})
+    for (const bool parallel : {false, true})
+      for (const bool crooked : {false, true}) {
+        // One property a time is enough for the slower combinations.
+        if (parallel && crooked) continue;
+        const glm::dmat4 transform = crooked ? crookedTransform() : glm::dmat4(1);
+        const glm::dvec3 centre(transform * glm::dvec4(14, 14, 14, 1));
+        const glm::dvec3 eye = centre + glm::dvec3(25, -22, 19);
+        const Camera camera =
+            parallel ? orthographicCamera(eye, centre, 36, 12) : perspectiveCamera(eye, centre, 0.9, 12);
+        Scene scene = plainScene(parallel ? variedTransfer2d() : variedTransfer(), camera, 1);
+        scene.model = model;
+        scene.occlusion.aperture = 1.2;
+        scene.ambient = {1.5, 1, 0.5};
+        if (crooked) scene.clipPlanes = {{0.3, -0.5, 0.8, 3 - glm::dot(glm::dvec3(0.3, -0.5, 0.8), centre)}};
+        if (parallel) scene.background = glm::dvec3(0.2, 0.1, 0.4);
+        all.push_back({modelName(model) + (parallel  ? " orthographic 2D"
+                                           : crooked ? " crooked, clipped"
+                                                     : " perspective"),
+                       withTransform(makeDense(glm::ivec3(28)), transform), scene});
+      }
+  return all;
+}
+
+ReferenceOptions monteCarlo(int samples, std::uint64_t seed) {
+  ReferenceOptions options;
+  options.integrator = Integrator::monteCarlo;
+  options.samples = samples;
+  options.seed = seed;
+  return options;
+}
+
+}  // namespace
+
+// The mean square of N independent normal deviates is 1 with a standard deviation of sqrt(2 / N). The channels of a
+// pixel say much the same, so N is about 288 of 144 pixels: 0.083, and four of them. What directions and tolerance
+// leave of the quadrature, some 5e-3, is a twentieth of the variance of 500 paths. A bias of one standard error would
+// double the mean.
+TEST_CASE("Quadrature and Monte Carlo agree within the standard error that Monte Carlo states", "[reference]") {
+  for (const auto& [name, grid, scene] : cases()) {
+    INFO(name);
+    ReferenceOptions options;
+    options.directions = 150;
+    options.tolerance = 1e-3;
+    const ReferencePicture exact = renderReference(grid, scene, options);
+    const int samples = 500;
+    const ReferencePicture random = renderReference(grid, scene, monteCarlo(samples, 11));
+    double squares = 0, bias = 0, variance = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < exact.colour.pixels.size(); ++i) {
+      const double error = random.standardError.pixels[i];
+      const double difference = double(random.colour.pixels[i]) - double(exact.colour.pixels[i]);
+      // Of a rare event 500 paths may have seen none or too few to know how rare it is.
+      if (error < 2.0 / samples) {
+        CHECK(std::abs(difference) < 12.0 / samples);
+        continue;
+      }
+      squares += (difference / error) * (difference / error);
+      bias += difference;
+      variance += error * error;
+      ++count;
+    }
+    REQUIRE(count > 200);
+    INFO("mean square " << squares / count << " of " << count << ", bias " << bias / count);
+    CHECK(std::abs(squares / count - 1) < 0.35);
+    // The mean over all pixels, four channels of which deviate together: four times the variance.
+    CHECK(std::abs(bias) / count < 4 * std::sqrt(4 * variance) / count);
+  }
+}
+
+TEST_CASE("Pictures do not depend on threads, and random ones only on the seed", "[reference]") {
+  const Case made = cases()[3];  // cone, perspective
+  for (const Integrator integrator : {Integrator::quadrature, Integrator::monteCarlo}) {
+    ReferenceOptions options = monteCarlo(40, 3);
+    options.integrator = integrator;
+    options.directions = 16;
+    options.threads = 1;
+    const ReferencePicture one = renderReference(made.grid, made.scene, options);
+    options.threads = 4;
+    const ReferencePicture four = renderReference(made.grid, made.scene, options);
+    CHECK(one.colour.pixels == four.colour.pixels);
+    CHECK(one.standardError.pixels == four.standardError.pixels);
+    CHECK(one.depth.pixels == four.depth.pixels);
+    options.seed = 4;
+    const ReferencePicture other = renderReference(made.grid, made.scene, options);
+    CHECK((one.colour.pixels == other.colour.pixels) == (integrator == Integrator::quadrature));
+  }
+}
+
+TEST_CASE("The standard error asked for is reached, and no sooner than it must", "[reference]") {
+  const Case made = cases()[3];
+  ReferenceOptions options = monteCarlo(100'000, 9);
+  options.standardError = 0.02;
+  const ReferencePicture coarse = renderReference(made.grid, made.scene, options);
+  options.standardError = 0.01;
+  const ReferencePicture fine = renderReference(made.grid, made.scene, options);
+  float largest = 0;
+  for (const float error : fine.standardError.pixels) largest = std::max(largest, error);
+  // The ambient light of 1.5 scales what the paths bring.
+  CHECK(largest <= 1.5 * 0.01 * (1 + 1e-6));
+  // Half the error takes four times the paths, but for pixels that took the fewest that count at all.
+  CHECK(fine.stats.eyeRays > 2 * coarse.stats.eyeRays);
+  CHECK(fine.stats.eyeRays < 5 * coarse.stats.eyeRays);
+}
+
+// The standard error is that of the mean over seeds.
+TEST_CASE("The stated standard error is the scatter of pictures of other seeds", "[reference]") {
+  const Case made = cases()[3];
+  const int seeds = 40;
+  std::vector<double> sum, squares, stated;
+  for (int seed = 0; seed < seeds; ++seed) {
+    const ReferencePicture picture =
+        renderReference(made.grid, made.scene, monteCarlo(100, static_cast<unsigned>(seed)));
+    sum.resize(picture.colour.pixels.size());
+    squares.resize(sum.size());
+    stated.resize(sum.size());
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      const double value = picture.colour.pixels[i], error = picture.standardError.pixels[i];
+      sum[i] += value;
+      squares[i] += value * value;
+      stated[i] += error * error / seeds;
+    }
+  }
+  double scatter = 0, expected = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    scatter += (squares[i] - sum[i] * sum[i] / seeds) / (seeds - 1);
+    expected += stated[i];
+  }
+  // A variance estimated from 39 degrees of freedom in each of some 100 independent pixels: 2.3 %; four of them.
+  CHECK(scatter == Approx(expected).epsilon(0.1));
+}
+
+TEST_CASE("Skipping empty space changes no picture and visits less", "[reference]") {
+  const ScalarGrid grid = makeSparse();
+  const glm::dvec3 centre(100);
+  for (const Model model : {Model::emission, Model::cone}) {
+    Scene scene = plainScene(TransferFunction({{0.02, {{0.9, 0.5, 0.2}, 0}}, {1, {{0.3, 0.8, 0.6}, 1}}}),
+                             perspectiveCamera(centre + glm::dvec3(150, -140, 130), centre, 0.9, 12), 1);
+    scene.model = model;
+    ReferenceOptions options;
+    options.directions = 16;
+    const ReferencePicture skipped = renderReference(grid, scene, options);
+    options.skipEmpty = false;
+    const ReferencePicture visited = renderReference(grid, scene, options);
+    // The same cells in the same order: but for where a step along the ray is rounded.
+    CHECK(maxDifference(skipped.colour, visited.colour) < 1e-6);
+    CHECK(skipped.stats.cells * 4 < visited.stats.cells);
+  }
+}
+
+// World units scale away: extinction by the inverse, lengths alike.
+TEST_CASE("Huge, tiny and far transforms make the picture of the unit one", "[reference]") {
+  const glm::dvec3 centre(14), eye(39, -8, 33);
+  const auto made = [&](double scale, const glm::dvec3& offset, Model model) {
+    glm::dmat4 transform = glm::dmat4(scale);
+    transform[3] = glm::dvec4(offset, 1);
+    const auto world = [&](const glm::dvec3& p) { return scale * p + offset; };
+    Scene scene =
+        plainScene(variedTransfer().scaled(1 / scale), perspectiveCamera(world(eye), world(centre), 0.9, 10), scale);
+    scene.model = model;
+    ReferenceOptions options;
+    options.directions = 16;
+    return renderReference(withTransform(makeDense(glm::ivec3(28)), transform), scene, options).colour;
+  };
+  for (const Model model : {Model::emission, Model::cone}) {
+    const Image unit = made(1, glm::dvec3(0), model);
+    // OpenVDB has no voxels smaller than about 1.5e-5.
+    CHECK(maxDifference(unit, made(2e-5, glm::dvec3(0), model)) < 1e-5);
+    CHECK(maxDifference(unit, made(1e6, glm::dvec3(0), model)) < 1e-5);
+    // A million units from the origin double precision has 1e-10 of a voxel left.
+    CHECK(maxDifference(unit, made(1, glm::dvec3(1e6, -1e6, 1e6), model)) < 1e-5);
+  }
+}
+
+TEST_CASE("Voxels a million from the origin make the same picture", "[reference]") {
+  const glm::dvec3 centre(14), eye(39, -8, 33);
+  std::vector<Image> pictures;
+  for (const glm::ivec3& origin : {glm::ivec3(0), glm::ivec3(1000000, -1000000, 1000000)}) {
+    const glm::dvec3 offset(origin);
+    Scene scene = plainScene(variedTransfer(), perspectiveCamera(eye + offset, centre + offset, 0.9, 10), 1);
+    scene.model = Model::cone;
+    ReferenceOptions options;
+    options.directions = 16;
+    pictures.push_back(renderReference(makeDense(glm::ivec3(28), origin), scene, options).colour);
+  }
+  // Places of 1e6 voxels have a rounding of 1e-10; V of 16 directions jumps where a path touches a voxel's edge.
+  CHECK(maxDifference(pictures[0], pictures[1]) < 1e-4);
+}
+
+TEST_CASE("A job that is stopped says how far it came and keeps what it has", "[reference]") {
+  const Case made = cases()[0];
+  ReferenceOptions options;
+  options.threads = 1;
+  int calls = 0;
+  double last = 0;
+  options.progress = [&](double share) {
+    CHECK(share > last);
+    last = share;
+    return ++calls < 90;
+  };
+  const ReferencePicture stopped = renderReference(made.grid, made.scene, options);
+  CHECK_FALSE(stopped.complete);
+  CHECK(stopped.stats.share == Approx(90.0 / 144));
+  options.progress = {};
+  const ReferencePicture whole = renderReference(made.grid, made.scene, options);
+  CHECK(whole.complete);
+  std::size_t equal = 0, blank = 0;
+  for (std::size_t i = 0; i < whole.colour.pixels.size(); ++i) {
+    equal += stopped.colour.pixels[i] == whole.colour.pixels[i] ? 1u : 0u;
+    blank += stopped.colour.pixels[i] == 0 ? 1u : 0u;
+  }
+  CHECK(equal + blank >= whole.colour.pixels.size());
+  CHECK(equal > blank);
+}
+
+TEST_CASE("Impossible requests are refused with the field and its value", "[reference]") {
+  const Case made = cases()[0];
+  const auto complaint = [&](const std::function<void(ReferenceOptions&, Scene&)>& change) {
+    ReferenceOptions options;
+    Scene scene = made.scene;
+    change(options, scene);
+    try {
+      renderReference(made.grid, scene, options);
+    } catch (const InvalidArgument& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  using Catch::Contains;
+  CHECK_THAT(complaint([](ReferenceOptions& o, Scene&) { o.step = -1; }), Contains("step") && Contains("-1"));
+  CHECK_THAT(complaint([](ReferenceOptions& o, Scene&) { o.tolerance = 0; }), Contains("tolerance") && Contains("0"));
+  CHECK_THAT(complaint([](ReferenceOptions& o, Scene&) { o.directions = 0; }), Contains("directions"));
+  CHECK_THAT(complaint([](ReferenceOptions& o, Scene&) { o.samples = 1; }), Contains("samples"));
+  CHECK_THAT(complaint([](ReferenceOptions& o, Scene&) { o.standardError = std::nan(""); }),
+             Contains("standard error"));
+  CHECK_THAT(complaint([](ReferenceOptions&, Scene& s) { s.transfer.reset(); }), Contains("not resolved"));
+  CHECK_THAT(complaint([](ReferenceOptions&, Scene& s) { s.camera.fov = 4; }), Contains("fov"));
+}

@@ -1,0 +1,133 @@
+// umbrick reference, run as a user would.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "support/test_grids.h"
+#include "tools/program.h"
+#include "umbrick/grid/build_grid.h"
+#include "umbrick/image/exr.h"
+#include "umbrick/image/png.h"
+
+using namespace umbrick;
+using Catch::Contains;
+
+namespace {
+
+const std::string kVolume = "ball.vdb --tf ball.json ";
+const std::string kScene = kVolume + "--size 24x20 --theta 50 ";
+
+// A folder with a small volume and a transfer function for it.
+struct Workplace {
+  TemporaryFolder folder;
+  Workplace() {
+    const openvdb::FloatGrid::Ptr grid = makeSparse(glm::ivec3(0), 2, 6, 48).grid->deepCopy();
+    grid->setName("density");
+    writeGrids(folder.path() / "ball.vdb", {grid});
+    writeBytes(folder.path() / "ball.json",
+               R"({"points": [{"value": 0.05, "albedo": [1, 0.6, 0.2], "sigma_t": 0},
+                              {"value": 1, "albedo": [0.9, 0.8, 0.7], "sigma_t": 2}]})");
+  }
+  ProgramResult run(const std::string& arguments) const { return runProgram(folder, arguments); }
+  ExrFile exr(const std::string& name) const { return readExr(folder.path() / name); }
+};
+
+double largest(const Image& image) {
+  double most = 0;
+  for (const float value : image.pixels) most = std::max<double>(most, std::abs(value));
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("The reference makes a picture with layers, statistics and the scene it can be made from again", "[tools]") {
+  const Workplace at;
+  const ProgramResult made = at.run("reference " + kScene +
+                                    "--model cone-ray --directions 32 --layers -o a.exr -o a.png --stats a.stats.json");
+  REQUIRE(made.err == "");
+  REQUIRE(made.status == 0);
+  CHECK(made.out == "a.exr\na.png\n");
+  const ExrFile file = at.exr("a.exr");
+  REQUIRE(file.layers.size() == 3);
+  CHECK(file.layers[0].image.width == 24);
+  CHECK(file.layers[0].image.height == 20);
+  CHECK(largest(file.layers[0].image) > 0.2);
+  const auto stats = nlohmann::json::parse(readBytes(at.folder.path() / "a.stats.json"));
+  CHECK(stats["complete"] == true);
+  CHECK(stats["light_rays"].get<double>() >= 32 * stats["samples"].get<double>() * 0.9);
+  CHECK(stats["scene"]["model"] == "cone-ray");
+  // The header says enough to make the picture again, to the last bit.
+  writeBytes(at.folder.path() / "again.json", file.metadata.at("umbrick.scene"));
+  REQUIRE(at.run("reference again.json --directions 32 -o b.exr").status == 0);
+  CHECK(at.exr("b.exr").layers[0].image.pixels == file.layers[0].image.pixels);
+}
+
+TEST_CASE("Monte Carlo writes its standard error as a layer and repeats by its seed on any threads", "[tools]") {
+  const Workplace at;
+  const std::string options = "reference " + kScene + "--model ambient --integrator monte-carlo --samples 64 --layers ";
+  REQUIRE(at.run(options + "--seed 5 --threads 1 -o a.exr").status == 0);
+  REQUIRE(at.run(options + "--seed 5 --threads 3 -o b.exr").err == "");
+  REQUIRE(at.run(options + "--seed 6 -o c.exr").status == 0);
+  const ExrFile a = at.exr("a.exr"), b = at.exr("b.exr"), c = at.exr("c.exr");
+  REQUIRE(a.layers.size() == 4);
+  CHECK(a.layers[3].name == "standardError");
+  CHECK(a.layers[3].image.channels == 4);
+  // No more than that of a coin tossed 64 times.
+  CHECK(largest(a.layers[3].image) > 0.01);
+  CHECK(largest(a.layers[3].image) <= 0.5 / std::sqrt(63.0) * 1.001);
+  CHECK(a.layers[0].image.pixels == b.layers[0].image.pixels);
+  CHECK(a.layers[3].image.pixels == b.layers[3].image.pixels);
+  CHECK(a.layers[0].image.pixels != c.layers[0].image.pixels);
+}
+
+TEST_CASE("An interrupted reference writes what is done, says so and fails", "[tools]") {
+  const Workplace at;
+  // Hours of work, interrupted after half a second.
+  const TemporaryFolder& folder = at.folder;
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && timeout -s INT 0.5 '" UMBRICK_PROGRAM "' reference " + kVolume +
+                              "--model cone --integrator monte-carlo --samples 100000 --size 512x512 -o a.exr "
+                              "--stats s.json >.out 2>.err; echo $? >.status";
+  REQUIRE(std::system(command.c_str()) == 0);
+  // timeout itself reports 124 when it had to interrupt, whatever the program's own status.
+  CHECK_THAT(readBytes(folder.path() / ".status"), Contains("124"));
+  const std::string err = readBytes(folder.path() / ".err");
+  CHECK_THAT(err, Contains("stopped; the picture holds"));
+  CHECK(std::count(err.begin(), err.end(), '\n') == 1);
+  const ExrFile file = at.exr("a.exr");
+  CHECK(file.metadata.at("umbrick.complete") == "false");
+  const auto stats = nlohmann::json::parse(readBytes(folder.path() / "s.json"));
+  CHECK(stats["complete"] == false);
+  CHECK(stats["share_done"].get<double>() < 1);
+  // The program's own status.
+  const std::string preserved = "cd '" + folder.path().string() +
+                                "' && timeout --preserve-status -s INT 0.5 '" UMBRICK_PROGRAM "' reference " + kVolume +
+                                "--integrator monte-carlo --samples 1000000 --size 512x512 -o b.exr "
+                                ">/dev/null 2>&1; echo $? >.status";
+  REQUIRE(std::system(preserved.c_str()) == 0);
+  CHECK(readBytes(folder.path() / ".status") == "1\n");
+}
+
+TEST_CASE("What the reference cannot do is one line and leaves no file", "[tools]") {
+  const Workplace at;
+  const std::size_t before = filesIn(at.folder);
+  const auto complaint = [&](const std::string& arguments, int status) {
+    const ProgramResult result = at.run("reference " + arguments);
+    INFO(arguments << ": " << result.err);
+    CHECK(result.status == status);
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+    CHECK(result.out == "");
+    CHECK(filesIn(at.folder) == before);
+    return result.err;
+  };
+  CHECK_THAT(complaint("missing.vdb --tf ball.json -o a.exr", 1), Contains("missing.vdb"));
+  CHECK_THAT(complaint(kScene + "--model shadows -o a.exr", 2), Contains("shadows") && Contains("ambient"));
+  CHECK_THAT(complaint(kScene + "--integrator euler -o a.exr", 2), Contains("euler") && Contains("monte-carlo"));
+  CHECK_THAT(complaint(kScene + "--samples 1 -o a.exr", 2), Contains("samples"));
+  CHECK_THAT(complaint(kScene + "--tolerance 0 -o a.exr", 2), Contains("tolerance"));
+  CHECK_THAT(complaint(kScene + "--directions 0 -o a.exr", 2), Contains("directions"));
+  CHECK_THAT(complaint(kScene + "--step -1 -o a.exr", 2), Contains("step"));
+  CHECK_THAT(complaint(kScene + "--backend osmesa -o a.exr", 2), Contains("--backend"));
+  CHECK_THAT(complaint(kScene + "-o a.tiff", 2), Contains("a.tiff") && Contains(".exr"));
+  CHECK_THAT(complaint(kScene + "-o nowhere/a.exr", 1), Contains("nowhere"));
+  CHECK_THAT(complaint(kVolume + "--theta 90 -o a.exr", 1), Contains("theta") && Contains("90"));
+}
