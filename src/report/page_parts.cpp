@@ -73,9 +73,13 @@ std::string printHtml(const HtmlTable& table) {
   };
   std::string html = "<div class=\"scroll\"><table";
   if (table.sortable) html += " class=\"sortable\"";
-  html += ">\n<thead><tr>";
-  for (const HtmlTable::Cell& head : table.head) html += cell(head, "th");
-  html += "</tr></thead>\n<tbody>\n";
+  html += ">\n";
+  if (!table.head.empty()) {
+    html += "<thead><tr>";
+    for (const HtmlTable::Cell& head : table.head) html += cell(head, "th");
+    html += "</tr></thead>\n";
+  }
+  html += "<tbody>\n";
   for (const HtmlTable::Row& row : table.rows) {
     html += row.kind.empty() ? "<tr>" : "<tr class=\"" + row.kind + "\">";
     for (const HtmlTable::Cell& one : row.cells) html += cell(one, "td");

@@ -181,7 +181,7 @@ StudySettings quickStudySettings() {
   quick.segments = {1, 4};
   quick.sizes = {64, 128};
   quick.repeats = 3;
-  quick.directions = 64;
+  quick.directions = 48;
   quick.tolerance = 4e-3;
   return quick;
 }
