@@ -122,7 +122,9 @@ void addSweeps(CLI::App& sub, StudyCommand& c) {
   const auto defaults = [](const std::string& usual, const std::string& small) {
     return " [" + usual + "; quick: " + small + "]";
   };
-  sub.add_option("--methods", c.methods, methodNames() + " [all; quick: emission dos]")->group(group);
+  std::string quickMethods;
+  for (const std::string& name : quick.methods) quickMethods += " " + name;
+  sub.add_option("--methods", c.methods, methodNames() + " [all; quick:" + quickMethods + "]")->group(group);
   sub.add_option("--slices", c.slices,
                  "through the visible extent along the view axis" +
                      defaults(printedList(full.slices), printedList(quick.slices)))

@@ -27,7 +27,7 @@ std::string dosOptions(int footprint) {
 
 const std::vector<StudyMethod>& studyMethods() {
   static const std::vector<StudyMethod> methods{
-      {"emission", "emission", Model::emission, {}, [](int, Scene&) {}, [](int) { return std::string(); }, true},
+      {"emission", "emission", Model::emission, {}, [](int, Scene&) {}, [](int) { return std::string(); }, true, true},
       {"emission-full",
        "emission, no early rejection",
        Model::emission,
@@ -35,7 +35,7 @@ const std::vector<StudyMethod>& studyMethods() {
        [](int, Scene& scene) { scene.sampling.saturation = 0; },
        [](int) { return std::string("--saturation 0"); },
        true},
-      {"dos", "dos, Algorithm 3", Model::cone, kFootprint, applyDos<3, 1>, dosOptions<3, 1>, true},
+      {"dos", "dos, Algorithm 3", Model::cone, kFootprint, applyDos<3, 1>, dosOptions<3, 1>, true, true},
       {"dos-2", "dos, Algorithm 2", Model::cone, kFootprint, applyDos<2, 1>, dosOptions<2, 1>, true},
       {"dos-two-pass", "dos, Algorithm 3, two passes", Model::cone, kFootprint, applyDos<3, 2>, dosOptions<3, 2>,
        false},

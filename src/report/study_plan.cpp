@@ -171,12 +171,12 @@ void appendReference(StudyPlan& plan, const StudyReference& reference) {
 
 StudySettings quickStudySettings() {
   StudySettings quick;
-  quick.methods = {"emission", "dos"};
+  for (const StudyMethod& method : studyMethods()) {
+    if (!method.quick) continue;
+    quick.methods.push_back(method.name);
+    if (!method.detail.name.empty()) quick.details[method.detail.name] = method.detail.quick;
+  }
   quick.slices = {32, 64, 128, 256, 512};
-  for (const StudyMethod& method : studyMethods())
-    if (!method.detail.name.empty() &&
-        std::find(quick.methods.begin(), quick.methods.end(), method.name) != quick.methods.end())
-      quick.details[method.detail.name] = method.detail.quick;
   quick.bits = {{32, 32}, {16, 16}};
   quick.segments = {1, 4};
   quick.sizes = {64, 128};

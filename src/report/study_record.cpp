@@ -1,13 +1,9 @@
 #include "report/study_record.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <vector>
 
 #include "core/json_reader.h"
@@ -222,23 +218,6 @@ void checkSame(const StudyRecord& record, const Json& stored, const std::string&
 }
 
 }  // namespace
-
-VolumeIdentity identify(const std::filesystem::path& file) {
-  VolumeIdentity identity;
-  std::error_code ignored;
-  const std::filesystem::path absolute = std::filesystem::weakly_canonical(file, ignored);
-  identity.file = (ignored ? file : absolute).string();
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw IoError(file.string() + ": cannot read");
-  std::vector<char> block(std::size_t{1} << 20);
-  uLong crc = ::crc32(0, nullptr, 0);
-  while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
-    crc = ::crc32(crc, reinterpret_cast<const Bytef*>(block.data()), static_cast<uInt>(in.gcount()));
-    identity.bytes += static_cast<std::uint64_t>(in.gcount());
-  }
-  identity.crc32 = static_cast<std::uint32_t>(crc);
-  return identity;
-}
 
 const CaseResult* StudyRecord::find(const StudyCase& what) const {
   const auto at = std::find_if(cases.begin(), cases.end(), [&](const CaseResult& r) { return r.what == what; });

@@ -9,6 +9,7 @@
 #include "report/error_measures.h"
 #include "report/machine.h"
 #include "report/statistics.h"
+#include "report/volume_identity.h"
 #include "umbrick/report/study_plan.h"
 
 namespace umbrick {
@@ -38,15 +39,6 @@ struct ModelError {
   StudyReference cone;
   ErrorMeasures error;
 };
-
-/// The volume's file, by what it holds.
-struct VolumeIdentity {
-  std::string file;
-  std::uint64_t bytes = 0;
-  std::uint32_t crc32 = 0;
-};
-/// @throw IoError
-VolumeIdentity identify(const std::filesystem::path& file);
 
 struct StudyRecord {
   StudyPlan plan;

@@ -26,6 +26,7 @@ struct StudyMethod {
   void (*apply)(int detail, Scene& scene);  // makes a scene of the model one of this method
   std::string (*options)(int detail);       // the same as options of `umbrick render`
   bool usual = true;                        // part of a study unless the user says otherwise
+  bool quick = false;                       // and of a quick one
 };
 
 /// emission       slices, pixels that are opaque are shaded no more (as the scene says)
