@@ -112,9 +112,11 @@ void appendSeries(std::vector<std::string>& parts, const Plot& plot, std::size_t
   }
   const std::string colour = " lc rgb \"" + std::string(kColours[line % std::size(kColours)]) + "\"";
   const std::string symbol = " pt " + std::to_string(kSymbols[line % std::size(kSymbols)]);
+  // A second round of colours is dashed.
+  const std::string dashes = line < std::size(kColours) ? "" : " dt 2";
   ++line;
   if (series.bars) parts.push_back(data + " using 1:2:3:4 with xerrorbars pt 0 lw 1" + colour + " notitle");
-  parts.push_back(data + " using 1:2 with linespoints lw 1.6 ps 0.8" + symbol + colour + title);
+  parts.push_back(data + " using 1:2 with linespoints lw 1.6 ps 0.8" + symbol + dashes + colour + title);
   const bool labels = std::any_of(series.points.begin(), series.points.end(),
                                   [](const PlotPoint& point) { return !point.label.empty(); });
   if (labels)
@@ -126,7 +128,7 @@ std::string scriptOf(const Plot& plot) {
   std::string text = "# gnuplot " + plot.name + ".gp draws " + plot.name + ".svg from " + plot.name + ".dat\n" +
                      "set terminal svg size 860,470 dynamic font \"Helvetica,13\"" + "\nset output " +
                      gnuplotString(plot.name + ".svg") +
-                     "\nset encoding utf8\nset border 3 lw 0.8\nset tics nomirror out scale 0.6\n"
+                     "\nset encoding utf8\nset format \"%g\"\nset border 3 lw 0.8\nset tics nomirror out scale 0.6\n"
                      "set grid lc rgb \"#e6e6e6\" lw 0.6\nset key outside right center vertical Left reverse samplen 2 "
                      "spacing 1.25\n" +
                      axes(plot);
