@@ -36,6 +36,12 @@ class Classifier {
     return index == locate(values.max) ? std::optional(index) : std::nullopt;
   }
   const LinearStretch& stretch(std::size_t index) const { return stretches_[index]; }
+  static CellPiece pieceOf(const LinearStretch& stretch, const Cubic& value, double begin, double end) {
+    CellPiece piece{begin, end, {}, &stretch};
+    for (std::size_t i = 0; i < 4; ++i) piece.sigma_t.c[i] = stretch.sigmaSlope * value.c[i];
+    piece.sigma_t.c[0] = stretch.sigma_t + stretch.sigmaSlope * (value.c[0] - stretch.origin);
+    return piece;
+  }
 
   /// Calls visit(const CellPiece&) for the pieces of [0, 1] where the medium may scatter or absorb, in order.
   /// @param value,gradient  along the ray; gradient counts for a 2D function only
@@ -62,10 +68,7 @@ class Classifier {
   void visitStretch(const Cubic& value, std::size_t index, double begin, double end, const Visit& visit) const {
     const LinearStretch& stretch = stretches_[index];
     if (end <= begin || (stretch.sigma_t == 0 && stretch.sigmaSlope == 0)) return;
-    CellPiece piece{begin, end, {}, &stretch};
-    for (std::size_t i = 0; i < 4; ++i) piece.sigma_t.c[i] = stretch.sigmaSlope * value.c[i];
-    piece.sigma_t.c[0] = stretch.sigma_t + stretch.sigmaSlope * (value.c[0] - stretch.origin);
-    visit(piece);
+    visit(pieceOf(stretch, value, begin, end));
   }
 
   template <class Visit>

@@ -105,7 +105,8 @@ std::uint8_t kindOf(const Classifier& classifier, const Range& values) {
   return stretch && *stretch + 1 < FieldBlock::kMixed ? static_cast<std::uint8_t>(*stretch + 1) : FieldBlock::kMixed;
 }
 
-// Tells what each cell is and bounds sigma_t. False when there is nothing to see.
+// Tells what each cell is and bounds sigma_t. False when there is nothing to see. Without skipping a cell is looked at
+// when a ray comes to it, and not before.
 bool survey(FieldBlock& block, const Classifier& classifier, bool skipEmpty) {
   const TransferFunction& transfer = classifier.transfer();
   const auto gradientsOf = [&](const auto& rangeOfPart) {
@@ -114,7 +115,11 @@ bool survey(FieldBlock& block, const Classifier& classifier, bool skipEmpty) {
   const Range all = rangeOf(block.values, kBlockSize);
   const Range allGradients = gradientsOf([](const float* g) { return rangeOf(g, kBlockSize); });
   block.sigma_maj = transfer.majorant(all, allGradients);
-  if (skipEmpty && transfer.isTransparent(all, allGradients)) return false;
+  if (!skipEmpty) {
+    block.kinds.fill(FieldBlock::kMixed);
+    return true;
+  }
+  if (transfer.isTransparent(all, allGradients)) return false;
   bool seen = false;
   auto kind = block.kinds.begin();
   for (int z = 0; z < kCells; ++z)
@@ -122,27 +127,14 @@ bool survey(FieldBlock& block, const Classifier& classifier, bool skipEmpty) {
       for (int x = 0; x < kCells; ++x, ++kind) {
         const auto cell = [&](const float* v) { return rangeOfCell(v, x, y, z); };
         const Range values = cell(block.values);
-        if (skipEmpty && transfer.isTransparent(values, gradientsOf(cell)))
-          *kind = FieldBlock::kTransparent;
-        else
-          *kind = kindOf(classifier, values);
-        seen = seen || *kind != FieldBlock::kTransparent;
+        const bool transparent = transfer.isTransparent(values, gradientsOf(cell));
+        *kind = transparent ? FieldBlock::kTransparent : kindOf(classifier, values);
+        seen = seen || !transparent;
       }
   return seen;
 }
 
 }  // namespace
-
-Cubic TrilinearCell::along(const glm::dvec3& p, const glm::dvec3& to) const {
-  const glm::dvec3 d = to - p;
-  // Coefficients by powers of s of a product of three linear factors.
-  return {{(*this)(p),
-           kx_ * d.x + ky_ * d.y + kz_ * d.z + kxy_ * (p.x * d.y + p.y * d.x) + kxz_ * (p.x * d.z + p.z * d.x) +
-               kyz_ * (p.y * d.z + p.z * d.y) + kxyz_ * (d.x * p.y * p.z + p.x * d.y * p.z + p.x * p.y * d.z),
-           kxy_ * d.x * d.y + kxz_ * d.x * d.z + kyz_ * d.y * d.z +
-               kxyz_ * (d.x * d.y * p.z + d.x * p.y * d.z + p.x * d.y * d.z),
-           kxyz_ * d.x * d.y * d.z}};
-}
 
 Field::Field(const ScalarGrid& grid, const Classifier& classifier, bool skipEmpty) : skipEmpty_(skipEmpty) {
   const TransferFunction& transfer = classifier.transfer();

@@ -72,6 +72,17 @@ inline TrilinearCell::TrilinearCell(const float* block, const glm::ivec3& cell) 
   kxyz_ = (v111 - v101 - v011 + v001) - kxy_;
 }
 
+inline Cubic TrilinearCell::along(const glm::dvec3& p, const glm::dvec3& to) const {
+  const glm::dvec3 d = to - p;
+  // Coefficients by powers of s of a product of three linear factors.
+  return {{(*this)(p),
+           kx_ * d.x + ky_ * d.y + kz_ * d.z + kxy_ * (p.x * d.y + p.y * d.x) + kxz_ * (p.x * d.z + p.z * d.x) +
+               kyz_ * (p.y * d.z + p.z * d.y) + kxyz_ * (d.x * p.y * p.z + p.x * d.y * p.z + p.x * p.y * d.z),
+           kxy_ * d.x * d.y + kxz_ * d.x * d.z + kyz_ * d.y * d.z +
+               kxyz_ * (d.x * d.y * p.z + d.x * p.y * d.z + p.x * d.y * d.z),
+           kxyz_ * d.x * d.y * d.z}};
+}
+
 class Field {
  public:
   using BlockTree = openvdb::Int32Tree;  // at block coordinates: index of a block, -1 where all is transparent
@@ -108,54 +119,48 @@ class Field {
 
 template <class Visit>
 void Field::walkBlocks(Accessor& accessor, const IndexRay& ray, const Interval& part, const Visit& visit) const {
+  constexpr double edge = FieldBlock::kCells;
   double t = part.begin;
   while (t < part.end) {
-    const double nudge = nudgeOf(ray, ray.at(t));
-    const glm::dvec3 p = ray.at(t + nudge) * (1.0 / FieldBlock::kCells);
+    const glm::dvec3 here = ray.at(t);
+    const double nudge = nudgeOf(ray, here);
+    const glm::dvec3 p = (here + nudge * ray.direction) * (1 / edge);
     const openvdb::Coord at(floorToInt(p.x), floorToInt(p.y), floorToInt(p.z));
-    const int index = accessor.getValue(at);
-    const FieldBlock* found = index < 0 ? nullptr : &blocks_[static_cast<std::size_t>(index)];
-    // Tiles are constant: the ray leaves them at once. Blocks with voxels stand at the lowest level.
-    std::int64_t edge = 1;
-    if (skipEmpty_ && (!found || !found->values)) {
-      constexpr std::int64_t edges[]{4096, 4096, 128, 8, 1};
-      edge = edges[accessor.getValueDepth(at) + 1];
+    if (const auto* leaf = accessor.probeConstLeaf(at)) {
+      const glm::dvec3 low = edge * glm::dvec3(leaf->origin().x(), leaf->origin().y(), leaf->origin().z());
+      const double next = std::min(part.end, std::max(exitOf(ray, low, low + 8 * edge), t + nudge));
+      const bool goOn = walkLattice(low, edge, ray, t, next, [&](const glm::ivec3& cell, double begin, double end) {
+        const int index = leaf->getValue(static_cast<openvdb::Index>(cell.x << 6 | cell.y << 3 | cell.z));
+        return index < 0 || visit(blocks_[static_cast<std::size_t>(index)], low + edge * glm::dvec3(cell), begin, end);
+      });
+      if (!goOn) return;
+      t = next;
+      continue;
     }
-    const auto lowOf = [&](int x) { return static_cast<double>(std::int64_t(x) & ~(edge - 1)) * FieldBlock::kCells; };
+    // A tile is one value: the ray leaves it at once.
+    const int index = accessor.getValue(at);
+    std::int64_t blocks = 1;
+    if (skipEmpty_) {
+      constexpr std::int64_t edges[]{4096, 4096, 128, 8};
+      blocks = edges[accessor.getValueDepth(at) + 1];
+    }
+    const auto lowOf = [&](int x) { return static_cast<double>(std::int64_t(x) & ~(blocks - 1)) * edge; };
     const glm::dvec3 low(lowOf(at.x()), lowOf(at.y()), lowOf(at.z()));
-    const double exit = exitOf(ray, low, low + static_cast<double>(edge * FieldBlock::kCells));
-    const double next = std::min(part.end, std::max(exit, t + nudge));
-    if (found && !visit(*found, low, t, next)) return;
+    const double next =
+        std::min(part.end, std::max(exitOf(ray, low, low + static_cast<double>(blocks) * edge), t + nudge));
+    if (index >= 0 && !visit(blocks_[static_cast<std::size_t>(index)], low, t, next)) return;
     t = next;
   }
 }
 
-/// Calls visit(cell, begin, end) for the cells of a block, which has voxels, from `begin` to `end` of the ray, in
-/// order, until it returns false.
+/// Calls visit(cell, begin, end) for the cells of a block, which has voxels, that may be seen, from `begin` to `end` of
+/// the ray, in order, until it returns false.
 template <class Visit>
 bool walkCells(const FieldBlock& block, const glm::dvec3& origin, const IndexRay& ray, double begin, double end,
                const Visit& visit) {
-  const glm::dvec3 start = ray.at(begin + nudgeOf(ray, ray.at(begin))) - origin;
-  glm::ivec3 cell, step(0);
-  glm::dvec3 next(std::numeric_limits<double>::infinity()), width(0);
-  for (int axis = 0; axis < 3; ++axis) {
-    cell[axis] = std::clamp(floorToInt(start[axis]), 0, FieldBlock::kCells - 1);
-    const double d = ray.direction[axis];
-    if (d == 0) continue;
-    step[axis] = d > 0 ? 1 : -1;
-    width[axis] = std::abs(ray.inverse[axis]);
-    next[axis] = (origin[axis] + cell[axis] + (d > 0) - ray.origin[axis]) * ray.inverse[axis];
-  }
-  for (double t = begin; t < end;) {
-    const int axis = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
-    const double leave = std::min(next[axis], end);
-    if (leave > t && block.sees(cell) && !visit(cell, t, leave)) return false;
-    t = std::max(t, leave);
-    cell[axis] += step[axis];
-    if (cell[axis] < 0 || cell[axis] >= FieldBlock::kCells) return true;
-    next[axis] += width[axis];
-  }
-  return true;
+  return walkLattice(origin, 1, ray, begin, end, [&](const glm::ivec3& cell, double enter, double leave) {
+    return !block.sees(cell) || visit(cell, enter, leave);
+  });
 }
 
 }  // namespace umbrick

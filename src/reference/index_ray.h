@@ -50,4 +50,36 @@ inline int floorToInt(double x) {
   return whole - (x < whole ? 1 : 0);
 }
 
+/// Calls visit(cell, begin, end) for the cells of a lattice of 8 x 8 x 8 cubes that the ray meets from `begin` to
+/// `end`, in order, until it returns false; `origin` is the lowest corner of the lattice. Amanatides and Woo 1987.
+/// @return false if visit did
+template <class Visit>
+bool walkLattice(const glm::dvec3& origin, double edge, const IndexRay& ray, double begin, double end,
+                 const Visit& visit) {
+  const glm::dvec3 at = ray.at(begin);
+  const glm::dvec3 start = (at + nudgeOf(ray, at) * ray.direction - origin) * (1 / edge);
+  glm::ivec3 cell, step(0);
+  glm::dvec3 next(std::numeric_limits<double>::infinity()), width(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    cell[axis] = std::clamp(floorToInt(start[axis]), 0, 7);
+    const double d = ray.direction[axis];
+    if (d == 0) continue;
+    step[axis] = d > 0 ? 1 : -1;
+    width[axis] = edge * std::abs(ray.inverse[axis]);
+    next[axis] = (origin[axis] + edge * (cell[axis] + (d > 0)) - ray.origin[axis]) * ray.inverse[axis];
+  }
+  for (double t = begin; t < end;) {
+    const int axis = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
+    const double leave = std::min(next[axis], end);
+    if (leave > t) {
+      if (!visit(cell, t, leave)) return false;
+      t = leave;
+    }
+    cell[axis] += step[axis];
+    if (cell[axis] < 0 || cell[axis] > 7) return true;
+    next[axis] += width[axis];
+  }
+  return true;
+}
+
 }  // namespace umbrick

@@ -49,7 +49,8 @@ QuadraturePixel::QuadraturePixel(const ReferenceSpace& space, const ReferenceOpt
     : space_(space), options_(options), step_(step), voxelEdge_(voxelEdge), accessor_(space.field.accessor()) {
   eyeOptions_.step = step;
   // A part stands for the V at its centre: the error goes with the square of its optical depth.
-  eyeOptions_.largestTau = std::clamp(2 * std::sqrt(options.tolerance), 1e-3, 0.1);
+  if (space.scene.model != Model::emission)
+    eyeOptions_.largestTau = std::clamp(2 * std::sqrt(options.tolerance), 1e-3, 0.1);
   eyeOptions_.darkest = std::min(1e-6, 0.01 * options.tolerance);
   if (space.scene.model == Model::cone) aimLights(-cameraFrame(space.scene.camera).forward);
   if (space.scene.model == Model::ambient) aimLights({0, 0, 1});
@@ -73,6 +74,15 @@ PixelResult QuadraturePixel::integrate(int x, int y) {
   result.transmittance = collectScatterers(space_.field, accessor_, space_.classifier, ray.index, part, eyeOptions_,
                                            parts_, counts_.cells);
   if (parts_.empty()) return result;
+  if (space_.scene.model == Model::emission) {
+    for (const Scatterer& p : parts_) {
+      result.light += p.light;
+      result.visibility += p.alpha;
+      result.depth += p.alpha * p.t;
+    }
+    result.depth *= ray.depthPerLength;
+    return result;
+  }
   if (space_.scene.model == Model::coneRay) aimLights(-ray.direction);
   before_.assign(1, Scatterer{});
   before_.reserve(parts_.size() + 1);
@@ -81,11 +91,7 @@ PixelResult QuadraturePixel::integrate(int x, int y) {
     before_.push_back({last.t + p.alpha * p.t, last.alpha + p.alpha, last.light + p.light, 0});
   }
   result.depth = before_.back().t * ray.depthPerLength;
-  Sum sum;
-  if (space_.scene.model == Model::emission)
-    sum = {before_.back().light, before_.back().alpha};
-  else
-    sum = step_ > 0 ? integrateSteps(ray.index) : integrateAdaptive(ray.index);
+  const Sum sum = step_ > 0 ? integrateSteps(ray.index) : integrateAdaptive(ray.index);
   result.light = sum.light;
   result.visibility = sum.visibility;
   return result;
