@@ -171,7 +171,9 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
       ->group(sampling);
   command.add_option("--segments", o.segments, "of a slab, integrated one by one along the ray, 1 to 8 [1]")
       ->group(sampling);
-  command.add_option("--table-size", o.tableSize, "entries of the transfer table along an axis, 2 to 4096 [256]")
+  command
+      .add_option("--table-size", o.tableSize,
+                  "entries of the transfer table along an axis, 2 to 4096, or the next power of two [256]")
       ->group(sampling);
   command
       .add_option(

@@ -54,7 +54,7 @@ struct SamplingOptions {
   /// what thin fog in many slices is made of: use 32 bits there.
   int bits = 32;
   double saturation = 1e-3;  // pixels with less transmittance than this are shaded no more; 0: never
-  int tableSize = 256;       // entries of the transfer table along an axis, 2 to 4096
+  int tableSize = 256;       // entries of the transfer table along an axis, 2 to 4096; a power of two, or the next one
   bool operator==(const SamplingOptions&) const = default;
 };
 
