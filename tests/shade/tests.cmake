@@ -1,4 +1,4 @@
-umbrick_tests(shade emission_gl_test.cpp march_gl_test.cpp occlusion_gl_test.cpp
+umbrick_tests(shade continuity_gl_test.cpp emission_gl_test.cpp march_gl_test.cpp occlusion_gl_test.cpp
               hard_buffers_gl_test.cpp hard_cameras_gl_test.cpp hard_formulas_gl_test.cpp hard_grids_gl_test.cpp hard_media_gl_test.cpp hard_transforms_gl_test.cpp
               footprint_test.cpp screen_region_test.cpp sweep_plan_test.cpp transfer_lookup_gl_test.cpp bad_input_gl_test.cpp)
 # Parts of the renderer that its public header does not show.
