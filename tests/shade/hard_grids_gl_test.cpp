@@ -154,6 +154,7 @@ TEST_CASE("Voxels near the limits of 32-bit indices are rendered or refused", "[
   if (!context) return;
   constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
   const TransferFunction transfer = rampFrom(0, 1, 0.4);
+  // Before the last 4096 voxels, a node of OpenVDB's tree that has no neighbour.
   for (const glm::ivec3& at :
        {glm::ivec3(most - 4200), glm::ivec3(-most + 4200), glm::ivec3(most - 4200, 0, -most + 64)}) {
     INFO("at " << at.x << ' ' << at.y << ' ' << at.z);

@@ -48,10 +48,10 @@ struct SamplingOptions {
   bool spacingInVoxels = true;  // spacing counts the shortest voxel edge, else world units
   Quadrature quadrature = Quadrature::preintegrated;
   int segments = 1;  // of equal length, in which a slab is integrated along the ray, 1 to 8
-  /// Of the eye buffer: 32 (float) or 16 (fixed point). Each slice rounds 16 bits to steps of 2^-16, up to one and a
-  /// half of them (2.3e-5) off, so N slices of a buffer of light and one of occlusion are off by N 2.3e-5 each at most,
-  /// mostly by much less. But a pixel of opacity A gains nothing by slabs of opacity below 2^-17 / (1 - A), which is
-  /// what thin fog in many slices is made of: use 32 bits there.
+  /// Of the eye buffer: 32 (float) or 16 (fixed point). A slice rounds 16 bits to steps of 2^-16 and is off by up to
+  /// one and a half of them: N slices by at most N 2.3e-5, mostly by much less (an occlusion buffer of 16 bits as much
+  /// again). But a pixel of opacity A gains nothing by slabs of opacity below 2^-17 / (1 - A), which is what thin fog
+  /// in many slices is made of: use 32 bits there.
   int bits = 32;
   double saturation = 1e-3;  // pixels with less transmittance than this are shaded no more; 0: never
   int tableSize = 256;       // entries of the transfer table along an axis, 2 to 4096; a power of two, or the next one
