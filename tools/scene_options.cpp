@@ -146,7 +146,10 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
       ->group(light);
   command.add_option("--algorithm", o.algorithm, "2: exact distance per sample, 3: slice distance [3]")->group(light);
   command.add_option("--passes", o.passes, "2: two passes per slice, 1: multiple render targets [1]")->group(light);
-  command.add_option("--occlusion-bits", o.occlusionBits, "of the occlusion buffer, 16 or 32 [32]")->group(light);
+  command
+      .add_option("--occlusion-bits", o.occlusionBits,
+                  "of the occlusion buffer: 32 (float) or 16 (fixed point, see --eye-bits) [32]")
+      ->group(light);
   command.add_flag("--no-perspective-correction", o.noPerspectiveCorrection, "footprint as in a parallel view")
       ->group(light);
   command.add_option("--ambient", o.ambient, "radiance from every direction, linear RGB [1 1 1]")
@@ -168,9 +171,16 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
       ->group(sampling);
   command.add_option("--segments", o.segments, "of a slab, integrated one by one along the ray, 1 to 8 [1]")
       ->group(sampling);
-  command.add_option("--table-size", o.tableSize, "entries of the transfer table along an axis, 2 to 4096 [256]")
+  command
+      .add_option("--table-size", o.tableSize,
+                  "entries of the transfer table along an axis, 2 to 4096, or the next power of two [256]")
       ->group(sampling);
-  command.add_option("--eye-bits", o.eyeBits, "of the eye buffer, 16 or 32 [32]")->group(sampling);
+  command
+      .add_option(
+          "--eye-bits", o.eyeBits,
+          "of the eye buffer: 32 (float) or 16 (fixed point, off by up to 2.3e-5 per slice; slabs of less opacity "
+          "than 8e-6 are lost) [32]")
+      ->group(sampling);
   command.add_option("--saturation", o.saturation, "transmittance below which a pixel is done; 0: never [0.001]")
       ->group(sampling);
 

@@ -6,6 +6,7 @@
 
 #include <Imath/half.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -185,6 +186,26 @@ double BrickAtlas::encode(std::span<const float> values, std::span<const float> 
       break;
   }
   return error;
+}
+
+double BrickAtlas::texelOf(float value) const {
+  std::array<std::byte, sizeof(float)> texel;
+  encode({&value, 1}, {}, texel.data());
+  const auto read = [&](auto code) {
+    std::memcpy(&code, texel.data(), sizeof code);
+    return static_cast<double>(static_cast<float>(code));
+  };
+  switch (format_) {
+    case VoxelFormat::unorm8:
+      return read(std::uint8_t{}) / 255;
+    case VoxelFormat::unorm16:
+      return read(std::uint16_t{}) / 65535;
+    case VoxelFormat::half:
+      return read(Imath::half{});
+    case VoxelFormat::float32:
+      break;
+  }
+  return read(float{});
 }
 
 void BrickAtlas::upload(std::span<const std::pair<std::int32_t, std::int32_t>> brickAndSlot) {

@@ -173,8 +173,8 @@ void Field::findDomain(const openvdb::FloatTree& tree) {
   }
   nonFinite_ = all.nonFinite;
   if (all.extent.empty()) return;
-  // A block beyond the domain must have coordinates, too.
-  constexpr int margin = 2 * kCells, most = std::numeric_limits<int>::max() - margin;
+  // Blocks beyond the domain must have coordinates, too, and OpenVDB 10's copyToDense overflows in the last root node.
+  constexpr int margin = 4096 + 2 * kCells, most = std::numeric_limits<int>::max() - margin;
   for (int axis = 0; axis < 3; ++axis)
     if (all.extent.min()[axis] < -most || all.extent.max()[axis] > most)
       throw InvalidArgument(

@@ -42,7 +42,7 @@ void setSlabUniforms(GlProgram& program, const Frame& frame) {
   std::vector<glm::vec4> planes;
   for (const glm::dvec4& plane : frame.planes) planes.emplace_back(plane);
   program.set("clip_planes", planes);
-  frame.transfer.setUniforms(program, frame.atlas.valueScale());
+  frame.transfer.setUniforms(program, frame.atlas);
 }
 
 void bindVolume(const Frame& frame, int texture) {

@@ -9,8 +9,8 @@ namespace umbrick {
 
 struct TargetOptions {
   int width = 0, height = 0;
-  int eyeBits = 32;       // 16 or 32
-  int occlusionBits = 0;  // 16 or 32; 0: no occlusion buffers
+  int eyeBits = 32;       // 32: float; 16: fixed point
+  int occlusionBits = 0;  // likewise; 0: no occlusion buffers
   bool aux = false;       // visibility and depth
 };
 

@@ -243,6 +243,7 @@ class SliceRenderer::Implementation {
     const glm::vec3 ambient(scene_.ambient);
     for (std::size_t i = 0; i < picture.colour.pixels.size(); i += 4) {
       float* pixel = &picture.colour.pixels[i];
+      for (int c = 0; c < 4; ++c) pixel[c] = std::min(pixel[c], 1.0f);  // but for roundings it is
       const float through = 1 - pixel[3];
       for (int c = 0; c < 3; ++c) {
         pixel[c] *= ambient[c];

@@ -11,7 +11,8 @@ namespace umbrick {
 class TransferLookup {
  public:
   /// Nodes stand at equal distances over the volume's values, one of them exactly at the background, so that empty
-  /// space stays as transparent as the function says. @throw GlError
+  /// space stays as transparent as the function says. There are sampling.tableSize along an axis or more, a power of
+  /// two: then a node's texture coordinate is a number that single precision has. @throw GlError
   TransferLookup(const GlFunctions& gl, const TransferFunction& transfer, const SamplingOptions& sampling,
                  const Bricks& volume);
 
@@ -19,8 +20,8 @@ class TransferLookup {
   bool isVisible(const Range& value, const Range& gradient) const;
   /// kQuadrature of shade/medium.glsl.
   int shaderMode() const { return mode_; }
-  /// Sets transfer_map for texels of the given scale.
-  void setUniforms(GlProgram& program, const TexelScale& texels) const;
+  /// Sets what medium.glsl needs to look up the atlas's texels.
+  void setUniforms(GlProgram& program, const BrickAtlas& atlas) const;
   GLuint texture() const { return texture_.name(); }
 
  private:

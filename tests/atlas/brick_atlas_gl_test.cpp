@@ -49,6 +49,7 @@ std::vector<std::vector<float>> readTextures(const GlFunctions& gl, const BrickA
 
 struct Difference {
   double value = 0, gradient = 0;
+  double texel = 0;  // from what BrickAtlas::texelOf says
 };
 
 // Largest difference of resident bricks from what the volume reads.
@@ -74,6 +75,8 @@ Difference compare(const GlFunctions& gl, const BrickAtlas& atlas, const Bricks&
               static_cast<std::size_t>(at.x);
           const float* found = &textures[static_cast<std::size_t>(slot.texture)][2 * texel];
           worst.value = std::max(worst.value, std::abs(found[0] * scale.scale + scale.offset - values[i]));
+          worst.texel = std::max(worst.texel, std::abs(found[0] - atlas.texelOf(values[i])) /
+                                                  std::max(1e-9, std::abs(atlas.texelOf(values[i]))));
           if (volume.hasGradients)
             worst.gradient = std::max(worst.gradient, std::abs(static_cast<double>(found[1]) - gradients[i]));
         }
@@ -119,6 +122,7 @@ TEST_CASE("Every voxel comes back from the texture as the volume reads it", "[at
             atlas.require(allOf(atlas));
             CHECK(atlas.uploadedBricks() == volume.bricks.size());
             const Difference worst = compare(context->gl(), atlas, volume);
+            CHECK(worst.texel < 2.4e-7);  // two units in the last place, relative
             const double extent = static_cast<double>(volume.value.max) - volume.value.min;
             const double rounding =
                 4e-7 * std::max(std::abs(volume.value.max), static_cast<float>(extent));  // of reading back

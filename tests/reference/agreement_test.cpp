@@ -230,6 +230,26 @@ TEST_CASE("Voxels a million from the origin make the same picture", "[reference]
   CHECK(maxDifference(pictures[0], pictures[1]) < 1e-4);
 }
 
+// OpenVDB itself overflows in the last 4096 voxels.
+TEST_CASE("Voxels near the limits of 32-bit indices are integrated or refused", "[reference]") {
+  for (const int x : {2147483647 - 4096 - 16, -2147483647 + 4096 + 16, 2147483000, 2147483647 - 4096, -2147483647}) {
+    INFO(x);
+    const glm::dvec3 at(x, 0, 0);
+    Scene scene = plainScene(variedTransfer(), orthographicCamera(at + glm::dvec3(0, 0, 9), at, 3, 8), 1);
+    const bool near = std::abs(static_cast<double>(x)) > 2147483647 - 4096 - 16;
+    std::string complaint;
+    double alpha = 0;
+    try {
+      alpha = renderReference(makeVoxels({{glm::ivec3(x, 0, 0), 0.7f}}), scene).colour.at(4, 4)[3];
+    } catch (const InvalidArgument& error) {
+      complaint = error.what();
+    }
+    CHECK((complaint == "") == !near);
+    CHECK((alpha > 0.1) == !near);
+    if (near) CHECK_THAT(complaint, Catch::Contains(std::to_string(x)));
+  }
+}
+
 TEST_CASE("A job that is stopped says how far it came and keeps what it has", "[reference]") {
   const Case made = cases()[0];
   ReferenceOptions options;

@@ -151,9 +151,10 @@ TEST_CASE("In a medium wider than the image light falls by each slab's transmitt
               if (kept <= 0) continue;
               const double alpha = -std::expm1(-sigma_t * kept * stretch);
               visibility += through * alpha * light;
-              // The buffer is rounded to 24 bits once a slab, or to the 11 of half-floats, if only by truncation; taps
-              // and exponentials round a few times more in single precision.
-              rounding += through * alpha * light * ((bits == 16 ? slabs * std::exp2(-11) : 0) + 10 * kFloatRounding);
+              // The buffer is rounded to 24 bits once a slab, or to fixed point three times: what is spread, a slab's
+              // transmittance and their product. Taps and exponentials round a few times more in single precision.
+              rounding +=
+                  through * alpha * ((bits == 16 ? slabs * 1.5 * std::exp2(-16) : 0) + 10 * kFloatRounding * light);
               rounding += 2 * kFloatRounding;
               ++slabs;
               depth += through * alpha * (i + 0.5) * d;

@@ -53,6 +53,8 @@ class BrickAtlas {
   int textureCount() const { return static_cast<int>(textures_.size()); }
   glm::ivec3 textureSize() const { return size_; }
   TexelScale valueScale() const { return valueScale_; }
+  /// What a shader reads where all voxels have this value, to a rounding.
+  double texelOf(float value) const;
   const std::vector<Brick>& bricks() const { return bricks_; }
   const BrickLayout& layout() const { return volume_.layout; }
   std::size_t slots() const { return slots_; }
