@@ -174,13 +174,15 @@ void Field::findDomain(const openvdb::FloatTree& tree) {
   nonFinite_ = all.nonFinite;
   if (all.extent.empty()) return;
   // Blocks beyond the domain must have coordinates, too, and OpenVDB 10's copyToDense overflows in the last root node.
-  constexpr int margin = 4096 + 2 * kCells, most = std::numeric_limits<int>::max() - margin;
-  for (int axis = 0; axis < 3; ++axis)
-    if (all.extent.min()[axis] < -most || all.extent.max()[axis] > most)
-      throw InvalidArgument(
-          "the grid reaches voxel " +
-          std::to_string(all.extent.min()[axis] < -most ? all.extent.min()[axis] : all.extent.max()[axis]) +
-          " along an axis, the reference takes -" + std::to_string(most) + " to " + std::to_string(most));
+  constexpr int least = -std::numeric_limits<int>::max() + 2 * kCells;
+  constexpr int most = std::numeric_limits<int>::max() - 4096 - 2 * kCells;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int low = all.extent.min()[axis], high = all.extent.max()[axis];
+    if (low < least || high > most)
+      throw InvalidArgument("the grid reaches voxel " + std::to_string(low < least ? low : high) +
+                            " along an axis, the reference takes " + std::to_string(least) + " to " +
+                            std::to_string(most));
+  }
   const Coord a = all.extent.min().offsetBy(-1), b = all.extent.max().offsetBy(1);
   domain_ = {{a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}};
 }
