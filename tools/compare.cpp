@@ -9,6 +9,7 @@
 
 #include "command.h"
 #include "compare_report.h"
+#include "picture_output.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
 #include "umbrick/core/srgb.h"
@@ -169,6 +170,8 @@ void writeFlipMap(const CompareCommand& command, const std::vector<Pair>& pairs)
 }
 
 int compare(CompareCommand& command) {
+  checkApart({command.test, command.difference, command.flipMap});
+  checkApart({command.reference, command.difference, command.flipMap});
   checkOutput(command.difference);
   checkOutput(command.flipMap);
   for (int c = 0; c < 3; ++c) command.options.background[c] = command.background[static_cast<std::size_t>(c)];

@@ -37,7 +37,20 @@ std::shared_ptr<PictureOutput> addPictureOutput(CLI::App& command, const std::st
   return output;
 }
 
+void checkApart(const std::vector<std::filesystem::path>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      std::error_code ignored;
+      if (!files[i].empty() && (files[i].lexically_normal() == files[j].lexically_normal() ||
+                                std::filesystem::equivalent(files[i], files[j], ignored)))
+        throw UsageError(files[i].string() + ": named twice, for things that would overwrite each other");
+    }
+}
+
 void checkOutputs(const PictureOutput& output) {
+  std::vector<std::filesystem::path> files = output.files;
+  files.push_back(output.stats);
+  checkApart(files);
   for (const std::filesystem::path& path : output.files) {
     if (!isExr(path) && path.extension() != ".png")
       throw UsageError(path.string() + ": expected a picture that ends in .exr or .png");
@@ -48,7 +61,6 @@ void checkOutputs(const PictureOutput& output) {
 
 void writeOutputs(const PictureOutput& output, std::vector<ImageLayer> layers,
                   const std::map<std::string, std::string>& metadata) {
-  if (!output.layers) layers.resize(1);
   for (const std::filesystem::path& path : output.files) {
     if (isExr(path)) {
       ExrOptions options;

@@ -23,11 +23,14 @@ struct PictureOutput {
 std::shared_ptr<PictureOutput> addPictureOutput(CLI::App& command, const std::string& exrPixel,
                                                 const std::string& layers);
 
+/// No two files are one, be it by another path; empty ones do not count. @throw UsageError
+void checkApart(const std::vector<std::filesystem::path>& files);
+
 /// A picture can take long: what cannot be written is said before it is made. @throw UsageError, IoError
 void checkOutputs(const PictureOutput& output);
 
 /// Writes the picture and prints the names of its files.
-/// @param layers    the colour, then what --layers adds
+/// @param layers    of EXR files, the colour first
 /// @param metadata  of EXR files; a PNG keeps the scene
 /// @throw IoError
 void writeOutputs(const PictureOutput& output, std::vector<ImageLayer> layers,

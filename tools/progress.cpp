@@ -12,7 +12,11 @@ namespace {
 
 // A signal handler can reach nothing but a static.
 volatile std::sig_atomic_t stopRequested = 0;
-void requestStop(int) { stopRequested = 1; }
+// The second time the program ends as it would have the first time.
+void requestStop(int number) {
+  stopRequested = 1;
+  std::signal(number, SIG_DFL);
+}
 
 std::string minutes(double seconds) {
   const auto whole = static_cast<long>(std::lround(seconds));

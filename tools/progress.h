@@ -6,7 +6,7 @@
 
 namespace umbrick::tools {
 
-/// While one lives, Ctrl-C (and SIGTERM) asks the job to stop instead of ending the program.
+/// While one lives, the first Ctrl-C (or SIGTERM) asks the job to stop instead of ending the program.
 class StopRequest {
  public:
   StopRequest();

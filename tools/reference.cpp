@@ -13,6 +13,7 @@
 #include "scene_options.h"
 #include "umbrick/core/pending_file.h"
 #include "umbrick/core/stopwatch.h"
+#include "validators.h"
 
 namespace umbrick::tools {
 namespace {
@@ -22,6 +23,7 @@ struct ReferenceCommand {
   std::shared_ptr<PictureOutput> output;
   ReferenceOptions reference;
   std::string integrator = "quadrature";
+  int samples = 0;  // 0: not given
   bool noSkipping = false;
 };
 
@@ -56,6 +58,7 @@ nlohmann::ordered_json printStats(const ReferenceCommand& command, const LoadedV
   json["light_rays"] = stats.lightRays;
   json["cells"] = stats.cells;
   json["samples"] = stats.samples;
+  json["unconverged_pixels"] = stats.unconvergedPixels;
   json["blocks"] = stats.blocks;
   json["non_finite_voxels"] = stats.nonFiniteVoxels;
   json["peak_memory_bytes"] = peakMemoryBytes();
@@ -64,14 +67,17 @@ nlohmann::ordered_json printStats(const ReferenceCommand& command, const LoadedV
 }
 
 int runReference(ReferenceCommand& command) {
-  const PictureOutput& output = *command.output;
+  PictureOutput& output = *command.output;
   checkOutputs(output);
+  const StopRequest stop;
   const Scene scene = makeScene(*command.scene);
   const LoadedVolume loaded = loadVolume(scene);
   ReferenceOptions& options = command.reference;
   options.integrator = command.integrator == "quadrature" ? Integrator::quadrature : Integrator::monteCarlo;
   options.skipEmpty = !command.noSkipping;
-  const StopRequest stop;
+  // Without a number of paths a standard error is reached however many it takes.
+  if (options.standardError > 0 && command.samples == 0) options.samples = 1'000'000'000;
+  if (command.samples > 0) options.samples = command.samples;
   ReferencePicture picture;
   {
     ProgressBar bar("reference");
@@ -82,8 +88,12 @@ int runReference(ReferenceCommand& command) {
     picture = renderReference(loaded.grid, loaded.scene, options);
   }
   warnOfNonFinite(scene, picture.stats.nonFiniteVoxels);
-  std::vector<ImageLayer> layers{{"", picture.colour}, {"V", picture.visibility}, {"Z", picture.depth}};
+  std::vector<ImageLayer> layers{{"", picture.colour}};
   if (options.integrator == Integrator::monteCarlo) layers.push_back({"standardError", picture.standardError});
+  if (output.layers) {
+    layers.push_back({"V", picture.visibility});
+    layers.push_back({"Z", picture.depth});
+  }
   writeOutputs(output, std::move(layers),
                {{"umbrick.scene", printScene(loaded.scene)},
                 {"umbrick.renderer", "reference"},
@@ -91,6 +101,9 @@ int runReference(ReferenceCommand& command) {
                 {"umbrick.complete", picture.complete ? "true" : "false"},
                 {"umbrick.version", UMBRICK_VERSION}});
   if (!output.stats.empty()) writeTextFile(output.stats, printStats(command, loaded, picture).dump(2) + "\n");
+  if (picture.stats.unconvergedPixels > 0)
+    std::cerr << "umbrick: " << picture.stats.unconvergedPixels << " pixels took all " << options.samples
+              << " samples and have a standard error above " << options.standardError << '\n';
   if (picture.complete) return 0;
   std::cerr << "umbrick: stopped; the picture holds " << static_cast<int>(100 * picture.stats.share)
             << " % of its pixels, the rest is 0\n";
@@ -103,39 +116,42 @@ Command addReference(CLI::App& app) {
   const auto command = std::make_shared<ReferenceCommand>();
   CLI::App* sub = app.add_subcommand("reference", "Integrate the same model on the CPU, as what to compare with.");
   command->scene = addSceneOptions(*sub);
-  command->output = addPictureOutput(*sub, "float",
-                                     "V (visibility weighted by opacity), Z (mean depth, world units) and, with "
-                                     "monte-carlo, standardError");
+  command->output =
+      addPictureOutput(*sub, "float", "V (visibility weighted by opacity) and Z (mean depth, world units)");
   ReferenceOptions& o = command->reference;
   const std::string group = "Integration";
-  sub->add_option("--integrator", command->integrator, "quadrature (deterministic) or monte-carlo")
+  sub->add_option("--integrator", command->integrator,
+                  "quadrature (deterministic), or monte-carlo, which adds the layer standardError to an EXR")
       ->check(CLI::IsMember({"quadrature", "monte-carlo"}))
       ->capture_default_str()
       ->group(group);
   sub->add_option("--tolerance", o.tolerance, "quadrature: of the radiance of a stretch of the ray, in (0, 1]")
-      ->check(CLI::Range(1e-9, 1.0))
+      ->check(numberIn(1e-9, 1.0, "1e-9 to 1"))
       ->capture_default_str()
       ->group(group);
   sub->add_option("--step", o.step,
                   "quadrature: distance of the points where occlusion is computed, voxels (shortest "
                   "edge); 0: as --tolerance asks for")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->capture_default_str()
       ->group(group);
   sub->add_option("--directions", o.directions, "quadrature: about so many over the cone or the sphere")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str()
       ->group(group);
-  sub->add_option("--samples", o.samples, "monte-carlo: paths per pixel, at most")
+  sub->add_option("--samples", command->samples,
+                  "monte-carlo: paths per pixel, at most [256; with --standard-error as many as it takes]")
       ->check(CLI::Range(2, 1000000000))
-      ->capture_default_str()
       ->group(group);
   sub->add_option("--standard-error", o.standardError,
                   "monte-carlo: a pixel is done at this estimated standard error; 0: takes all samples")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->capture_default_str()
       ->group(group);
-  sub->add_option("--seed", o.seed, "monte-carlo: of the random numbers")->capture_default_str()->group(group);
+  sub->add_option("--seed", o.seed, "monte-carlo: of the random numbers")
+      ->check(nonNegativeNumber())
+      ->capture_default_str()
+      ->group(group);
   sub->add_flag("--no-skipping", command->noSkipping, "visit empty space, too: slower, the same picture")->group(group);
   sub->add_option("--threads", o.threads, "0: one per core")
       ->check(CLI::Range(0, 4096))

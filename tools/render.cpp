@@ -72,7 +72,12 @@ int render(const RenderCommand& command) {
     framesMs.push_back(frame.elapsedMs());
   }
   const Stopwatch write;
-  writeOutputs(output, {{"", picture.colour}, {"V", picture.visibility}, {"Z", picture.depth}},
+  std::vector<ImageLayer> layers{{"", picture.colour}};
+  if (output.layers) {
+    layers.push_back({"V", picture.visibility});
+    layers.push_back({"Z", picture.depth});
+  }
+  writeOutputs(output, std::move(layers),
                {{"umbrick.scene", printScene(loaded.scene)},
                 {"umbrick.renderer", context->description()},
                 {"umbrick.version", UMBRICK_VERSION}});

@@ -95,6 +95,7 @@ int study(const StudyCommand& command) {
       return !stop.requested();
     });
   }
+  warnOfNonFinite(scene, outcome.nonFiniteVoxels);
   for (const std::filesystem::path& path : {outcome.page, outcome.table, outcome.record})
     std::cout << path.string() << '\n';
   if (outcome.complete) return 0;

@@ -12,7 +12,8 @@ class Collector {
   Collector(const Classifier& classifier, const EyeRayOptions& options, double begin, std::vector<Scatterer>& parts)
       : classifier_(classifier), options_(options), begin_(begin), parts_(parts) {}
 
-  double transmittance() const { return transmittance_; }
+  // From the sum of optical depths: products of 1 - x would add up their roundings, all of one kind.
+  double opacity() const { return isDark() ? 1 : -std::expm1(-tau_); }
   bool isDark() const { return transmittance_ < options_.darkest; }
 
   /// A cell, or part of one; `value` and `gradient` over s in [0, 1] from `begin` to `end` of the ray.
@@ -80,14 +81,19 @@ class Collector {
       centre += weight * s[i];
       albedo += weight * classifier_.albedo(piece, value_, gradient_, s[i]);
     }
-    if (!(sum > 0)) return;
-    const double kept = std::expm1(-tau);
+    if (!(sum > 0)) {
+      // A fitted cubic may be positive only between the nodes.
+      sum = 1;
+      centre = s[1];
+      albedo = classifier_.albedo(piece, value_, gradient_, s[1]);
+    }
     Scatterer part;
     part.t = at(centre / sum);
-    part.alpha = transmittance_ * -kept;
+    part.alpha = transmittance_ * -std::expm1(-tau);
     part.light = albedo * (part.alpha / sum);
     part.stretch = stretch_;
-    transmittance_ *= 1 + kept;
+    tau_ += tau;
+    transmittance_ = std::exp(-tau_);
     parts_.push_back(part);
   }
 
@@ -103,7 +109,7 @@ class Collector {
   double begin_;
   std::vector<Scatterer>& parts_;
   Cubic value_, gradient_;
-  double cellBegin_ = 0, length_ = 0, transmittance_ = 1;
+  double cellBegin_ = 0, length_ = 0, tau_ = 0, transmittance_ = 1;
   std::int64_t stretch_ = 0;
 };
 
@@ -151,7 +157,7 @@ double collectScatterers(const Field& field, Field::Accessor& accessor, const Cl
           return !collector.isDark();
         });
       });
-  return collector.isDark() ? 0 : collector.transmittance();
+  return collector.opacity();
 }
 
 }  // namespace umbrick

@@ -48,7 +48,7 @@ struct EyeRayOptions {
 };
 
 /// @param parts  appended to, in order
-/// @return the transmittance of the ray; 0 once it is below `darkest`
+/// @return the opacity of the ray; 1 once less than `darkest` gets through
 double collectScatterers(const Field& field, Field::Accessor& accessor, const Classifier& classifier,
                          const IndexRay& ray, const Interval& part, const EyeRayOptions& options,
                          std::vector<Scatterer>& parts, std::uint64_t& cells);

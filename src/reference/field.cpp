@@ -93,13 +93,6 @@ Range rangeOf(const float* values, std::size_t count) {
   return {*low, *high};
 }
 
-Range rangeOfCell(const float* values, int x, int y, int z) {
-  Range range;
-  for (int corner = 0; corner < 8; ++corner)
-    range.include(values[((z + (corner >> 2)) * kVoxels + y + (corner >> 1 & 1)) * kVoxels + x + (corner & 1)]);
-  return range;
-}
-
 std::uint8_t kindOf(const Classifier& classifier, const Range& values) {
   const std::optional<std::size_t> stretch = classifier.onlyStretch(values);
   return stretch && *stretch + 1 < FieldBlock::kMixed ? static_cast<std::uint8_t>(*stretch + 1) : FieldBlock::kMixed;
@@ -125,7 +118,7 @@ bool survey(FieldBlock& block, const Classifier& classifier, bool skipEmpty) {
   for (int z = 0; z < kCells; ++z)
     for (int y = 0; y < kCells; ++y)
       for (int x = 0; x < kCells; ++x, ++kind) {
-        const auto cell = [&](const float* v) { return rangeOfCell(v, x, y, z); };
+        const auto cell = [&](const float* v) { return rangeOfCell(v, {x, y, z}); };
         const Range values = cell(block.values);
         const bool transparent = transfer.isTransparent(values, gradientsOf(cell));
         *kind = transparent ? FieldBlock::kTransparent : kindOf(classifier, values);

@@ -37,6 +37,15 @@ struct FieldBlock {
   bool sees(const glm::ivec3& cell) const { return kind(cell) != kTransparent; }
 };
 
+/// Of the values, or gradients, at the corners of a cell.
+inline Range rangeOfCell(const float* values, const glm::ivec3& cell) {
+  constexpr int n = FieldBlock::kVoxels;
+  Range range;
+  for (int corner = 0; corner < 8; ++corner)
+    range.include(values[((cell.z + (corner >> 2)) * n + cell.y + (corner >> 1 & 1)) * n + cell.x + (corner & 1)]);
+  return range;
+}
+
 /// A trilinear cell: its value at local coordinates in [0, 1]^3 and along a line.
 class TrilinearCell {
  public:

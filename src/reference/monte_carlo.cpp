@@ -38,24 +38,39 @@ class RunningMoments {
 }  // namespace
 
 // Calls visit(t, medium, sigma_maj) at tentative collisions, whose density is the majorant of each block, until it
-// returns false.
+// returns false. In a block that is much denser somewhere than a voxel is wide, each cell has a majorant of its own:
+// else a ray would be stopped again and again on its way through the thin parts.
 template <class Visit>
 void MonteCarloPixel::trackBlocks(const IndexRay& ray, const Interval& part, Random& random, const Visit& visit) {
+  const TransferFunction& transfer = space_.classifier.transfer();
   double tau = -std::log(random.uniform());  // to the next collision, in units of the majorants
+  const auto track = [&](const FieldBlock& block, const glm::dvec3& origin, double majorant, double t, double end) {
+    const double sigma_maj = std::min(majorant, densest_);
+    while (tau < sigma_maj * (end - t)) {
+      t += tau / sigma_maj;
+      tau = -std::log(random.uniform());
+      ++counts_.samples;
+      Medium medium = mediumAt(block, ray.at(t) - origin, transfer);
+      medium.sigma_t = std::min(medium.sigma_t, densest_);
+      if (!visit(t, medium, sigma_maj)) return false;
+    }
+    tau -= sigma_maj * (end - t);
+    return true;
+  };
   space_.field.walkBlocks(
       accessor_, ray, part, [&](const FieldBlock& block, const glm::dvec3& origin, double begin, double end) {
         ++counts_.cells;
-        double t = begin;
-        while (tau < block.sigma_maj * (end - t)) {
-          t += tau / block.sigma_maj;
-          tau = -std::log(random.uniform());
-          ++counts_.samples;
-          if (!visit(t, mediumAt(block, ray.at(t) - origin, space_.classifier.transfer()), block.sigma_maj))
-            return false;
-        }
-        tau -= block.sigma_maj * (end - t);
-        return true;
+        if (!block.values || block.sigma_maj < dense_) return track(block, origin, block.sigma_maj, begin, end);
+        return walkCells(block, origin, ray, begin, end, [&](const glm::ivec3& cell, double enter, double leave) {
+          ++counts_.cells;
+          return track(block, origin, majorantOf(block, cell), enter, leave);
+        });
       });
+}
+
+double MonteCarloPixel::majorantOf(const FieldBlock& block, const glm::ivec3& cell) const {
+  const Range gradients = block.gradients ? rangeOfCell(block.gradients, cell) : Range{0, 0};
+  return space_.classifier.transfer().majorant(rangeOfCell(block.values, cell), gradients);
 }
 
 MonteCarloPixel::Collision MonteCarloPixel::collide(const IndexRay& ray, const Interval& part, Random& random) {
@@ -93,7 +108,7 @@ double MonteCarloPixel::estimateVisibility(const glm::dvec3& point, const glm::d
   return transmittance;
 }
 
-PixelResult MonteCarloPixel::integrate(int x, int y) {
+std::optional<PixelResult> MonteCarloPixel::integrate(int x, int y) {
   const EyeRays::Ray ray = space_.rays.through(x, y);
   PixelResult result;
   const Interval part = space_.region.clip(ray.index, 0);
@@ -103,29 +118,32 @@ PixelResult MonteCarloPixel::integrate(int x, int y) {
                 static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width) + static_cast<std::uint64_t>(x));
   const glm::dvec3 towardsEye =
       space_.scene.model == Model::coneRay ? -ray.direction : -cameraFrame(space_.scene.camera).forward;
-  RunningMoments moments;  // light, transmittance, visibility, depth
+  RunningMoments moments;  // light, opacity, visibility, depth
   // An event that n paths did not see has a probability of the order of 1 / n: a pixel whose paths all agree is not
   // known better than that.
-  const int least = options_.standardError > 0
-                        ? std::max(64, static_cast<int>(std::min(1e9, 1 / options_.standardError)))
-                        : options_.samples;
+  const int least =
+      options_.standardError > 0 ? std::max(64, static_cast<int>(std::min(1e9, 1 / options_.standardError))) : 0;
+  const bool wanted = options_.standardError > 0;
+  result.converged = !wanted;
   for (int path = 1; path <= options_.samples; ++path) {
+    if (path % 256 == 0 && !goOn_()) return std::nullopt;
     ++counts_.eyeRays;
     const Collision hit = collide(ray.index, part, random);
-    std::array<double, 6> found{0, 0, 0, 1, 0, 0};
+    std::array<double, 6> found{};
     if (hit.happened) {
       const double visibility = estimateVisibility(ray.index.at(hit.t), towardsEye, random);
       const glm::dvec3 light = visibility * hit.medium.albedo;
-      found = {light.x, light.y, light.z, 0, visibility, hit.t * ray.depthPerLength};
+      found = {light.x, light.y, light.z, 1, visibility, hit.t * ray.depthPerLength};
     }
     moments.add(found);
-    if (path < least || path % 16 != 0) continue;
+    if (!wanted || path < least || path % 16 != 0) continue;
     double largest = 0;
     for (std::size_t i = 0; i < 4; ++i) largest = std::max(largest, moments.variance(i));
-    if (options_.standardError > 0 && std::sqrt(largest) <= options_.standardError) break;
+    result.converged = std::sqrt(largest) <= options_.standardError;
+    if (result.converged) break;
   }
   result.light = {moments.mean(0), moments.mean(1), moments.mean(2)};
-  result.transmittance = moments.mean(3);
+  result.opacity = moments.mean(3);
   result.visibility = moments.mean(4);
   result.depth = moments.mean(5);
   result.variance = {moments.variance(0), moments.variance(1), moments.variance(2), moments.variance(3)};

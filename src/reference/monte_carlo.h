@@ -1,5 +1,7 @@
 // The unbiased integrator.
 #pragma once
+#include <optional>
+
 #include "reference/quadrature.h"
 #include "umbrick/core/random.h"
 
@@ -8,10 +10,17 @@ namespace umbrick {
 /// One per thread.
 class MonteCarloPixel {
  public:
-  MonteCarloPixel(const ReferenceSpace& space, const ReferenceOptions& options)
-      : space_(space), options_(options), accessor_(space.field.accessor()) {}
+  /// @param voxelEdge  the shortest, world units
+  MonteCarloPixel(const ReferenceSpace& space, const ReferenceOptions& options, double voxelEdge, const GoOn& goOn)
+      : space_(space),
+        options_(options),
+        goOn_(goOn),
+        dense_(20 / voxelEdge),
+        densest_(1e4 / voxelEdge),
+        accessor_(space.field.accessor()) {}
 
-  PixelResult integrate(int x, int y);
+  /// Nothing when the job was stopped meanwhile.
+  std::optional<PixelResult> integrate(int x, int y);
   const RayCounts& counts() const { return counts_; }
 
  private:
@@ -23,11 +32,15 @@ class MonteCarloPixel {
 
   template <class Visit>
   void trackBlocks(const IndexRay& ray, const Interval& part, Random& random, const Visit& visit);
+  double majorantOf(const FieldBlock& block, const glm::ivec3& cell) const;
   Collision collide(const IndexRay& ray, const Interval& part, Random& random);
   double estimateVisibility(const glm::dvec3& point, const glm::dvec3& towardsEye, Random& random);
 
   const ReferenceSpace& space_;
   ReferenceOptions options_;
+  GoOn goOn_;
+  double dense_;    // from here on cells have majorants of their own, 1/world unit
+  double densest_;  // extinction beyond this counts as this: tracking takes as many steps as the majorant is large
   Field::Accessor accessor_;
   RayCounts counts_;
 };

@@ -1,18 +1,23 @@
 // What an integrator finds out about one pixel.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 namespace umbrick {
 
 struct PixelResult {
-  glm::dvec3 light{0};       // Int T sigma_s V ds, to be multiplied by L_a
-  double transmittance = 1;  // of the whole ray
-  double visibility = 0;     // V weighted by opacity
-  double depth = 0;          // weighted by opacity
-  glm::dvec4 variance{0};    // of the means: light, transmittance
+  glm::dvec3 light{0};     // Int T sigma_s V ds, to be multiplied by L_a
+  double opacity = 0;      // of the whole ray
+  double visibility = 0;   // V weighted by opacity
+  double depth = 0;        // weighted by opacity
+  glm::dvec4 variance{0};  // of the means: light, opacity
+  bool converged = true;   // false: the standard error that was asked for was not reached
 };
+
+/// Asked now and then during a long pixel: false when the job is to stop.
+using GoOn = std::function<bool()>;
 
 struct RayCounts {
   std::uint64_t eyeRays = 0, lightRays = 0, cells = 0, samples = 0;

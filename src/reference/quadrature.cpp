@@ -45,8 +45,13 @@ double opticalDepth(const Field& field, Field::Accessor& accessor, const Classif
 }
 
 QuadraturePixel::QuadraturePixel(const ReferenceSpace& space, const ReferenceOptions& options, double step,
-                                 double voxelEdge)
-    : space_(space), options_(options), step_(step), voxelEdge_(voxelEdge), accessor_(space.field.accessor()) {
+                                 double voxelEdge, const GoOn& goOn)
+    : space_(space),
+      options_(options),
+      goOn_(goOn),
+      step_(step),
+      voxelEdge_(voxelEdge),
+      accessor_(space.field.accessor()) {
   eyeOptions_.step = step;
   // A part stands for the V at its centre: the error goes with the square of its optical depth.
   if (space.scene.model != Model::emission)
@@ -57,22 +62,22 @@ QuadraturePixel::QuadraturePixel(const ReferenceSpace& space, const ReferenceOpt
 }
 
 void QuadraturePixel::aimLights(const glm::dvec3& axis) {
-  const double aperture =
-      space_.scene.model == Model::ambient ? 3.14159265358979323846 : space_.scene.occlusion.aperture;
+  const std::vector<WeightedDirection> directions =
+      space_.scene.model == Model::ambient ? sphereDirections(options_.directions)
+                                           : coneDirections(axis, space_.scene.occlusion.aperture, options_.directions);
   lights_.clear();
-  for (const auto& [direction, weight] : coneDirections(axis, aperture, options_.directions))
-    lights_.push_back({space_.rays.toIndex(direction), weight});
+  for (const auto& [direction, weight] : directions) lights_.push_back({space_.rays.toIndex(direction), weight});
 }
 
-PixelResult QuadraturePixel::integrate(int x, int y) {
+std::optional<PixelResult> QuadraturePixel::integrate(int x, int y) {
   const EyeRays::Ray ray = space_.rays.through(x, y);
   PixelResult result;
   const Interval part = space_.region.clip(ray.index, 0);
   if (part.empty()) return result;
   ++counts_.eyeRays;
   parts_.clear();
-  result.transmittance = collectScatterers(space_.field, accessor_, space_.classifier, ray.index, part, eyeOptions_,
-                                           parts_, counts_.cells);
+  result.opacity = collectScatterers(space_.field, accessor_, space_.classifier, ray.index, part, eyeOptions_, parts_,
+                                     counts_.cells);
   if (parts_.empty()) return result;
   if (space_.scene.model == Model::emission) {
     for (const Scatterer& p : parts_) {
@@ -94,11 +99,15 @@ PixelResult QuadraturePixel::integrate(int x, int y) {
   const Sum sum = step_ > 0 ? integrateSteps(ray.index) : integrateAdaptive(ray.index);
   result.light = sum.light;
   result.visibility = sum.visibility;
+  if (stopped_) return std::nullopt;
   return result;
 }
 
 double QuadraturePixel::visibilityAt(const IndexRay& ray, double t) {
   ++counts_.samples;
+  // V takes as long as it has directions; an answer to `no` ends the pixel, whose result does not count then.
+  if (!stopped_ && !goOn_()) stopped_ = true;
+  if (stopped_) return 1;
   const glm::dvec3 point = ray.at(t);
   double sum = 0;
   for (const auto& [direction, weight] : lights_) {

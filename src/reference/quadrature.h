@@ -1,5 +1,6 @@
 // The deterministic integrator.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "reference/convex_region.h"
@@ -27,9 +28,11 @@ double opticalDepth(const Field& field, Field::Accessor& accessor, const Classif
 class QuadraturePixel {
  public:
   /// @param step  world units; 0: adaptive
-  QuadraturePixel(const ReferenceSpace& space, const ReferenceOptions& options, double step, double voxelEdge);
+  QuadraturePixel(const ReferenceSpace& space, const ReferenceOptions& options, double step, double voxelEdge,
+                  const GoOn& goOn);
 
-  PixelResult integrate(int x, int y);
+  /// Nothing when the job was stopped meanwhile.
+  std::optional<PixelResult> integrate(int x, int y);
   const RayCounts& counts() const { return counts_; }
 
  private:
@@ -52,6 +55,8 @@ class QuadraturePixel {
 
   const ReferenceSpace& space_;
   ReferenceOptions options_;
+  GoOn goOn_;
+  bool stopped_ = false;
   double step_, voxelEdge_;
   EyeRayOptions eyeOptions_;
   Field::Accessor accessor_;

@@ -55,20 +55,19 @@ ReferencePicture blankPicture(const Camera& camera) {
 }
 
 void store(const PixelResult& pixel, const Scene& scene, int x, int y, ReferencePicture& picture) {
-  const double alpha = 1 - pixel.transmittance;
   const glm::dvec3 behind = scene.background ? *scene.background : glm::dvec3(0);
   for (int i = 0; i < 3; ++i) {
     picture.colour.at(x, y)[i] =
-        static_cast<float>(pixel.light[i] * scene.ambient[i] + pixel.transmittance * behind[i]);
+        static_cast<float>(pixel.light[i] * scene.ambient[i] + (1 - pixel.opacity) * behind[i]);
     // A path either scatters or gets through: the two never covary upwards, so this bounds the sum from above.
     picture.standardError.at(x, y)[i] = static_cast<float>(
         std::sqrt(pixel.variance[i] * scene.ambient[i] * scene.ambient[i] + pixel.variance[3] * behind[i] * behind[i]));
   }
-  picture.colour.at(x, y)[3] = scene.background ? 1.0f : static_cast<float>(alpha);
+  picture.colour.at(x, y)[3] = scene.background ? 1.0f : static_cast<float>(pixel.opacity);
   picture.standardError.at(x, y)[3] = scene.background ? 0.0f : static_cast<float>(std::sqrt(pixel.variance[3]));
   *picture.visibility.at(x, y) = static_cast<float>(pixel.visibility);
   *picture.depth.at(x, y) =
-      alpha > 0 ? static_cast<float>(pixel.depth / alpha) : std::numeric_limits<float>::infinity();
+      pixel.opacity > 0 ? static_cast<float>(pixel.depth / pixel.opacity) : std::numeric_limits<float>::infinity();
 }
 
 // Tells how far the work is, from one thread at a time, and whether to go on.
@@ -77,10 +76,14 @@ class Progress {
   Progress(const std::function<bool(double)>& report, std::size_t total) : report_(report), total_(total) {}
   bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
   void add() {
-    const std::size_t done = ++done_;
-    if (!report_) return;
+    ++done_;
+    goOn();
+  }
+  bool goOn() {
     const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (lock.owns_lock() && !report_(static_cast<double>(done) / static_cast<double>(total_))) stopped_ = true;
+    if (report_ && lock.owns_lock() && !report_(static_cast<double>(done_) / static_cast<double>(total_)))
+      stopped_ = true;
+    return !stopped();
   }
   std::size_t done() const { return done_; }
 
@@ -101,7 +104,10 @@ RayCounts integrateAll(const Scene& scene, const ReferenceOptions& options, cons
   const std::size_t tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   Progress progress(options.progress, pixels);
-  tbb::enumerable_thread_specific<decltype(makeIntegrator())> integrators(makeIntegrator);
+  const GoOn goOn = [&] { return progress.goOn(); };
+  std::atomic<std::uint64_t> unconverged = 0;
+  using Integrator = decltype(makeIntegrator(goOn));
+  tbb::enumerable_thread_specific<Integrator> integrators([&] { return makeIntegrator(goOn); });
   // More threads than cores are granted, too.
   std::optional<tbb::global_control> limit;
   if (options.threads > 0)
@@ -115,12 +121,16 @@ RayCounts integrateAll(const Scene& scene, const ReferenceOptions& options, cons
         const int bottom = static_cast<int>(tile / static_cast<std::size_t>(columns)) * kTile;
         for (int y = bottom; y < std::min(bottom + kTile, height); ++y)
           for (int x = left; x < std::min(left + kTile, width) && !progress.stopped(); ++x) {
-            store(integrator.integrate(x, y), scene, x, y, picture);
+            const std::optional<PixelResult> pixel = integrator.integrate(x, y);
+            if (!pixel) continue;
+            store(*pixel, scene, x, y, picture);
+            if (!pixel->converged) ++unconverged;
             progress.add();
           }
       }
     });
   });
+  picture.stats.unconvergedPixels = unconverged;
   picture.complete = progress.done() == pixels;
   picture.stats.share = static_cast<double>(progress.done()) / static_cast<double>(pixels);
   RayCounts counts;
@@ -147,13 +157,14 @@ ReferencePicture renderReference(const ScalarGrid& grid, const Scene& scene, con
   const ReferenceSpace space{field, classifier, rays, region, scene};
   const Stopwatch integrate;
   RayCounts counts;
+  const double edge = shortestVoxelEdge(indexToWorld);
   if (options.integrator == Integrator::monteCarlo) {
     counts = integrateAll(
-        scene, options, [&] { return MonteCarloPixel(space, options); }, picture);
+        scene, options, [&](const GoOn& goOn) { return MonteCarloPixel(space, options, edge, goOn); }, picture);
   } else {
-    const double edge = shortestVoxelEdge(indexToWorld);
     counts = integrateAll(
-        scene, options, [&] { return QuadraturePixel(space, options, options.step * edge, edge); }, picture);
+        scene, options,
+        [&](const GoOn& goOn) { return QuadraturePixel(space, options, options.step * edge, edge, goOn); }, picture);
   }
   picture.stats.integrateMs = integrate.elapsedMs();
   picture.stats.eyeRays = counts.eyeRays;

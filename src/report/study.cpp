@@ -29,7 +29,9 @@ StudyOutcome runStudy(const GlContext& context, const ScalarGrid& grid, const Sc
 
   folder.create(record);
   StudyOutcome outcome;
-  StudyRun(context, grid, record, folder, progress).measure();
+  StudyRun run(context, grid, record, folder, progress);
+  run.measure();
+  outcome.nonFiniteVoxels = run.nonFiniteVoxels();
   outcome.complete = record.complete();
   outcome.casesDone = record.cases.size();
   outcome.cases = record.plan.cases.size();

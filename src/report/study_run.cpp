@@ -108,6 +108,11 @@ StudyRun::~StudyRun() = default;
 
 void StudyRun::measure() {
   const StudyPlan& plan = record_.plan;
+  // What somebody has cleared away is made again, as long as something is compared with it.
+  if (!record_.complete())
+    std::erase_if(record_.references, [&](const ReferenceResult& result) {
+      return !std::filesystem::exists(folder_.reference(result.what.id()));
+    });
   std::vector<StudyReference> references;
   for (const StudyReference& what : plan.references)
     if (!record_.find(what)) references.push_back(what);
@@ -130,6 +135,10 @@ void StudyRun::measure() {
     done_ += estimatedWork(what, plan.settings);
   }
   report("done", 0);
+}
+
+std::uint64_t StudyRun::nonFiniteVoxels() const {
+  return bricks_.empty() ? 0 : bricks_.begin()->second->nonFiniteVoxels;
 }
 
 bool StudyRun::report(const std::string& step, double share) {

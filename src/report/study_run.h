@@ -30,6 +30,8 @@ class StudyRun {
 
   /// Measures what is missing, until the callback asks to stop.
   void measure();
+  /// Of the volume; 0 when nothing was left to measure.
+  std::uint64_t nonFiniteVoxels() const;
 
  private:
   struct Baseline;

@@ -73,6 +73,20 @@ TEST_CASE("A homogeneous box has the opacity of each ray's exact chord, from nex
       }
 }
 
+// A thousand cells of 1e-8 each: the opacity is that of their sum to 1e-6 of itself, roundings do not add up.
+TEST_CASE("Next to nothing in very many cells keeps its digits", "[reference]") {
+  for (const double sigma_t : {1e-8, 1.3e-8, 1.7e-9, 1e-4}) {
+    const ScalarGrid grid = fieldGrid(
+        {glm::ivec3(0), glm::ivec3(4, 4, 1000)}, [](const glm::dvec3&) { return 1.0; }, glm::dmat4(1), 1);
+    const Scene scene = plainScene(homogeneous(kAlbedo, sigma_t), orthographicCamera({2, 2, 1100}, {2, 2, 0}, 1, 1), 1);
+    const ReferencePicture picture = renderReference(grid, scene);
+    CHECK(picture.stats.cells >= 1000);
+    const double alpha = -std::expm1(-sigma_t * 1000);
+    CHECK(std::abs(picture.colour.at(0, 0)[3] / alpha - 1) < 1e-6);
+    CHECK(std::abs(picture.colour.at(0, 0)[0] / (kAlbedo[0] * alpha) - 1) < 1e-6);
+  }
+}
+
 // The squared distance from the centre is interpolated as itself plus f (1 - f) along each axis: 0 to 3/4. With half of
 // that taken off, the surface lies within 3/8 of a squared voxel of R^2, and chords' halves likewise.
 TEST_CASE("A homogeneous sphere has the opacity of its chords", "[reference]") {

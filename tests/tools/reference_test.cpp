@@ -63,28 +63,43 @@ TEST_CASE("The reference makes a picture with layers, statistics and the scene i
 
 TEST_CASE("Monte Carlo writes its standard error as a layer and repeats by its seed on any threads", "[tools]") {
   const Workplace at;
-  const std::string options = "reference " + kScene + "--model ambient --integrator monte-carlo --samples 64 --layers ";
+  const std::string options = "reference " + kScene + "--model ambient --integrator monte-carlo --samples 64 ";
   REQUIRE(at.run(options + "--seed 5 --threads 1 -o a.exr").status == 0);
   REQUIRE(at.run(options + "--seed 5 --threads 3 -o b.exr").err == "");
   REQUIRE(at.run(options + "--seed 6 -o c.exr").status == 0);
   const ExrFile a = at.exr("a.exr"), b = at.exr("b.exr"), c = at.exr("c.exr");
-  REQUIRE(a.layers.size() == 4);
-  CHECK(a.layers[3].name == "standardError");
-  CHECK(a.layers[3].image.channels == 4);
+  REQUIRE(a.layers.size() == 2);
+  CHECK(a.layers[1].name == "standardError");
+  CHECK(a.layers[1].image.channels == 4);
   // No more than that of a coin tossed 64 times.
-  CHECK(largest(a.layers[3].image) > 0.01);
-  CHECK(largest(a.layers[3].image) <= 0.5 / std::sqrt(63.0) * 1.001);
+  CHECK(largest(a.layers[1].image) > 0.01);
+  CHECK(largest(a.layers[1].image) <= 0.5 / std::sqrt(63.0) * 1.001);
   CHECK(a.layers[0].image.pixels == b.layers[0].image.pixels);
-  CHECK(a.layers[3].image.pixels == b.layers[3].image.pixels);
+  CHECK(a.layers[1].image.pixels == b.layers[1].image.pixels);
   CHECK(a.layers[0].image.pixels != c.layers[0].image.pixels);
+}
+
+TEST_CASE("A standard error is reached, or the pixels that do not reach it are counted", "[tools]") {
+  const Workplace at;
+  const std::string options = "reference " + kScene + "--model cone --integrator monte-carlo --standard-error 0.01 ";
+  const ProgramResult reached = at.run(options + "-o a.exr");
+  CHECK(reached.status == 0);
+  CHECK(reached.err == "");
+  CHECK(largest(at.exr("a.exr").layers[1].image) <= 0.01);
+  const ProgramResult limited = at.run(options + "--samples 128 -o b.exr --stats s.json");
+  CHECK(limited.status == 0);
+  CHECK_THAT(limited.err, Contains("pixels took all 128 samples and have a standard error above 0.01"));
+  const auto stats = nlohmann::json::parse(readBytes(at.folder.path() / "s.json"));
+  CHECK(stats["unconverged_pixels"].get<int>() > 10);
+  CHECK(largest(at.exr("b.exr").layers[1].image) > 0.01);
 }
 
 TEST_CASE("An interrupted reference writes what is done, says so and fails", "[tools]") {
   const Workplace at;
-  // Hours of work, interrupted after half a second.
+  // Hours of work, interrupted after two seconds, also within a pixel.
   const TemporaryFolder& folder = at.folder;
   const std::string command = "cd '" + folder.path().string() +
-                              "' && timeout -s INT 0.5 '" UMBRICK_PROGRAM "' reference " + kVolume +
+                              "' && timeout -s INT 2 '" UMBRICK_PROGRAM "' reference " + kVolume +
                               "--model cone --integrator monte-carlo --samples 100000 --size 512x512 -o a.exr "
                               "--stats s.json >.out 2>.err; echo $? >.status";
   REQUIRE(std::system(command.c_str()) == 0);
@@ -100,8 +115,8 @@ TEST_CASE("An interrupted reference writes what is done, says so and fails", "[t
   CHECK(stats["share_done"].get<double>() < 1);
   // The program's own status.
   const std::string preserved = "cd '" + folder.path().string() +
-                                "' && timeout --preserve-status -s INT 0.5 '" UMBRICK_PROGRAM "' reference " + kVolume +
-                                "--integrator monte-carlo --samples 1000000 --size 512x512 -o b.exr "
+                                "' && timeout --preserve-status -s INT 2 '" UMBRICK_PROGRAM "' reference " + kVolume +
+                                "--integrator monte-carlo --samples 1000000000 --size 2x2 -o b.exr "
                                 ">/dev/null 2>&1; echo $? >.status";
   REQUIRE(std::system(preserved.c_str()) == 0);
   CHECK(readBytes(folder.path() / ".status") == "1\n");
@@ -126,6 +141,10 @@ TEST_CASE("What the reference cannot do is one line and leaves no file", "[tools
   CHECK_THAT(complaint(kScene + "--tolerance 0 -o a.exr", 2), Contains("tolerance"));
   CHECK_THAT(complaint(kScene + "--directions 0 -o a.exr", 2), Contains("directions"));
   CHECK_THAT(complaint(kScene + "--step -1 -o a.exr", 2), Contains("step"));
+  CHECK_THAT(complaint(kScene + "--step nan -o a.exr", 2), Contains("step") && Contains("nan"));
+  CHECK_THAT(complaint(kScene + "--standard-error inf -o a.exr", 2), Contains("standard-error"));
+  CHECK_THAT(complaint(kScene + "--seed -1 -o a.exr", 2), Contains("seed") && Contains("-1"));
+  CHECK_THAT(complaint(kScene + "-o a.exr --stats ./a.exr", 2), Contains("a.exr") && Contains("overwrite"));
   CHECK_THAT(complaint(kScene + "--backend osmesa -o a.exr", 2), Contains("--backend"));
   CHECK_THAT(complaint(kScene + "-o a.tiff", 2), Contains("a.tiff") && Contains(".exr"));
   CHECK_THAT(complaint(kScene + "-o nowhere/a.exr", 1), Contains("nowhere"));

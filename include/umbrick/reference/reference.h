@@ -27,19 +27,20 @@ struct ReferenceOptions {
   // Both
   bool skipEmpty = true;  // pass over transparent nodes of the tree; false: visit every voxel, to measure what it gives
   int threads = 0;        // 0: all cores
-  /// Called from one thread at a time with the share of pixels done, in [0, 1]; false stops.
+  /// Called from one thread at a time with the share of pixels done, in [0, 1], also during long pixels; false stops.
   std::function<bool(double)> progress;
 };
 
 struct ReferenceStats {
   std::uint64_t eyeRays = 0, lightRays = 0;
-  std::uint64_t cells = 0;            // voxel cells that rays integrated over
-  std::uint64_t samples = 0;          // evaluations of V (quadrature), tentative collisions (Monte Carlo)
-  double fieldMs = 0;                 // preparing the visible blocks
-  double integrateMs = 0;             // wall clock
-  double share = 0;                   // of the pixels that are done
-  std::uint64_t nonFiniteVoxels = 0;  // active NaN or infinite voxels, read as background
-  std::uint64_t blocks = 0;           // of 8^3 cells that are not transparent
+  std::uint64_t cells = 0;              // voxel cells that rays integrated over
+  std::uint64_t samples = 0;            // evaluations of V (quadrature), tentative collisions (Monte Carlo)
+  double fieldMs = 0;                   // preparing the visible blocks
+  double integrateMs = 0;               // wall clock
+  double share = 0;                     // of the pixels that are done
+  std::uint64_t nonFiniteVoxels = 0;    // active NaN or infinite voxels, read as background
+  std::uint64_t blocks = 0;             // of 8^3 cells that are not transparent
+  std::uint64_t unconvergedPixels = 0;  // that took all samples and did not reach the standard error asked for
 };
 
 struct ReferencePicture {

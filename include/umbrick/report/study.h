@@ -1,6 +1,7 @@
 // A study: what accuracy costs. Renders every case of a plan, times it, compares it, and writes a report.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -21,6 +22,7 @@ struct StudyOutcome {
   bool complete = false;  // false: stopped; the same call goes on
   std::size_t casesDone = 0, cases = 0;
   std::filesystem::path page, table, record;  // HTML, CSV, JSON
+  std::uint64_t nonFiniteVoxels = 0;  // active NaN or infinite voxels, read as background; 0 when nothing was measured
 };
 
 /// Measures the cases of a plan that are not in the folder yet, and writes the report:
