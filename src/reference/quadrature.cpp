@@ -54,8 +54,9 @@ QuadraturePixel::QuadraturePixel(const ReferenceSpace& space, const ReferenceOpt
       accessor_(space.field.accessor()) {
   eyeOptions_.step = step;
   // A part stands for the V at its centre: the error goes with the square of its optical depth.
-  if (space.scene.model != Model::emission)
-    eyeOptions_.largestTau = std::clamp(2 * std::sqrt(options.tolerance), 1e-3, 0.1);
+  // Without V only the albedo varies: three Gauss nodes have exp(-x) over 0.5 to 1e-8.
+  eyeOptions_.largestTau =
+      space.scene.model == Model::emission ? 0.5 : std::clamp(2 * std::sqrt(options.tolerance), 1e-3, 0.1);
   eyeOptions_.darkest = std::min(1e-6, 0.01 * options.tolerance);
   if (space.scene.model == Model::cone) aimLights(-cameraFrame(space.scene.camera).forward);
   if (space.scene.model == Model::ambient) aimLights({0, 0, 1});

@@ -241,7 +241,7 @@ TEST_CASE("Media as solid as numbers allow are integrated by both", "[reference]
       ReferenceOptions options;
       options.directions = 32;
       const ReferencePicture exact = renderReference(grid, scene, options);
-      const ReferencePicture random = renderReference(grid, scene, monteCarlo(64, 3));
+      const ReferencePicture random = renderReference(grid, scene, monteCarlo(8, 3));
       double worst = 0;
       std::size_t opaque = 0;
       for (std::size_t i = 3; i < exact.colour.pixels.size(); i += 4) {
