@@ -142,29 +142,19 @@ TEST_CASE("A linear ramp of extinction has its exact optical depth", "[reference
 
 // Steps of the transfer function on a linear field are exact planes, wherever they lie between voxels.
 TEST_CASE("Two slabs blend in order, at their exact thickness", "[reference]") {
-  const glm::dvec3 a(1, 0.3, 0.1), b(0.2, 0.6, 0.9);
-  const TransferFunction transfer({{5.3, {a, 0}},
-                                   {5.3, {a, 0.4}},
-                                   {8.6, {a, 0.4}},
-                                   {8.6, {b, 0}},
-                                   {13.1, {b, 0}},
-                                   {13.1, {b, 0.15}},
-                                   {17.45, {b, 0.15}},
-                                   {17.45, {b, 0}}});
+  const TwoSlabs slabs;
   const ScalarGrid grid = fieldGrid(kDomain, [](const glm::dvec3& p) { return p.z; });
   for (const bool above : {false, true}) {
     const Camera camera = orthographicCamera({12, 9, above ? 60 : -50}, {12, 12, 12}, 8, 16);
-    Scene scene = plainScene(transfer, camera, 1);
+    Scene scene = plainScene(slabs.transfer, camera, 1);
     scene.clipBox = Box{glm::dvec3(1), glm::dvec3(23)};  // beyond, values fall back to the background's
     scene.ambient = {2, 0.5, 1};
     scene.background = glm::dvec3(0.25, 3, 0.125);
     const ReferencePicture picture = renderReference(grid, scene);
     const double stretch = 1 / std::abs(cameraFrame(camera).forward.z);
-    const double throughA = std::exp(-0.4 * 3.3 * stretch), throughB = std::exp(-0.15 * 4.35 * stretch);
+    const glm::dvec3 light = slabs.light(stretch, above);
     for (int c = 0; c < 3; ++c) {
-      const double slabA = (1 - throughA) * a[c], slabB = (1 - throughB) * b[c];
-      const double expected = (above ? slabB + throughB * slabA : slabA + throughA * slabB) * scene.ambient[c] +
-                              throughA * throughB * (*scene.background)[c];
+      const double expected = light[c] * scene.ambient[c] + slabs.transmittance(stretch) * (*scene.background)[c];
       // Values of voxels are whole numbers: nothing but the picture's own rounding is left.
       for (const int pixel : {0, 7, 15})
         CHECK(std::abs(picture.colour.at(pixel, pixel)[c] - expected) < kRounding * std::max(1.0, expected));

@@ -35,6 +35,31 @@ inline double shareBeyond(double aperture, double distance) {
   return 2 * (std::acos(std::sin(distance) / std::sin(aperture)) - part) / (2 * kPi * (1 - std::cos(aperture)));
 }
 
+/// On a field that is its own z: one slab from z = 5.3 to 8.6, another from 13.1 to 17.45.
+struct TwoSlabs {
+  const glm::dvec3 a{1, 0.3, 0.1}, b{0.2, 0.6, 0.9};  // albedo of the lower and the upper one
+  const TransferFunction transfer{{{5.3, {a, 0}},
+                                   {5.3, {a, 0.4}},
+                                   {8.6, {a, 0.4}},
+                                   {8.6, {b, 0}},
+                                   {13.1, {b, 0}},
+                                   {13.1, {b, 0.15}},
+                                   {17.45, {b, 0.15}},
+                                   {17.45, {b, 0}}}};
+
+  /// Through both. @param stretch  length of the ray per unit of z
+  static double transmittance(double stretch) { return throughA(stretch) * throughB(stretch); }
+  /// What they scatter. @param above  seen from large z
+  glm::dvec3 light(double stretch, bool above) const {
+    const glm::dvec3 slabA = (1 - throughA(stretch)) * a, slabB = (1 - throughB(stretch)) * b;
+    return above ? slabB + throughB(stretch) * slabA : slabA + throughA(stretch) * slabB;
+  }
+
+ private:
+  static double throughA(double stretch) { return std::exp(-0.4 * 3.3 * stretch); }
+  static double throughB(double stretch) { return std::exp(-0.15 * 4.35 * stretch); }
+};
+
 /// Integral over [a, b] by Gauss-Legendre, for expected values that are integrals of smooth functions.
 inline double integral(double a, double b, const std::function<double(double)>& f, int nodes = 64) {
   double sum = 0;
