@@ -75,6 +75,14 @@ GlTexture makeTexture2d(const GlFunctions& gl, GLenum format, int width, int hei
   return texture;
 }
 
+GlTexture makeTextureArray(const GlFunctions& gl, GLenum format, int width, int height, int layers, GLenum filter) {
+  GlTexture texture(gl, static_cast<GLenum>(GL_TEXTURE_2D_ARRAY));
+  gl.TextureStorage3D(texture.name(), 1, format, width, height, layers);
+  checkStorage(gl, format, width, height, layers);
+  setSampling(gl, texture.name(), filter);
+  return texture;
+}
+
 GlTexture makeTexture3d(const GlFunctions& gl, GLenum format, int width, int height, int depth) {
   GlTexture texture(gl, static_cast<GLenum>(GL_TEXTURE_3D));
   gl.TextureStorage3D(texture.name(), 1, format, width, height, depth);

@@ -109,20 +109,29 @@ std::string shaderSource(const std::string& path, const ShaderConstants& constan
 GlProgram::GlProgram(const GlFunctions& gl, const std::string& vertex, const std::string& fragment,
                      const ShaderConstants& constants)
     : gl_(&gl) {
-  const GLuint vertexShader = compile(gl, GL_VERTEX_SHADER, vertex, {});
-  GLuint fragmentShader = 0;
+  GLuint shaders[2] = {compile(gl, GL_VERTEX_SHADER, vertex, {}), 0};
   try {
-    fragmentShader = compile(gl, GL_FRAGMENT_SHADER, fragment, constants);
+    shaders[1] = compile(gl, GL_FRAGMENT_SHADER, fragment, constants);
   } catch (...) {
-    gl.DeleteShader(vertexShader);
+    gl.DeleteShader(shaders[0]);
     throw;
   }
+  link(shaders, "shaders " + vertex + " and " + fragment + " do");
+}
+
+GlProgram GlProgram::compute(const GlFunctions& gl, const std::string& path, const ShaderConstants& constants) {
+  GlProgram program(gl);
+  const GLuint shader = compile(gl, GL_COMPUTE_SHADER, path, constants);
+  program.link({&shader, 1}, "shader " + path + " does");
+  return program;
+}
+
+void GlProgram::link(std::span<const GLuint> shaders, const std::string& names) {
+  const GlFunctions& gl = *gl_;
   name_ = gl.CreateProgram();
-  gl.AttachShader(name_, vertexShader);
-  gl.AttachShader(name_, fragmentShader);
+  for (const GLuint shader : shaders) gl.AttachShader(name_, shader);
   gl.LinkProgram(name_);
-  gl.DeleteShader(vertexShader);  // kept alive by the program
-  gl.DeleteShader(fragmentShader);
+  for (const GLuint shader : shaders) gl.DeleteShader(shader);  // kept alive by the program
   GLint linked = 0;
   gl.GetProgramiv(name_, GL_LINK_STATUS, &linked);
   if (linked) return;
@@ -131,7 +140,8 @@ GlProgram::GlProgram(const GlFunctions& gl, const std::string& vertex, const std
   gl.GetProgramInfoLog(name_, static_cast<GLsizei>(log.size()), &length, log.data());
   log.resize(static_cast<std::size_t>(length));
   gl.DeleteProgram(name_);
-  throw GlError("shaders " + vertex + " and " + fragment + " do not link: " + log);
+  name_ = 0;
+  throw GlError(names + " not link: " + log);
 }
 
 GlProgram::~GlProgram() {
@@ -156,6 +166,7 @@ GLint GlProgram::location(const char* name) {
 
 void GlProgram::set(const char* name, int value) { gl_->ProgramUniform1i(name_, location(name), value); }
 void GlProgram::set(const char* name, float value) { gl_->ProgramUniform1f(name_, location(name), value); }
+void GlProgram::set(const char* name, const glm::ivec2& v) { gl_->ProgramUniform2i(name_, location(name), v.x, v.y); }
 void GlProgram::set(const char* name, const glm::vec2& v) { gl_->ProgramUniform2f(name_, location(name), v.x, v.y); }
 void GlProgram::set(const char* name, const glm::vec3& v) {
   gl_->ProgramUniform3f(name_, location(name), v.x, v.y, v.z);

@@ -36,7 +36,9 @@ namespace umbrick {
   X(USEPROGRAM, UseProgram) X(GETUNIFORMLOCATION, GetUniformLocation) X(PROGRAMUNIFORM1I, ProgramUniform1i) \
   X(PROGRAMUNIFORM1F, ProgramUniform1f) X(PROGRAMUNIFORM2F, ProgramUniform2f) X(PROGRAMUNIFORM3F, ProgramUniform3f) \
   X(PROGRAMUNIFORM4F, ProgramUniform4f) X(PROGRAMUNIFORM3FV, ProgramUniform3fv) X(PROGRAMUNIFORM4FV, ProgramUniform4fv) \
-  X(DRAWARRAYS, DrawArrays) X(DRAWELEMENTS, DrawElements) \
+  X(DRAWARRAYS, DrawArrays) X(DRAWELEMENTS, DrawElements) X(BINDBUFFERBASE, BindBufferBase) \
+  X(DISPATCHCOMPUTE, DispatchCompute) X(MEMORYBARRIER, MemoryBarrier) X(BINDIMAGETEXTURE, BindImageTexture) \
+  X(PROGRAMUNIFORM2I, ProgramUniform2i) \
   X(CREATEQUERIES, CreateQueries) X(DELETEQUERIES, DeleteQueries) X(BEGINQUERY, BeginQuery) X(ENDQUERY, EndQuery) \
   X(GETQUERYOBJECTUI64V, GetQueryObjectui64v)
 // clang-format on

@@ -62,6 +62,8 @@ using GlQuery = GlObject<GlQueryKind>;
 /// A 2D texture of one level with clamped edges; `filter` GL_NEAREST or GL_LINEAR.
 /// @throw GlError  the driver has no room for it: says size and format
 GlTexture makeTexture2d(const GlFunctions& gl, GLenum format, int width, int height, GLenum filter);
+/// An array of 2D textures. @throw GlError
+GlTexture makeTextureArray(const GlFunctions& gl, GLenum format, int width, int height, int layers, GLenum filter);
 /// A 3D texture of one level with clamped edges and linear filter. @throw GlError
 GlTexture makeTexture3d(const GlFunctions& gl, GLenum format, int width, int height, int depth);
 

@@ -21,6 +21,8 @@ class GlProgram {
   /// @throw GlError  no such shader, or the driver's message with our file and line
   GlProgram(const GlFunctions& gl, const std::string& vertex, const std::string& fragment,
             const ShaderConstants& constants = {});
+  /// A compute program, e.g. of "shade/window_march.comp". @throw GlError  likewise
+  static GlProgram compute(const GlFunctions& gl, const std::string& path, const ShaderConstants& constants = {});
   ~GlProgram();
   GlProgram(GlProgram&& other) noexcept;
   GlProgram& operator=(GlProgram&& other) noexcept;
@@ -29,6 +31,7 @@ class GlProgram {
   // A name that the compiler removed because nothing reads it is ignored.
   void set(const char* name, int value);
   void set(const char* name, float value);
+  void set(const char* name, const glm::ivec2& value);
   void set(const char* name, const glm::vec2& value);
   void set(const char* name, const glm::vec3& value);
   void set(const char* name, const glm::vec4& value);
@@ -36,6 +39,8 @@ class GlProgram {
   void set(const char* name, std::span<const glm::vec4> values);
 
  private:
+  explicit GlProgram(const GlFunctions& gl) : gl_(&gl) {}
+  void link(std::span<const GLuint> shaders, const std::string& names);
   GLint location(const char* name);
   const GlFunctions* gl_;
   GLuint name_ = 0;
