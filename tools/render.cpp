@@ -23,10 +23,12 @@ struct RenderCommand {
   std::shared_ptr<PictureOutput> output;
   std::string backend = "auto";
   int frames = 1;
+  bool timePasses = false;
 };
 
 nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& picture,
-                                  const std::vector<double>& framesMs, const GlContext& context, double writeMs) {
+                                  const std::vector<double>& framesMs, const GlContext& context, double writeMs,
+                                  bool timePasses) {
   const RenderStats& stats = picture.stats;
   nlohmann::ordered_json json;
   json["renderer"] = context.description();
@@ -47,6 +49,14 @@ nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& pict
   json["fragments_shaded"] = stats.fragments;
   json["bytes"] = {
       {"brick_textures", stats.textureBytes}, {"buffers", stats.bufferBytes}, {"peak_memory", peakMemoryBytes()}};
+  if (stats.directions > 0)
+    json["windows"] = {{"directions", stats.directions},
+                       {"texel_world", stats.windowTexel},
+                       {"bytes", stats.windowBytes},
+                       {"updates", stats.windowUpdates}};
+  if (timePasses)
+    json["passes_ms"] = {
+        {"extinction", stats.passes.extinctionMs}, {"windows", stats.passes.windowsMs}, {"eye", stats.passes.eyeMs}};
   json["textures"] = stats.textures;
   json["texel_error"] = stats.formatError;
   json["non_finite_voxels"] = loaded.bricks->nonFiniteVoxels;
@@ -63,6 +73,7 @@ int render(const RenderCommand& command) {
   RenderOptions options;
   options.visibilityAndDepth = output.layers;
   options.countFragments = !output.stats.empty();
+  options.timePasses = command.timePasses;
   SliceRenderer renderer(*context, *loaded.bricks, loaded.scene, options);
   std::vector<double> framesMs;
   Picture picture;
@@ -82,7 +93,7 @@ int render(const RenderCommand& command) {
                 {"umbrick.renderer", context->description()},
                 {"umbrick.version", UMBRICK_VERSION}});
   if (!output.stats.empty()) {
-    const auto stats = printStats(loaded, picture, framesMs, *context, write.elapsedMs());
+    const auto stats = printStats(loaded, picture, framesMs, *context, write.elapsedMs(), command.timePasses);
     writeTextFile(output.stats, stats.dump(2) + "\n");
   }
   return 0;
@@ -101,6 +112,8 @@ Command addRender(CLI::App& app) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str()
       ->group("Output");
+  sub->add_flag("--time-passes", command->timePasses, "also time each kind of pass, for --stats; slower");
+  sub->get_option("--time-passes")->group("Output");
   return {sub, [command] { return render(*command); }};
 }
 

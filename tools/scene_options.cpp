@@ -71,6 +71,9 @@ void applyModel(const SceneOptions& options, Scene& scene) {
   apply(options.passes, occlusion.passes);
   apply(options.algorithm, occlusion.algorithm);
   apply(options.occlusionBits, occlusion.bits);
+  if (options.method) scene.method = *options.method == "dos" ? Method::dos : Method::ordinates;
+  apply(options.directions, occlusion.directions);
+  apply(options.occlusionScale, occlusion.scale);
   if (options.noPerspectiveCorrection) occlusion.perspectiveCorrection = false;
   if (options.ambient) scene.ambient = toVector(*options.ambient);
   if (options.background) scene.background = toVector(*options.background);
@@ -140,7 +143,15 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
           "sphere); the last two only in the reference [emission]")
       ->check(CLI::IsMember({"emission", "cone", "cone-ray", "ambient"}))
       ->group(light);
-  command.add_option("--method", o.method, "of the cone model: dos [dos]")->check(CLI::IsMember({"dos"}))->group(light);
+  command.add_option("--method", o.method, "of the cone model: dos or ordinates [dos]")
+      ->check(CLI::IsMember({"dos", "ordinates"}))
+      ->group(light);
+  command.add_option("--ordinates", o.directions, "K: directions of ordinates, about so many, 1 to 1024 [16]")
+      ->group(light);
+  command
+      .add_option("--occlusion-scale", o.occlusionScale,
+                  "of ordinates: window texels per voxel edge [0: by voxels and pixels]")
+      ->group(light);
   command.add_option("--theta", o.theta, "half-angle of the cone, degrees, in [0, 90) [60]")->group(light);
   command.add_option("--footprint", o.footprint, "n: n x n samples over the cone's footprint, 1 to 16 [3]")
       ->group(light);

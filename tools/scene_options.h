@@ -21,9 +21,9 @@ struct SceneOptions {
   std::optional<std::string> grid, transfer, model, method, spacingUnit, quadrature, format;
   std::optional<std::vector<double>> window, eye, lookAt, up, ambient, background, clipBox;
   std::vector<std::vector<double>> clipPlanes;
-  std::optional<double> sigmaScale, azimuth, elevation, fov, viewHeight, nearDistance, spacing, saturation, theta;
+  std::optional<double> occlusionScale, sigmaScale, azimuth, elevation, fov, viewHeight, nearDistance, spacing, saturation, theta;
   std::optional<std::string> size;
-  std::optional<int> eyeBits, occlusionBits, tableSize, segments, footprint, passes, algorithm, interior;
+  std::optional<int> eyeBits, occlusionBits, tableSize, segments, footprint, passes, algorithm, directions, interior;
   std::optional<std::uint64_t> budgetMiB;
   bool orthographic = false, noPerspectiveCorrection = false, unbricked = false, noCulling = false;
 };

@@ -15,7 +15,7 @@ inline constexpr Name<Projection> kProjections[]{{"perspective", Projection::per
                                                  {"orthographic", Projection::orthographic}};
 inline constexpr Name<Model> kModels[]{
     {"emission", Model::emission}, {"cone", Model::cone}, {"cone-ray", Model::coneRay}, {"ambient", Model::ambient}};
-inline constexpr Name<Method> kMethods[]{{"dos", Method::dos}};
+inline constexpr Name<Method> kMethods[]{{"dos", Method::dos}, {"ordinates", Method::ordinates}};
 inline constexpr Name<Quadrature> kQuadratures[]{{"preintegrated", Quadrature::preintegrated},
                                                  {"midpoint", Quadrature::midpoint}};
 inline constexpr Name<bool> kSpacingUnits[]{{"voxel", true}, {"world", false}};

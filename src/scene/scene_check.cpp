@@ -112,6 +112,9 @@ std::optional<Complaint> findComplaint(const Scene& scene) {
   check.requireEither(occlusion.passes, 1, 2, "occlusion.passes");
   check.requireEither(occlusion.algorithm, 2, 3, "occlusion.algorithm");
   check.requireEither(occlusion.bits, 16, 32, "occlusion.bits");
+  check.requireWithin(occlusion.directions, 1, 1024, "occlusion.directions");
+  check.require(occlusion.scale >= 0 && std::isfinite(occlusion.scale), "occlusion.scale", print(occlusion.scale),
+                "0 or more");
 
   checkClip(check, scene);
 

@@ -109,13 +109,16 @@ void readSampling(const JsonValue& value, SamplingOptions& sampling) {
 }
 
 void readOcclusion(const JsonValue& value, OcclusionOptions& occlusion) {
-  value.allowFields({"theta", "footprint", "passes", "algorithm", "perspectiveCorrection", "bits"});
+  value.allowFields(
+      {"theta", "footprint", "passes", "algorithm", "perspectiveCorrection", "bits", "directions", "scale"});
   readDegrees(value, "theta", occlusion.aperture);
   read(value, "footprint", occlusion.footprint);
   read(value, "passes", occlusion.passes);
   read(value, "algorithm", occlusion.algorithm);
   read(value, "perspectiveCorrection", occlusion.perspectiveCorrection);
   read(value, "bits", occlusion.bits);
+  read(value, "directions", occlusion.directions);
+  read(value, "scale", occlusion.scale);
 }
 
 void readClip(const JsonValue& value, Scene& scene) {

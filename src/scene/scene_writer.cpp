@@ -58,7 +58,9 @@ std::string printedOcclusion(const OcclusionOptions& occlusion) {
                      {"passes", printed(occlusion.passes)},
                      {"algorithm", printed(occlusion.algorithm)},
                      {"perspectiveCorrection", printed(occlusion.perspectiveCorrection)},
-                     {"bits", printed(occlusion.bits)}});
+                     {"bits", printed(occlusion.bits)},
+                     {"directions", printed(occlusion.directions)},
+                     {"scale", jsonNumber(occlusion.scale)}});
 }
 
 std::string printedClip(const Scene& scene) {

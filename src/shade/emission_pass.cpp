@@ -1,71 +1,22 @@
 // Emission and absorption: slices blend into the eye buffer and need nothing of each other.
-#include <optional>
-
-#include "shade/frame.h"
+#include "shade/eye_sweep.h"
 
 namespace umbrick {
 namespace {
 
-// Slices between two looks at which pixels are saturated. A look costs about as much as a slice of constant colour, and
-// a pixel is shaded for half as many slices too long on average.
-constexpr std::int64_t kSaturationInterval = 8;
-
 class EmissionPass : public SlicePass {
  public:
-  void begin(Frame& frame) override {
-    const GlFunctions& gl = frame.gl;
-    setSlabUniforms(program_.get(gl, slabConstants(frame)), frame);
-    if (frame.scene.sampling.saturation > 0 && !saturation_) saturation_.emplace(gl);
-    sinceTest_ = 0;
+  void begin(Frame& frame, std::span<const SweepRun>) override {
+    setSlabUniforms(program_.get(frame.gl, slabConstants(frame)), frame);
+    sweep_.begin(frame);
   }
-
   void draw(Frame& frame, std::int64_t, std::int64_t) override {
-    const std::vector<SliceDraw>& draws = frame.polygons.draws();
-    setState(frame);
-    for (std::size_t i = 0; i < draws.size();) {
-      if (frame.scene.sampling.saturation > 0 && sinceTest_ >= kSaturationInterval) {
-        saturation_->run(frame);
-        setState(frame);
-        sinceTest_ = 0;
-      }
-      // One call for as many slices as lie in the same texture until the next look.
-      SliceDraw merged = draws[i];
-      std::size_t next = i + 1;
-      for (; next < draws.size() && draws[next].texture == merged.texture; ++next) {
-        if (draws[next].slice != draws[next - 1].slice && ++sinceTest_ >= kSaturationInterval) break;
-        merged.indices += draws[next].indices;
-      }
-      if (next < draws.size() && draws[next].texture != merged.texture && draws[next].slice != draws[next - 1].slice)
-        ++sinceTest_;
-      bindVolume(frame, merged.texture);
-      frame.fragments.begin();
-      frame.polygons.draw(merged.firstIndex, merged.indices);
-      frame.fragments.end();
-      i = next;
-    }
+    sweep_.draw(frame, frame.polygons.draws(), program_.current());
   }
 
  private:
-  void setState(const Frame& frame) {
-    const GlFunctions& gl = frame.gl;
-    gl.BindFramebuffer(GL_FRAMEBUFFER, frame.targets.eyeOnly.name());
-    gl.Enable(GL_DEPTH_TEST);
-    gl.DepthFunc(GL_LESS);
-    gl.DepthMask(GL_FALSE);
-    gl.Disable(GL_STENCIL_TEST);
-    gl.Disable(GL_SCISSOR_TEST);
-    for (const GLuint target : {0u, 1u}) {
-      gl.ColorMaski(target, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-      gl.Enablei(GL_BLEND, target);
-      gl.BlendFunci(target, GL_ONE_MINUS_DST_ALPHA, GL_ONE);
-    }
-    program_.current().use();
-    frame.polygons.bind();
-  }
-
   SpecialisedProgram program_{"shade/slice.vert", "shade/emission.frag"};
-  std::optional<SaturationTest> saturation_;
-  std::int64_t sinceTest_ = 0;
+  EyeSweep sweep_;
 };
 
 }  // namespace

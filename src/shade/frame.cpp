@@ -31,18 +31,27 @@ ShaderConstants slabConstants(const Frame& frame) {
 }
 
 void setSlabUniforms(GlProgram& program, const Frame& frame) {
+  setSlabUniforms(program, frame, frame.view, frame.planes);
+}
+
+void setSlabUniforms(GlProgram& program, const Frame& frame, const IndexView& view,
+                     std::span<const glm::dvec4> planes) {
   const glm::dvec3 size(frame.atlas.textureSize());
-  const glm::dvec2 pixel = 2.0 * frame.view.halfExtent / glm::dvec2(frame.size());
+  const glm::dvec2 pixel = 2.0 * view.halfExtent / glm::dvec2(view.size);
   program.set("screen_scale", glm::vec2(pixel));
-  program.set("screen_offset", glm::vec2(-frame.view.halfExtent));
-  program.set("across_x", glm::vec3(frame.view.toIndex[0] / size));
-  program.set("across_y", glm::vec3(frame.view.toIndex[1] / size));
-  program.set("half_forward", glm::vec3(0.5 * frame.slices.spacing * frame.view.toIndex[2] / size));
+  program.set("screen_offset", glm::vec2(-view.halfExtent));
+  program.set("across_x", glm::vec3(view.toIndex[0] / size));
+  program.set("across_y", glm::vec3(view.toIndex[1] / size));
+  program.set("half_forward", glm::vec3(0.5 * frame.slices.spacing * view.toIndex[2] / size));
   program.set("half_spacing", static_cast<float>(0.5 * frame.slices.spacing));
-  std::vector<glm::vec4> planes;
-  for (const glm::dvec4& plane : frame.planes) planes.emplace_back(plane);
-  program.set("clip_planes", planes);
+  std::vector<glm::vec4> inShader;
+  for (const glm::dvec4& plane : planes) inShader.emplace_back(plane);
+  program.set("clip_planes", inShader);
   frame.transfer.setUniforms(program, frame.atlas);
+}
+
+void SlicePass::fill(Frame& frame, std::int64_t first, std::int64_t last) {
+  frame.polygons.fill(frame.slices, first, last, frame.view, frame.atlas, frame.reverseBricks);
 }
 
 void bindVolume(const Frame& frame, int texture) {
@@ -71,7 +80,9 @@ void SaturationTest::run(const Frame& frame) {
 }
 
 GlProgram& SpecialisedProgram::get(const GlFunctions& gl, const ShaderConstants& constants) {
-  if (!program_ || constants != constants_) program_ = std::make_unique<GlProgram>(gl, vertex_, fragment_, constants);
+  if (!program_ || constants != constants_)
+    program_ = compute_.empty() ? std::make_unique<GlProgram>(gl, vertex_, fragment_, constants)
+                                : std::make_unique<GlProgram>(GlProgram::compute(gl, compute_, constants));
   constants_ = constants;
   return *program_;
 }

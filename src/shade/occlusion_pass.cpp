@@ -13,7 +13,7 @@ namespace {
 
 class OcclusionPass : public SlicePass {
  public:
-  void begin(Frame& frame) override {
+  void begin(Frame& frame, std::span<const SweepRun>) override {
     const GlFunctions& gl = frame.gl;
     const OcclusionOptions& options = frame.scene.occlusion;
     disk_ = diskGrid(options.footprint);

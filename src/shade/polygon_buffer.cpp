@@ -13,14 +13,15 @@ PolygonBuffer::PolygonBuffer(const GlFunctions& gl) : gl_(gl), array_(gl), verti
   gl.VertexArrayElementBuffer(array, indices_.name());
   gl.VertexArrayAttribFormat(array, 0, 2, GL_FLOAT, GL_FALSE, 0);
   gl.VertexArrayAttribFormat(array, 1, 4, GL_FLOAT, GL_FALSE, offsetof(Vertex, u));
-  for (const GLuint attribute : {0u, 1u}) {
+  gl.VertexArrayAttribFormat(array, 2, 1, GL_FLOAT, GL_FALSE, offsetof(Vertex, layer));
+  for (const GLuint attribute : {0u, 1u, 2u}) {
     gl.VertexArrayAttribBinding(array, attribute, 0);
     gl.EnableVertexArrayAttrib(array, attribute);
   }
 }
 
 void PolygonBuffer::fill(const ProxySlices& slices, std::int64_t first, std::int64_t last, const IndexView& view,
-                         const BrickAtlas& atlas, bool reverseBricks) {
+                         const BrickAtlas& atlas, bool reverseBricks, std::span<const int> layers) {
   vertexData_.clear();
   indexData_.clear();
   draws_.clear();
@@ -28,6 +29,8 @@ void PolygonBuffer::fill(const ProxySlices& slices, std::int64_t first, std::int
   const double apron = atlas.layout().apron;
   std::vector<const ProxyPolygon*> order;
   for (std::int64_t i = first; i < last; ++i) {
+    const int layer = layers.empty() ? 0 : layers[static_cast<std::size_t>(i - first)];
+    if (layer < 0) continue;
     const double depth = slices.depth(i);
     const glm::dvec3 centre = view.eyeIndex + depth * view.toIndex[2];  // of the slice, index coordinates
     order.clear();
@@ -45,7 +48,8 @@ void PolygonBuffer::fill(const ProxySlices& slices, std::int64_t first, std::int
         const auto base = static_cast<std::uint32_t>(vertexData_.size());
         for (int v = 0; v < polygon->vertices; ++v) {
           const glm::vec2 device = slices.vertices[static_cast<std::size_t>(polygon->firstVertex + v)];
-          vertexData_.push_back({device.x, device.y, uvw.x, uvw.y, uvw.z, static_cast<float>(depth)});
+          vertexData_.push_back(
+              {device.x, device.y, uvw.x, uvw.y, uvw.z, static_cast<float>(depth), static_cast<float>(layer)});
         }
         for (std::uint32_t v = 2; v < static_cast<std::uint32_t>(polygon->vertices); ++v)
           indexData_.insert(indexData_.end(), {base, base + v - 1, base + v});

@@ -1,6 +1,7 @@
 // The polygons of a run of slices as vertices and triangles in graphics memory.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "shade/screen_region.h"
@@ -23,8 +24,10 @@ class PolygonBuffer {
   /// Fills the buffer with slices [first, last), whose bricks are resident. Vertices carry where in the atlas the slice
   /// plane meets the centre of the image, computed in double precision from indices relative to the brick, so that
   /// volumes far from the origin lose nothing.
+  /// @param layers  by slice from `first`: a number that goes with its vertices; negative: leave the slice out. Empty:
+  /// 0
   void fill(const ProxySlices& slices, std::int64_t first, std::int64_t last, const IndexView& view,
-            const BrickAtlas& atlas, bool reverseBricks);
+            const BrickAtlas& atlas, bool reverseBricks, std::span<const int> layers = {});
   /// In order of slices.
   const std::vector<SliceDraw>& draws() const { return draws_; }
   void bind() const;
@@ -35,6 +38,7 @@ class PolygonBuffer {
   struct Vertex {
     float x, y;        // normalised device coordinates
     float u, v, w, s;  // atlas coordinates at the centre of the image, depth
+    float layer;
   };
   const GlFunctions& gl_;
   GlVertexArray array_;

@@ -12,6 +12,7 @@
 #include "shade/sweep_plan.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 namespace {
@@ -80,11 +81,12 @@ class SliceRenderer::Implementation {
     targets.width = scene.camera.width;
     targets.height = scene.camera.height;
     targets.eyeBits = sampling.bits;
-    targets.occlusionBits = scene.model == Model::cone ? scene.occlusion.bits : 0;
+    const bool dos = scene.model == Model::cone && scene.method == Method::dos;
+    targets.occlusionBits = dos ? scene.occlusion.bits : 0;
     targets.aux = options.visibilityAndDepth;
     targets_.emplace(gl_, targets);
     polygons_.emplace(gl_);
-    pass_ = scene.model == Model::cone ? makeOcclusionPass() : makeEmissionPass();
+    pass_ = dos ? makeOcclusionPass() : scene.model == Model::cone ? makeOrdinatesPass() : makeEmissionPass();
   }
 
   const Scene& scene() const { return scene_; }
@@ -102,14 +104,16 @@ class SliceRenderer::Implementation {
 
     targets_->clear(gl_);
     gl_.Viewport(0, 0, camera.width, camera.height);
-    pass_->begin(frame);
+    pass_->begin(frame, runs_);
     for (const SweepRun& run : runs_) {
       const Stopwatch upload;
       makeResident(run);
-      polygons_->fill(frame.slices, run.first, run.last, frame.view, *atlas_, options_.reverseBricks);
+      pass_->fill(frame, run.first, run.last);
       stats.uploadMs += upload.elapsedMs();
       const Stopwatch sweep;
+      frame.clock.start();
       pass_->draw(frame, run.first, run.last);
+      frame.clock.lap(&PassTimes::eyeMs);
       // Only what waits for the last fragment tells the time of the sweep.
       gl_.Finish();
       stats.sweepMs += sweep.elapsedMs();
@@ -130,6 +134,8 @@ class SliceRenderer::Implementation {
     const glm::ivec3 textureSize = atlas_->textureSize();
     stats.textureEdge = std::max({textureSize.x, textureSize.y, textureSize.z});
     stats.bufferBytes = targets_->bytes();
+    stats.passes = frame.clock.times();
+    pass_->addTo(stats);
     stats.formatError = atlas_->formatError();
     return picture;
   }
@@ -221,10 +227,14 @@ class SliceRenderer::Implementation {
     checkReach(view);
     std::vector<glm::dvec4> planes = viewPlanes(camera);
     ProxySlices slices = cutSlices(view, origins_, volume_.layout.interior, planes, scene_.sampling.spacing);
-    runs_ = planSweep(slices, origins_.size(),
-                      atlas_->holdsAll() ? std::numeric_limits<std::size_t>::max() : atlas_->slots());
     frame_.emplace(Frame{gl_, scene_, camera, view, std::move(planes), std::move(slices), *atlas_, *transfer_,
-                         *targets_, *polygons_, FragmentCounter(gl_, options_.countFragments)});
+                         *targets_, *polygons_, FragmentCounter(gl_, options_.countFragments), options_.reverseBricks,
+                         shortestVoxelEdge(volume_.indexToWorld), PassClock(gl_, options_.timePasses)});
+    pass_->plan(*frame_);
+    std::vector<const ProxySlices*> sweeps{&frame_->slices};
+    if (pass_->occluders()) sweeps.push_back(pass_->occluders());
+    runs_ = planSweep(sweeps, origins_.size(),
+                      atlas_->holdsAll() ? std::numeric_limits<std::size_t>::max() : atlas_->slots());
   }
 
   void makeResident(const SweepRun& run) {

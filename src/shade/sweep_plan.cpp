@@ -4,9 +4,10 @@
 
 namespace umbrick {
 
-std::vector<SweepRun> planSweep(const ProxySlices& slices, std::size_t bricks, std::size_t slots) {
+std::vector<SweepRun> planSweep(std::span<const ProxySlices* const> sweeps, std::size_t bricks, std::size_t slots) {
   std::vector<SweepRun> runs;
   std::vector<std::int64_t> usedIn(bricks, -1);  // the run that lists the brick last
+  std::vector<std::int64_t> seenIn(bricks, -1);  // the slice that lists the brick last
   SweepRun run;
   const auto close = [&](std::int64_t last) {
     run.last = last;
@@ -14,23 +15,29 @@ std::vector<SweepRun> planSweep(const ProxySlices& slices, std::size_t bricks, s
     runs.push_back(std::move(run));
     run = {last, last, {}};
   };
-  for (std::int64_t i = 0; i < slices.count(); ++i) {
-    const auto polygons = std::span(slices.polygons)
-                              .subspan(static_cast<std::size_t>(slices.start[static_cast<std::size_t>(i)]),
-                                       static_cast<std::size_t>(slices.start[static_cast<std::size_t>(i) + 1] -
-                                                                slices.start[static_cast<std::size_t>(i)]));
-    const auto isNew = [&](const ProxyPolygon& polygon) {
-      return usedIn[static_cast<std::size_t>(polygon.brick)] != static_cast<std::int64_t>(runs.size());
+  const std::int64_t count = sweeps.empty() ? 0 : sweeps.front()->count();
+  std::vector<std::int32_t> needed;
+  for (std::int64_t i = 0; i < count; ++i) {
+    needed.clear();
+    for (const ProxySlices* slices : sweeps)
+      for (std::int32_t p = slices->start[static_cast<std::size_t>(i)];
+           p < slices->start[static_cast<std::size_t>(i) + 1]; ++p) {
+        const std::int32_t brick = slices->polygons[static_cast<std::size_t>(p)].brick;
+        if (seenIn[static_cast<std::size_t>(brick)] != i) needed.push_back(brick);
+        seenIn[static_cast<std::size_t>(brick)] = i;
+      }
+    const auto isNew = [&](std::int32_t brick) {
+      return usedIn[static_cast<std::size_t>(brick)] != static_cast<std::int64_t>(runs.size());
     };
-    const auto added = static_cast<std::size_t>(std::count_if(polygons.begin(), polygons.end(), isNew));
+    const auto added = static_cast<std::size_t>(std::count_if(needed.begin(), needed.end(), isNew));
     if (!run.bricks.empty() && run.bricks.size() + added > slots) close(i);
-    for (const ProxyPolygon& polygon : polygons)
-      if (isNew(polygon)) {
-        usedIn[static_cast<std::size_t>(polygon.brick)] = static_cast<std::int64_t>(runs.size());
-        run.bricks.push_back(polygon.brick);
+    for (const std::int32_t brick : needed)
+      if (isNew(brick)) {
+        usedIn[static_cast<std::size_t>(brick)] = static_cast<std::int64_t>(runs.size());
+        run.bricks.push_back(brick);
       }
   }
-  if (slices.count() > 0) close(slices.count());
+  if (count > 0) close(count);
   return runs;
 }
 

@@ -1,5 +1,6 @@
 #include "shade/sweep_plan.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <random>
@@ -41,7 +42,8 @@ TEST_CASE("Runs cover the sweep in order, each with its bricks and none longer t
     const int bricks = 1 + static_cast<int>(random() % 40), count = 1 + static_cast<int>(random() % 30);
     const std::size_t slots = 1 + random() % 20;
     const ProxySlices slices = randomSlices(random, bricks, count);
-    const std::vector<SweepRun> runs = planSweep(slices, static_cast<std::size_t>(bricks), slots);
+    const std::vector<SweepRun> runs =
+        planSweep(std::array<const ProxySlices*, 1>{&slices}, static_cast<std::size_t>(bricks), slots);
     INFO("round " << round << ", slots " << slots);
     REQUIRE_FALSE(runs.empty());
     CHECK(runs.front().first == 0);
@@ -63,8 +65,8 @@ TEST_CASE("Runs cover the sweep in order, each with its bricks and none longer t
 TEST_CASE("A volume that fits is swept in one run, and nothing in none", "[shade]") {
   std::mt19937 random(6);
   const ProxySlices slices = randomSlices(random, 30, 20);
-  const auto runs = planSweep(slices, 30, std::numeric_limits<std::size_t>::max());
+  const auto runs = planSweep(std::array<const ProxySlices*, 1>{&slices}, 30, std::numeric_limits<std::size_t>::max());
   REQUIRE(runs.size() == 1);
   CHECK(runs[0].last == 20);
-  CHECK(planSweep({}, 0, 4).empty());
+  CHECK(planSweep(std::vector<const ProxySlices*>{}, 0, 4).empty());
 }

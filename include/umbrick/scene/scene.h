@@ -24,8 +24,9 @@ std::string modelName(Model model);
 /// @throw InvalidArgument  another name; lists those there are
 Model parseModel(std::string_view name);
 /// How the share is computed. dos: directional occlusion shading, Schott et al. 2009,
-/// doi:10.1111/j.1467-8659.2009.01464.x
-enum class Method { dos };
+/// doi:10.1111/j.1467-8659.2009.01464.x. ordinates: a set of directions, each with a transmittance of its own that is
+/// carried along its paths
+enum class Method { dos, ordinates };
 
 /// How a slab between two slices is integrated.
 enum class Quadrature {
@@ -39,7 +40,9 @@ struct OcclusionOptions {
   int passes = 1;                        // Algorithm 1 of the paper: 2, two passes a slice; 1, multiple render targets
   int algorithm = 3;                     // 2: exact distance per sample; 3: slice distance for every sample
   bool perspectiveCorrection = true;     // Eqs. 12-15 of the paper
-  int bits = 32;                         // of the occlusion buffer, 16 or 32; see SamplingOptions
+  int bits = 32;                         // of the occlusion buffer or the windows, 16 or 32; see SamplingOptions
+  int directions = 16;                   // K: of ordinates, about so many over the cone, 1 to 1024
+  double scale = 0;                      // of ordinates: window texels per voxel edge; 0: by voxels and pixels
   bool operator==(const OcclusionOptions&) const = default;
 };
 

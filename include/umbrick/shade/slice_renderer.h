@@ -14,10 +14,18 @@ namespace umbrick {
 struct RenderOptions {
   bool visibilityAndDepth = false;  // also make the layers of Picture
   bool countFragments = true;
+  bool timePasses = false;     // RenderStats::passes; waiting for each pass makes a picture slower
   bool reverseBricks = false;  // draw the bricks of a slice in the opposite order: must change nothing
   std::uint64_t maxTextureBytes = std::uint64_t{512} << 20;  // see AtlasOptions
   int maxTextureEdge = 0;
   std::uint64_t budgetBytes = 0;  // of bricks' textures; 0: the scene's budget
+};
+
+/// Where the time of a sweep goes, ms.
+struct PassTimes {
+  double extinctionMs = 0;  // ordinates: bricks to the slices' optical depth on the lattice of the light
+  double windowsMs = 0;     // ordinates: light through the slices
+  double eyeMs = 0;         // bricks to the eye; for dos, light as well
 };
 
 struct RenderStats {
@@ -31,6 +39,11 @@ struct RenderStats {
   int textures = 0;                  // that hold bricks
   int textureEdge = 0;               // longest, texels
   std::uint64_t bufferBytes = 0;     // eye, occlusion, depth and layers
+  int directions = 0;                // ordinates: of the light
+  double windowTexel = 0;            // ordinates: edge of a texel of the windows, world units
+  std::uint64_t windowBytes = 0;     // ordinates: of the windows and of what light is computed on, part of bufferBytes
+  std::uint64_t windowUpdates = 0;   // ordinates: texels of windows that slices were taken through
+  PassTimes passes;                  // when asked for
   double formatError = 0;            // largest |voxel - texel|, grid units
   double geometryMs = 0;             // cutting slices into polygons
   double uploadMs = 0;               // bricks and polygons to textures and buffers

@@ -1,0 +1,34 @@
+// The part of one proxy slice that lies in one brick, lit by what the windows let through.
+// Reads   atlas, transfer (see medium.glsl)   visibility (see window_visibility.comp)
+// Writes  eye  premultiplied RGBA, blended under: (ONE_MINUS_DST_ALPHA, ONE)
+//         aux  kAux: opacity-weighted visibility and depth, blended alike
+#include "shade/slab.glsl"
+layout(binding = 8) uniform sampler2DArray visibility;
+uniform vec4 lattice_map;  // view coordinates across to visibility's coordinates: xy scale, zw offset
+uniform float whole_light; // mean of the unoccluded light's components
+flat in vec4 slab_centre;
+flat in float slice_layer;
+layout(location = 0) out vec4 eye;
+layout(location = 1) out vec4 aux;
+
+// Share of a slab's scattering that its own medium leaves: light that has come through d / cos and goes d_e to the eye,
+// integrated over a slab of optical depth tau towards the eye, over what it would be without occlusion. path: light's path
+// over the eye's.
+float selfShadow(float tau, float path) {
+  return slabFactor(tau * (1.0 + path)) / slabFactor(tau);
+}
+
+void main() {
+  Slab slab = evaluateSlab(slab_centre);
+  vec2 p = screenPoint();
+  vec2 across = kPerspective != 0 ? slab_centre.w * p : p;
+  vec4 light = textureLod(visibility, vec3(across * lattice_map.xy + lattice_map.zw, slice_layer), 0.0);
+  float share = kColoured != 0 ? dot(light.rgb, vec3(1.0 / 3.0)) / whole_light : light.r;
+  float weighted = kColoured != 0 ? light.a : light.g;
+  float stretch = rayStretch(p);
+  float path = weighted > 0.0 ? (share / weighted - 1.0) / stretch : 1.0;
+  float tau = slab.sigma_t * slab.share * 2.0 * half_spacing * stretch;
+  float self = selfShadow(tau, path);
+  eye = vec4(slab.light.rgb * self * (kColoured != 0 ? light.rgb : vec3(share)), slab.light.a);
+  if (kAux != 0) aux = vec4(eye.a * self * share, eye.a * slab_centre.w, 0.0, eye.a);
+}

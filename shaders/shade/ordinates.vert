@@ -1,0 +1,12 @@
+// A polygon of a proxy slice that looks up a layer of its own. As slice.vert.
+layout(location = 0) in vec2 position;
+layout(location = 1) in vec4 slab;
+layout(location = 2) in float layer;
+flat out vec4 slab_centre;
+flat out float slice_layer;
+
+void main() {
+  gl_Position = vec4(position, -0.6, 1.0);
+  slab_centre = slab;
+  slice_layer = layer;
+}

@@ -1,0 +1,22 @@
+// Slices blended into the eye buffer, nearest first, without the pixels that are saturated.
+#pragma once
+#include <optional>
+#include <span>
+
+#include "shade/frame.h"
+
+namespace umbrick {
+
+class EyeSweep {
+ public:
+  void begin(const Frame& frame);
+  /// Draws these, in order, with a program whose uniforms are set.
+  void draw(Frame& frame, std::span<const SliceDraw> draws, const GlProgram& program);
+
+ private:
+  static void setState(const Frame& frame, const GlProgram& program);
+  std::optional<SaturationTest> saturation_;
+  std::int64_t sinceTest_ = 0;  // slices
+};
+
+}  // namespace umbrick
