@@ -36,6 +36,7 @@ void check(const ScalarGrid& grid, const Scene& scene, const ReferenceOptions& o
   if (!grid.grid) throw InvalidArgument("reference: there is no grid");
   if (!scene.transfer || scene.orbit || scene.sampling.spacingInVoxels)
     throw InvalidArgument("reference: the scene is not resolved for its volume");
+  if (scene.model == Model::lights) throw InvalidArgument("model: the reference does not integrate lights yet");
   checkAtLeast("step", options.step, 0.0);
   checkAtLeast("directions", options.directions, 1);
   checkAtLeast("samples", options.samples, 2);

@@ -11,15 +11,16 @@
 
 #include "umbrick/core/camera.h"
 #include "umbrick/optics/transfer_function.h"
+#include "umbrick/scene/light_source.h"
 
 namespace umbrick {
 
 /// What light is scattered at a point: `emission` all of the ambient radiance; the others the share V of it that the
 /// medium lets in, as the mean over directions of a cone around the slice normal (`cone`) or around the ray to the eye
-/// (`coneRay`, Eq. 6 of Schott et al. to the letter), or of the whole sphere (`ambient`, their Fig. 2a). The slice
-/// renderer knows the first two, the reference all.
-enum class Model { emission, cone, coneRay, ambient };
-/// What a scene file and the command line call it: "emission", "cone", "cone-ray", "ambient".
+/// (`coneRay`, Eq. 6 of Schott et al. to the letter), of the whole sphere (`ambient`, their Fig. 2a), or what the
+/// medium lets in of the scene's light sources (`lights`). The slice renderer knows the first two, the reference all.
+enum class Model { emission, cone, coneRay, ambient, lights };
+/// What a scene file and the command line call it: "emission", "cone", "cone-ray", "ambient", "lights".
 std::string modelName(Model model);
 /// @throw InvalidArgument  another name; lists those there are
 Model parseModel(std::string_view name);
@@ -91,6 +92,7 @@ struct Scene {
   Method method = Method::dos;
   glm::dvec3 ambient{1};                 // L_a, radiance from every direction
   std::optional<glm::dvec3> background;  // L_b; when set the picture is opaque (alpha 1)
+  std::vector<LightSource> lights;       // for the model `lights`, which needs one or more
   SamplingOptions sampling;
   OcclusionOptions occlusion;
   std::vector<ClipPlane> clipPlanes;
@@ -106,9 +108,13 @@ struct Scene {
 ///              elevation around the volume, or eye, lookAt, up and viewHeight
 ///   transfer   name of a preset, name of a file, or the function itself (also ParaView's array);
 ///   window [low, high], sigmaScale    applied to it
-///   model      "emission", "cone", "cone-ray", "ambient"
+///   model      "emission", "cone", "cone-ray", "ambient", "lights"
 ///   method     "dos"
-///   light      ambient [r, g, b], background [r, g, b]
+///   light      ambient [r, g, b], background [r, g, b], sources [{type, frame ("view", "world"), ...}, ...] with, by
+///   type,
+///                "cone"         axis, theta, radiance ([r, g, b], or one number)
+///                "directional"  direction, softAngle (of theta's kind), radiance: the same, and printed as a cone
+///                "directions"   list [{direction, weight, colour}, ...]
 ///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), segments, bits, saturation,
 ///              tableSize
 ///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits
