@@ -135,7 +135,7 @@ Command addReference(CLI::App& app) {
       ->check(nonNegativeNumber())
       ->capture_default_str()
       ->group(group);
-  sub->add_option("--directions", o.directions, "quadrature: about so many over the cone or the sphere")
+  sub->add_option("--directions", o.directions, "quadrature: about so many over the cone, the sphere or the lights")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str()
       ->group(group);

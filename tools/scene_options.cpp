@@ -136,9 +136,9 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
   command
       .add_option(
           "--model", o.model,
-          "emission (no occlusion), cone (around the slice normal), cone-ray (around the view ray) or ambient (whole "
-          "sphere); the last two only in the reference [emission]")
-      ->check(CLI::IsMember({"emission", "cone", "cone-ray", "ambient"}))
+          "emission (no occlusion), cone (around the slice normal), cone-ray (around the view ray), ambient (whole "
+          "sphere) or lights (the scene's light.sources); the last three only in the reference [emission]")
+      ->check(CLI::IsMember({"emission", "cone", "cone-ray", "ambient", "lights"}))
       ->group(light);
   command.add_option("--method", o.method, "of the cone model: dos [dos]")->check(CLI::IsMember({"dos"}))->group(light);
   command.add_option("--theta", o.theta, "half-angle of the cone, degrees, in [0, 90) [60]")->group(light);

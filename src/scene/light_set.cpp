@@ -15,12 +15,10 @@ namespace umbrick {
 namespace {
 constexpr double kPi = 3.14159265358979323846;
 
-double mean(const glm::dvec3& radiance) { return (radiance.r + radiance.g + radiance.b) / 3; }
-
 class UniformCone : public Light {
  public:
   UniformCone(const glm::dvec3& axis, double aperture, const glm::dvec3& radiance)
-      : Light(mean(radiance), 2 * kPi * (1 - std::cos(aperture))),
+      : Light(powerOf(radiance), 2 * kPi * (1 - std::cos(aperture))),
         axis_(axis),
         aperture_(aperture),
         radiance_(radiance) {}
@@ -39,11 +37,17 @@ class UniformCone : public Light {
   glm::dvec3 radiance_;
 };
 
+double sumOfPowers(const std::vector<LightDirection>& list) {
+  double power = 0;
+  for (const LightDirection& light : list) power += powerOf(light.radiance);
+  return power;
+}
+
 class ListOfDirections : public Light {
  public:
-  explicit ListOfDirections(std::vector<LightDirection> list) : Light(powerOf(list), 0), list_(std::move(list)) {
+  explicit ListOfDirections(std::vector<LightDirection> list) : Light(sumOfPowers(list), 0), list_(std::move(list)) {
     double sum = 0;
-    for (const LightDirection& light : list_) sums_.push_back(sum += mean(light.radiance));
+    for (const LightDirection& light : list_) sums_.push_back(sum += powerOf(light.radiance));
   }
 
   std::vector<LightDirection> directions(int, double) const override { return list_; }
@@ -51,17 +55,11 @@ class ListOfDirections : public Light {
     const auto found = std::upper_bound(sums_.begin(), sums_.end(), u * sums_.back());
     const auto index = std::min<std::size_t>(static_cast<std::size_t>(found - sums_.begin()), list_.size() - 1);
     const LightDirection& light = list_[index];
-    const double power = mean(light.radiance);
+    const double power = powerOf(light.radiance);
     return {light.direction, power > 0 ? light.radiance * (sums_.back() / power) : glm::dvec3(0)};
   }
 
  private:
-  static double powerOf(const std::vector<LightDirection>& list) {
-    double power = 0;
-    for (const LightDirection& light : list) power += mean(light.radiance);
-    return power;
-  }
-
   std::vector<LightDirection> list_;
   std::vector<double> sums_;  // of the powers up to and with each one
 };

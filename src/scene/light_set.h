@@ -8,11 +8,14 @@
 
 namespace umbrick {
 
+/// How much a radiance counts when lights share directions, and in V: the mean of R, G and B.
+inline double powerOf(const glm::dvec3& radiance) { return (radiance.r + radiance.g + radiance.b) / 3; }
+
 /// One source, in the world.
 class Light {
  public:
   virtual ~Light() = default;
-  /// The mean of R, G and B of what a point of albedo 1 scatters when nothing is in the way.
+  /// Of what a point of albedo 1 scatters when nothing is in the way.
   double power() const { return power_; }
   /// sr that the light comes from; 0 where directions() is the same for any count.
   double solidAngle() const { return solidAngle_; }
