@@ -170,6 +170,7 @@ RayCounts integrateAll(const Scene& scene, const ReferenceOptions& options, cons
 ReferencePicture renderReference(const ScalarGrid& grid, const Scene& scene, const ReferenceOptions& options) {
   check(grid, scene, options);
   validateScene(scene);
+  const std::optional<LightSet> lights = lightsOf(scene, options);
   ReferencePicture picture = blankPicture(scene.camera);
   const glm::dmat4 indexToWorld = grid.indexToWorld();
   const Stopwatch prepare;
@@ -181,7 +182,6 @@ ReferencePicture renderReference(const ScalarGrid& grid, const Scene& scene, con
   const EyeRays rays(scene.camera, indexToWorld);
   const bool behindEye = scene.model == Model::coneRay || scene.model == Model::ambient;
   const ConvexRegion region(scene, field.domain(), indexToWorld, behindEye);
-  const std::optional<LightSet> lights = lightsOf(scene, options);
   const LightSet* const given = lights ? &*lights : nullptr;
   const std::vector<LightDirection> directions = directionsOf(scene, options, given);
   const ReferenceSpace space{field, classifier, rays, region, scene, given, directions};

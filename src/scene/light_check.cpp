@@ -34,6 +34,17 @@ void check(Checker& checker, const ListedLight& light, const std::string& field)
   }
 }
 
+void check(Checker& checker, const EnvironmentLight& light, const std::string& field) {
+  checker.require(light.image && light.image->width >= 1 && light.image->height >= 1, field + ".file", "not loaded",
+                  "a map of 1 x 1 pixels or more");
+  checker.requireDirection(light.up, field + ".up");
+  checker.requireDirection(light.front, field + ".front");
+  if (checker.complaint()) return;
+  checker.require(glm::length(glm::cross(glm::normalize(light.up), glm::normalize(light.front))) > 1e-9,
+                  field + ".front", print(light.front), "across up, which is " + print(light.up));
+  checker.require(light.scale >= 0 && std::isfinite(light.scale), field + ".scale", print(light.scale), "0 or more");
+}
+
 std::string ending(LightFrame frame) { return frame == LightFrame::world ? " as the camera stands" : ""; }
 
 void checkFront(Checker& checker, const ConeLight& cone, LightFrame frame, const std::string& field,
@@ -56,6 +67,9 @@ void checkFront(Checker& checker, const ListedLight& light, LightFrame frame, co
                            " is towards the viewer, must be above 0" + ending(frame));
   }
 }
+
+// The half of a map that is not in front is left out.
+void checkFront(Checker&, const EnvironmentLight&, LightFrame, const std::string&, const glm::dvec3&) {}
 
 }  // namespace
 

@@ -2,13 +2,16 @@
 
 #include "core/json_writer.h"
 #include "scene/names.h"
+#include "umbrick/core/error.h"
 
 namespace umbrick {
 namespace {
 
-enum class LightType { cone, directional, directions };
-constexpr Name<LightType> kLightTypes[]{
-    {"cone", LightType::cone}, {"directional", LightType::directional}, {"directions", LightType::directions}};
+enum class LightType { cone, directional, directions, environment };
+constexpr Name<LightType> kLightTypes[]{{"cone", LightType::cone},
+                                        {"directional", LightType::directional},
+                                        {"directions", LightType::directions},
+                                        {"environment", LightType::environment}};
 constexpr Name<LightFrame> kLightFrames[]{{"view", LightFrame::view}, {"world", LightFrame::world}};
 
 glm::dvec3 vectorOf(const JsonValue& value) {
@@ -40,6 +43,26 @@ ListedLight readListed(const JsonValue& value) {
   return light;
 }
 
+EnvironmentLight readEnvironment(const JsonValue& value, LightFrame frame, const std::filesystem::path& folder) {
+  value.allowFields({"type", "frame", "file", "up", "front", "scale"});
+  const JsonValue file = value.at("file");
+  EnvironmentLight light;
+  try {
+    light = loadEnvironment(folder / file.string());
+  } catch (const IoError& error) {
+    file.fail(error.what());
+  }
+  // As the camera of azimuth 0 and elevation 0 has them: there the frames agree.
+  if (frame == LightFrame::world) {
+    light.up = {0, 0, 1};
+    light.front = {0, -1, 0};
+  }
+  if (const auto up = value.find("up")) light.up = vectorOf(*up);
+  if (const auto front = value.find("front")) light.front = vectorOf(*front);
+  if (const auto scale = value.find("scale")) light.scale = scale->number();
+  return light;
+}
+
 std::string printed(const glm::dvec3& v) { return jsonNumbers({v.x, v.y, v.z}); }
 
 JsonFields fieldsOf(const ConeLight& cone) {
@@ -58,9 +81,19 @@ JsonFields fieldsOf(const ListedLight& light) {
   return {{"type", jsonString("directions")}, {"list", jsonArray(list)}};
 }
 
+JsonFields fieldsOf(const EnvironmentLight& light) {
+  if (light.file.empty())
+    throw InvalidArgument("light.sources: an environment map that is no file has no place in JSON");
+  return {{"type", jsonString("environment")},
+          {"file", jsonString(light.file.string())},
+          {"up", printed(light.up)},
+          {"front", printed(light.front)},
+          {"scale", jsonNumber(light.scale)}};
+}
+
 }  // namespace
 
-LightSource readLightSource(const JsonValue& value, const std::filesystem::path&) {
+LightSource readLightSource(const JsonValue& value, const std::filesystem::path& folder) {
   LightSource source;
   if (const auto frame = value.find("frame")) source.frame = frame->choice<LightFrame>(kLightFrames);
   switch (value.at("type").choice<LightType>(kLightTypes)) {
@@ -72,6 +105,9 @@ LightSource readLightSource(const JsonValue& value, const std::filesystem::path&
       break;
     case LightType::directions:
       source.light = readListed(value);
+      break;
+    case LightType::environment:
+      source.light = readEnvironment(value, source.frame, folder);
       break;
   }
   return source;

@@ -6,6 +6,7 @@
 #include <glm/mat3x3.hpp>
 #include <string>
 
+#include "scene/environment.h"
 #include "scene/light_check.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/random.h"
@@ -64,15 +65,19 @@ class ListOfDirections : public Light {
   std::vector<double> sums_;  // of the powers up to and with each one
 };
 
-std::unique_ptr<Light> makeLight(const ConeLight& cone, const glm::dmat3& toWorld) {
+std::unique_ptr<Light> makeLight(const ConeLight& cone, const glm::dmat3& toWorld, const glm::dvec3&) {
   return std::make_unique<UniformCone>(glm::normalize(toWorld * cone.axis), cone.aperture, cone.radiance);
 }
 
-std::unique_ptr<Light> makeLight(const ListedLight& light, const glm::dmat3& toWorld) {
+std::unique_ptr<Light> makeLight(const ListedLight& light, const glm::dmat3& toWorld, const glm::dvec3&) {
   std::vector<LightDirection> list;
   for (const ListedDirection& listed : light.list)
     list.push_back({glm::normalize(toWorld * listed.direction), listed.weight * listed.colour});
   return std::make_unique<ListOfDirections>(std::move(list));
+}
+
+std::unique_ptr<Light> makeLight(const EnvironmentLight& light, const glm::dmat3& toWorld, const glm::dvec3& viewer) {
+  return std::make_unique<Environment>(light, toWorld, viewer);
 }
 
 // Point `index` of the sequence R2: multiples of 1/g and 1/g^2, g^3 = g + 1. In fixed point, so that no index is too
@@ -102,7 +107,8 @@ LightSet::LightSet(const Scene& scene) {
   const CameraFrame frame = cameraFrame(scene.camera);
   const glm::dmat3 viewToWorld(frame.right, frame.up, -frame.forward);
   if (scene.model == Model::cone) {
-    lights_.push_back(makeLight(ConeLight{{0, 0, 1}, scene.occlusion.aperture, glm::dvec3(1)}, viewToWorld));
+    lights_.push_back(
+        makeLight(ConeLight{{0, 0, 1}, scene.occlusion.aperture, glm::dvec3(1)}, viewToWorld, -frame.forward));
   } else if (scene.model == Model::lights) {
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
       const LightSource& source = scene.lights[i];
@@ -111,7 +117,8 @@ LightSet::LightSet(const Scene& scene) {
       if (!complaint) complaint = findBehindViewer(source, i, view ? glm::dvec3(0, 0, 1) : -frame.forward);
       if (complaint) throw InvalidArgument(complaint->field + ": " + complaint->message);
       const glm::dmat3 toWorld = view ? viewToWorld : glm::dmat3(1);
-      lights_.push_back(std::visit([&](const auto& light) { return makeLight(light, toWorld); }, source.light));
+      lights_.push_back(
+          std::visit([&](const auto& light) { return makeLight(light, toWorld, -frame.forward); }, source.light));
     }
     if (lights_.empty())
       throw InvalidArgument("light.sources: is empty, must be one source or more for the model lights");

@@ -25,10 +25,15 @@ class Light {
   virtual LightDirection sample(double u, double v) const = 0;
 
  protected:
+  Light() = default;
   Light(double power, double solidAngle) : power_(power), solidAngle_(solidAngle) {}
+  void setSize(double power, double solidAngle) {
+    power_ = power;
+    solidAngle_ = solidAngle;
+  }
 
  private:
-  double power_, solidAngle_;
+  double power_ = 0, solidAngle_ = 0;
 };
 
 class LightSet {

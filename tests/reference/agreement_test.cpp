@@ -33,12 +33,13 @@ TransferFunction variedTransfer2d() {
                            {{1, 0, 1}, 2}});
 }
 
-// Soft, sharp and listed ones, tilted, of colours whose channels sum to at most 1 each.
+// Soft, sharp, listed ones and a map, tilted, of colours whose channels sum to about 1 each.
 std::vector<LightSource> colouredLights() {
   return {{LightFrame::view, ConeLight{{1, 0.3, 1}, 0.5, {0.4, 0.1, 0.05}}},
           {LightFrame::view, ConeLight{{-0.5, 0.2, 1}, 0, {0.1, 0.2, 0.4}}},
           {LightFrame::world, ConeLight{{25, -22, 19}, 1.1, {0.2, 0.3, 0.2}}},
-          {LightFrame::view, ListedLight{{{{0, 0.7, 1}, 0.5, {0.3, 0.3, 0.6}}, {{0.1, -0.6, 1}, 1, {0.05, 0.2, 0}}}}}};
+          {LightFrame::view, ListedLight{{{{0, 0.7, 1}, 0.5, {0.3, 0.3, 0.6}}, {{0.1, -0.6, 1}, 1, {0.05, 0.2, 0}}}}},
+          environmentOf(8, 5, {0.5, 0.4, 0.6}, true)};
 }
 
 struct Case {

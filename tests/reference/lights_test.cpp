@@ -144,6 +144,29 @@ TEST_CASE("An opaque half-plane hides its share of a tilted cone", "[reference]"
     }
 }
 
+// The closed form of the cone in a half-space as its angle goes to 90 degrees: 1 - ln 2 of the light of half a sphere,
+// of which an isotropic phase function scatters half.
+TEST_CASE("A constant environment lights a half-space as half of the sphere does", "[reference]") {
+  const ScalarGrid grid = makeVoxels({{glm::ivec3(-4000, -4000, -39), 1}, {glm::ivec3(4000, 4000, -1), 1}}, 1);
+  Scene scene = lookingDownAt(homogeneous({0.8, 0.5, 0.3}, 0.7), Model::lights, 0, 0);
+  const glm::dvec3 radiance(1, 3, 2);
+  scene.lights = {environmentOf(7, 3, radiance, false)};
+  const glm::dvec3 expected = (1 - std::log(2.0)) / 2 * glm::dvec3(0.8, 0.5, 0.3) * radiance;
+  // Parts of the hemisphere stand for directions of their centre; 1000 are a 25th of it across, and light that grazes
+  // the surface is of little use: half of a 1000th.
+  const ReferencePicture smooth = renderReference(grid, scene, quadrature(1000));
+  const ReferencePicture random = renderReference(grid, scene, monteCarlo(200'000));
+  for (int c = 0; c < 3; ++c) {
+    CHECK(smooth.colour.at(0, 0)[c] == Approx(expected[c]).epsilon(2e-3));
+    CHECK(std::abs(random.colour.at(0, 0)[c] - expected[c]) < 4 * random.standardError.at(0, 0)[c]);
+  }
+  // Beyond 89.9 degrees is a 570th of the hemisphere, all of it grazing.
+  scene.lights = {cone(LightFrame::view, {0, 0, 1}, 89.9, 0.5 * radiance)};
+  const ReferencePicture wide = renderReference(grid, scene, quadrature(1000));
+  for (int c = 0; c < 3; ++c)
+    CHECK(smooth.colour.at(0, 0)[c] == Approx(wide.colour.at(0, 0)[c]).epsilon(1.0 / 570 + 2e-3));
+}
+
 TEST_CASE("Each light has its own colour in its own shadow", "[reference]") {
   const ScalarGrid grid = floorAndRoof();
   Scene scene = lookingDownAt(floorAndRoofTransfer(), Model::lights, 3, 0);

@@ -84,7 +84,11 @@ TEST_CASE("The reference lights a scene by its sources, which slices refuse so f
   writeBytes(at.folder.path() / "lit.json",
              R"({"volume": {"file": "ball.vdb"}, "transfer": "ball.json", "camera": {"size": [24, 20]},
                  "light": {"sources": [{"type": "directional", "direction": [1, 1, 1], "softAngle": 5,
-                                        "radiance": [1, 0.5, 0]}]}})");
+                                        "radiance": [1, 0.5, 0]},
+                                       {"type": "environment", "file": "sky.exr", "scale": 0.2}]}})");
+  Image sky(8, 4, 3);
+  for (std::size_t i = 0; i < sky.pixels.size(); i += 3) sky.pixels[i] = 1;
+  writeExr(at.folder.path() / "sky.exr", {{"", sky}});
   for (const std::string integrator : {"quadrature", "monte-carlo"}) {
     const ProgramResult made =
         at.run("reference lit.json --model lights --directions 8 --integrator " + integrator + " -o a.exr");

@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "umbrick/image/image.h"
+
 namespace umbrick {
 
 /// What a source's directions are given in. view: right, up and towards the viewer, so that the light moves with the
@@ -34,9 +36,29 @@ struct ListedLight {
   bool operator==(const ListedLight&) const = default;
 };
 
+/// The half of an environment map that is in front of the viewer's plane: L_a * scale / (4 pi) * the integral over it
+/// of the map's radiance times T, the light that an isotropic phase function scatters. The rest of the map is left out,
+/// so a map of constant radiance 1 is as bright as a cone of radiance 1/2.
+///
+/// The map is a latitude-longitude one as OpenEXR has it, seen from its centre: upper row at `up`, middle of the
+/// picture at `front`, columns to the right of it at front x up. Its defaults have the middle of the map behind the
+/// viewer, who is lit from there; pixels to the right light the viewer's left. Radiance is constant over a pixel.
+struct EnvironmentLight {
+  std::filesystem::path file;          // what a scene file calls it
+  std::shared_ptr<const Image> image;  // 1, 3 or 4 channels, the fourth does not count; finite and not negative
+  glm::dvec3 up{0, 1, 0};              // of the map, in the frame of the source
+  glm::dvec3 front{0, 0, 1};           // direction of the middle of the map, or rather its part that is across `up`
+  double scale = 1;                    // 0 or more
+  /// By name and by pixels.
+  bool operator==(const EnvironmentLight& other) const;
+};
+/// Reads the main layer of an EXR file. @throw IoError  as readExr; other channels than R, G, B or Y, a pixel that is
+/// negative or not finite: names the file and the pixel
+EnvironmentLight loadEnvironment(const std::filesystem::path& file);
+
 struct LightSource {
   LightFrame frame = LightFrame::view;
-  std::variant<ConeLight, ListedLight> light;
+  std::variant<ConeLight, ListedLight, EnvironmentLight> light;
   bool operator==(const LightSource&) const = default;
 };
 

@@ -110,11 +110,12 @@ struct Scene {
 ///   window [low, high], sigmaScale    applied to it
 ///   model      "emission", "cone", "cone-ray", "ambient", "lights"
 ///   method     "dos"
-///   light      ambient [r, g, b], background [r, g, b], sources [{type, frame ("view", "world"), ...}, ...] with, by
-///   type,
+///   light      ambient [r, g, b], background [r, g, b], sources [{type, frame ("view", "world"), ...}, ...]; by type,
 ///                "cone"         axis, theta, radiance ([r, g, b], or one number)
 ///                "directional"  direction, softAngle (of theta's kind), radiance: the same, and printed as a cone
 ///                "directions"   list [{direction, weight, colour}, ...]
+///                "environment"  file (EXR), up, front, scale; up and front are [0, 1, 0] and [0, 0, 1] in the view,
+///                               [0, 0, 1] and [0, -1, 0] in the world, the same at azimuth 0 and elevation 0
 ///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), segments, bits, saturation,
 ///              tableSize
 ///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits
@@ -125,9 +126,9 @@ struct Scene {
 Scene parseScene(std::string_view text, const std::string& source, const std::filesystem::path& folder = {});
 /// @throw IoError
 Scene readScene(const std::filesystem::path& path);
-/// JSON that parses back to an equal scene, to the last bit. With an orbit, what follows from the volume (eye, lookAt,
-/// up and viewHeight) is left out.
-/// @throw InvalidArgument  a number that is not finite, a name that is not UTF-8
+/// JSON that parses back to an equal scene, to the last bit, as long as the files that it names are there. With an
+/// orbit, what follows from the volume (eye, lookAt, up and viewHeight) is left out.
+/// @throw InvalidArgument  a number that is not finite, a name that is not UTF-8, an environment map of no file
 std::string printScene(const Scene& scene);
 
 /// Checks every field against its range, however the scene was made.
