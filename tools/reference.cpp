@@ -70,6 +70,9 @@ int runReference(ReferenceCommand& command) {
   PictureOutput& output = *command.output;
   checkOutputs(output);
   const StopRequest stop;
+  // A reference has directions of its own, not the few that a scene gives the slices.
+  if (command.scene->directions) command.reference.directions = *command.scene->directions;
+  command.scene->directions.reset();
   const Scene scene = makeScene(*command.scene);
   const LoadedVolume loaded = loadVolume(scene);
   ReferenceOptions& options = command.reference;
@@ -133,10 +136,6 @@ Command addReference(CLI::App& app) {
                   "quadrature: distance of the points where occlusion is computed, voxels (shortest "
                   "edge); 0: as --tolerance asks for")
       ->check(nonNegativeNumber())
-      ->capture_default_str()
-      ->group(group);
-  sub->add_option("--directions", o.directions, "quadrature: about so many over the cone or the sphere")
-      ->check(CLI::Range(1, 1000000))
       ->capture_default_str()
       ->group(group);
   sub->add_option("--samples", command->samples,

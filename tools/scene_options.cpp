@@ -139,18 +139,23 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
   command
       .add_option(
           "--model", o.model,
-          "emission (no occlusion), cone (around the slice normal), cone-ray (around the view ray) or ambient (whole "
-          "sphere); the last two only in the reference [emission]")
-      ->check(CLI::IsMember({"emission", "cone", "cone-ray", "ambient"}))
+          "emission (no occlusion), cone (around the slice normal), cone-ray (around the view ray), ambient (whole "
+          "sphere) or lights (the scene's light.sources); cone-ray and ambient only in the reference [emission]")
+      ->check(CLI::IsMember({"emission", "cone", "cone-ray", "ambient", "lights"}))
       ->group(light);
-  command.add_option("--method", o.method, "of the cone model: dos or ordinates [dos]")
+  command.add_option("--method", o.method, "of the models cone (dos or ordinates) and lights (ordinates) [dos]")
       ->check(CLI::IsMember({"dos", "ordinates"}))
       ->group(light);
-  command.add_option("--ordinates", o.directions, "K: directions of ordinates, about so many, 1 to 1024 [16]")
+  command
+      .add_option("--directions", o.directions,
+                  "K: about so many over the cone, the sphere or the lights; ordinates: 1 to 1024 [16], reference by "
+                  "quadrature: 1 to 1000000 [256]")
+      ->check(CLI::Range(1, 1000000))
       ->group(light);
   command
-      .add_option("--occlusion-scale", o.occlusionScale,
-                  "of ordinates: window texels per voxel edge [0: by voxels and pixels]")
+      .add_option(
+          "--occlusion-scale", o.occlusionScale,
+          "of ordinates: window texels per voxel edge [0: a texel is as large as the largest of slab, voxel and pixel]")
       ->group(light);
   command.add_option("--theta", o.theta, "half-angle of the cone, degrees, in [0, 90) [60]")->group(light);
   command.add_option("--footprint", o.footprint, "n: n x n samples over the cone's footprint, 1 to 16 [3]")

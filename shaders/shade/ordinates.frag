@@ -5,7 +5,7 @@
 #include "shade/slab.glsl"
 layout(binding = 8) uniform sampler2DArray visibility;
 uniform vec4 lattice_map;  // view coordinates across to visibility's coordinates: xy scale, zw offset
-uniform float whole_light; // mean of the unoccluded light's components
+uniform vec3 whole_light;  // that nothing is in the way of
 flat in vec4 slab_centre;
 flat in float slice_layer;
 layout(location = 0) out vec4 eye;
@@ -23,12 +23,12 @@ void main() {
   vec2 p = screenPoint();
   vec2 across = kPerspective != 0 ? slab_centre.w * p : p;
   vec4 light = textureLod(visibility, vec3(across * lattice_map.xy + lattice_map.zw, slice_layer), 0.0);
-  float share = kColoured != 0 ? dot(light.rgb, vec3(1.0 / 3.0)) / whole_light : light.r;
+  float share = kColoured != 0 ? dot(light.rgb, vec3(1.0)) / dot(whole_light, vec3(1.0)) : light.r;
   float weighted = kColoured != 0 ? light.a : light.g;
   float stretch = rayStretch(p);
   float path = weighted > 0.0 ? (share / weighted - 1.0) / stretch : 1.0;
   float tau = slab.sigma_t * slab.share * 2.0 * half_spacing * stretch;
   float self = selfShadow(tau, path);
-  eye = vec4(slab.light.rgb * self * (kColoured != 0 ? light.rgb : vec3(share)), slab.light.a);
+  eye = vec4(slab.light.rgb * self * (kColoured != 0 ? light.rgb : share * whole_light), slab.light.a);
   if (kAux != 0) aux = vec4(eye.a * self * share, eye.a * slab_centre.w, 0.0, eye.a);
 }

@@ -83,12 +83,18 @@ MonteCarloPixel::Collision MonteCarloPixel::collide(const IndexRay& ray, const I
   return collision;
 }
 
-double MonteCarloPixel::estimateVisibility(const glm::dvec3& point, const glm::dvec3& towardsEye, Random& random) {
+// Radiances whose mean is the light.
+LightDirection MonteCarloPixel::chooseLight(const glm::dvec3& towardsEye, Random& random) const {
   const Scene& scene = space_.scene;
-  if (scene.model == Model::emission) return 1;
-  const double aperture = scene.model == Model::ambient ? 3.14159265358979323846 : scene.occlusion.aperture;
+  const double source = space_.lights && space_.lights->size() > 1 ? random.uniform() : 0;
   const double u = random.uniform(), v = random.uniform();
-  const IndexRay light(point, space_.rays.toIndex(sampleCone(towardsEye, aperture, u, v)));
+  if (space_.lights) return space_.lights->sample(source, u, v);
+  const double aperture = scene.model == Model::ambient ? 3.14159265358979323846 : scene.occlusion.aperture;
+  return {sampleCone(towardsEye, aperture, u, v), glm::dvec3(1)};
+}
+
+double MonteCarloPixel::estimateTransmittance(const glm::dvec3& point, const glm::dvec3& direction, Random& random) {
+  const IndexRay light(point, space_.rays.toIndex(direction));
   ++counts_.lightRays;
   const Interval part = space_.region.clip(light, 0);
   double transmittance = 1;
@@ -131,8 +137,14 @@ std::optional<PixelResult> MonteCarloPixel::integrate(int x, int y) {
     const Collision hit = collide(ray.index, part, random);
     std::array<double, 6> found{};
     if (hit.happened) {
-      const double visibility = estimateVisibility(ray.index.at(hit.t), towardsEye, random);
-      const glm::dvec3 light = visibility * hit.medium.albedo;
+      double visibility = 1;
+      glm::dvec3 light = hit.medium.albedo;
+      if (space_.scene.model != Model::emission) {
+        const LightDirection chosen = chooseLight(towardsEye, random);
+        const double transmittance = estimateTransmittance(ray.index.at(hit.t), chosen.direction, random);
+        light *= transmittance * chosen.radiance;
+        visibility = power_ > 0 ? transmittance * powerOf(chosen.radiance) / power_ : 0;
+      }
       found = {light.x, light.y, light.z, 1, visibility, hit.t * ray.depthPerLength};
     }
     moments.add(found);

@@ -17,6 +17,7 @@ class MonteCarloPixel {
         goOn_(goOn),
         dense_(20 / voxelEdge),
         densest_(1e4 / voxelEdge),
+        power_(space.lights ? space.lights->power() : 1),
         accessor_(space.field.accessor()) {}
 
   /// Nothing when the job was stopped meanwhile.
@@ -34,13 +35,15 @@ class MonteCarloPixel {
   void trackBlocks(const IndexRay& ray, const Interval& part, Random& random, const Visit& visit);
   double majorantOf(const FieldBlock& block, const glm::ivec3& cell) const;
   Collision collide(const IndexRay& ray, const Interval& part, Random& random);
-  double estimateVisibility(const glm::dvec3& point, const glm::dvec3& towardsEye, Random& random);
+  LightDirection chooseLight(const glm::dvec3& towardsEye, Random& random) const;
+  double estimateTransmittance(const glm::dvec3& point, const glm::dvec3& direction, Random& random);
 
   const ReferenceSpace& space_;
   ReferenceOptions options_;
   GoOn goOn_;
   double dense_;    // from here on cells have majorants of their own, 1/world unit
   double densest_;  // extinction beyond this counts as this: tracking takes as many steps as the majorant is large
+  double power_;    // of all lights
   Field::Accessor accessor_;
   RayCounts counts_;
 };

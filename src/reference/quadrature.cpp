@@ -2,11 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
+#include <glm/common.hpp>
 
 namespace umbrick {
 namespace {
 constexpr double kDarkTau = 25;  // exp(-25) is 1.4e-11
+}
+
+std::vector<LightDirection> evenLight(const std::vector<WeightedDirection>& directions) {
+  std::vector<LightDirection> lights;
+  for (const auto& [direction, weight] : directions) lights.push_back({direction, glm::dvec3(weight)});
+  return lights;
 }
 
 double opticalDepth(const Field& field, Field::Accessor& accessor, const Classifier& classifier, const IndexRay& ray,
@@ -58,16 +64,18 @@ QuadraturePixel::QuadraturePixel(const ReferenceSpace& space, const ReferenceOpt
   eyeOptions_.largestTau =
       space.scene.model == Model::emission ? 0.5 : std::clamp(2 * std::sqrt(options.tolerance), 1e-3, 0.1);
   eyeOptions_.darkest = std::min(1e-6, 0.01 * options.tolerance);
-  if (space.scene.model == Model::cone) aimLights(-cameraFrame(space.scene.camera).forward);
-  if (space.scene.model == Model::ambient) aimLights({0, 0, 1});
+  aim(space.directions);
 }
 
-void QuadraturePixel::aimLights(const glm::dvec3& axis) {
-  const std::vector<WeightedDirection> directions =
-      space_.scene.model == Model::ambient ? sphereDirections(options_.directions)
-                                           : coneDirections(axis, space_.scene.occlusion.aperture, options_.directions);
+void QuadraturePixel::aim(const std::vector<LightDirection>& lights) {
   lights_.clear();
-  for (const auto& [direction, weight] : directions) lights_.push_back({space_.rays.toIndex(direction), weight});
+  glm::dvec3 sum(0);
+  for (const LightDirection& light : lights) sum += light.radiance;
+  const double power = sum.r + sum.g + sum.b;
+  for (const auto& [direction, radiance] : lights)
+    lights_.push_back(
+        {space_.rays.toIndex(direction), radiance, power > 0 ? (radiance.r + radiance.g + radiance.b) / power : 0});
+  brightest_ = std::max({sum.r, sum.g, sum.b});
 }
 
 std::optional<PixelResult> QuadraturePixel::integrate(int x, int y) {
@@ -89,7 +97,8 @@ std::optional<PixelResult> QuadraturePixel::integrate(int x, int y) {
     result.depth *= ray.depthPerLength;
     return result;
   }
-  if (space_.scene.model == Model::coneRay) aimLights(-ray.direction);
+  if (space_.scene.model == Model::coneRay)
+    aim(evenLight(coneDirections(-ray.direction, space_.scene.occlusion.aperture, options_.directions)));
   before_.assign(1, Scatterer{});
   before_.reserve(parts_.size() + 1);
   for (const Scatterer& p : parts_) {
@@ -104,55 +113,57 @@ std::optional<PixelResult> QuadraturePixel::integrate(int x, int y) {
   return result;
 }
 
-double QuadraturePixel::visibilityAt(const IndexRay& ray, double t) {
+QuadraturePixel::Arriving QuadraturePixel::arrivingAt(const IndexRay& ray, double t) {
   ++counts_.samples;
   // V takes as long as it has directions; an answer to `no` ends the pixel, whose result does not count then.
   if (!stopped_ && !goOn_()) stopped_ = true;
-  if (stopped_) return 1;
+  Arriving sum;
+  if (stopped_) return sum;
   const glm::dvec3 point = ray.at(t);
-  double sum = 0;
-  for (const auto& [direction, weight] : lights_) {
+  for (const auto& [direction, radiance, share] : lights_) {
     ++counts_.lightRays;
     const IndexRay light(point, direction);
     const Interval part = space_.region.clip(light, 0);
     double tau = 0;
     if (!part.empty())
       tau = opticalDepth(space_.field, accessor_, space_.classifier, light, part, kDarkTau, counts_.cells);
-    sum += weight * std::exp(-tau);
+    const double transmittance = std::exp(-tau);
+    sum.light += transmittance * radiance;
+    sum.visibility += transmittance * share;
   }
   return sum;
 }
 
-// V where the scattering of these parts has its centre.
-double QuadraturePixel::meanVisibility(const IndexRay& ray, std::size_t begin, std::size_t end) {
+// What arrives where the scattering of these parts has its centre.
+QuadraturePixel::Arriving QuadraturePixel::meanArriving(const IndexRay& ray, std::size_t begin, std::size_t end) {
   const Scatterer &first = before_[begin], &last = before_[end];
   // Sums lose digits where there is little: the centre must stay inside.
   const double centre = (last.t - first.t) / (last.alpha - first.alpha);
-  return visibilityAt(ray,
-                      std::isfinite(centre) ? std::clamp(centre, parts_[begin].t, parts_[end - 1].t) : parts_[begin].t);
+  return arrivingAt(ray,
+                    std::isfinite(centre) ? std::clamp(centre, parts_[begin].t, parts_[end - 1].t) : parts_[begin].t);
 }
 
-QuadraturePixel::Sum QuadraturePixel::weigh(std::size_t begin, std::size_t end, double visibility) const {
+QuadraturePixel::Sum QuadraturePixel::weigh(std::size_t begin, std::size_t end, const Arriving& arriving) const {
   const Scatterer &first = before_[begin], &last = before_[end];
-  return {visibility * (last.light - first.light), visibility * (last.alpha - first.alpha)};
+  const double alpha = last.alpha - first.alpha;
+  return {arriving.light * (last.light - first.light), alpha * arriving.light, alpha * arriving.visibility};
 }
 
 // Halves by weight until the halves agree with the whole.
-QuadraturePixel::Sum QuadraturePixel::refine(const IndexRay& ray, std::size_t begin, std::size_t end, double visibility,
-                                             int depth) {
-  const Sum whole = weigh(begin, end, visibility);
+QuadraturePixel::Sum QuadraturePixel::refine(const IndexRay& ray, std::size_t begin, std::size_t end,
+                                             const Arriving& arriving, int depth) {
+  const Sum whole = weigh(begin, end, arriving);
   if (end - begin < 2 || depth == 0) return whole;
   const double middle = 0.5 * (before_[begin].alpha + before_[end].alpha);
   const auto place = std::lower_bound(before_.begin() + static_cast<std::ptrdiff_t>(begin) + 1,
                                       before_.begin() + static_cast<std::ptrdiff_t>(end) - 1, middle,
                                       [](const Scatterer& a, double alpha) { return a.alpha < alpha; });
   const auto split = static_cast<std::size_t>(place - before_.begin());
-  const double near = meanVisibility(ray, begin, split), far = meanVisibility(ray, split, end);
-  const Sum a = weigh(begin, split, near), b = weigh(split, end, far);
-  if (std::abs(a.visibility + b.visibility - whole.visibility) <= options_.tolerance)
-    return {a.light + b.light, a.visibility + b.visibility};
-  const Sum left = refine(ray, begin, split, near, depth - 1), right = refine(ray, split, end, far, depth - 1);
-  return {left.light + right.light, left.visibility + right.visibility};
+  const Arriving near = meanArriving(ray, begin, split), far = meanArriving(ray, split, end);
+  const Sum halves = weigh(begin, split, near) + weigh(split, end, far);
+  const glm::dvec3 change = glm::abs(halves.arriving - whole.arriving);
+  if (std::max({change.r, change.g, change.b}) <= options_.tolerance * brightest_) return halves;
+  return refine(ray, begin, split, near, depth - 1) + refine(ray, split, end, far, depth - 1);
 }
 
 // Begins with stretches short enough that the first comparison means something.
@@ -165,9 +176,7 @@ QuadraturePixel::Sum QuadraturePixel::integrateAdaptive(const IndexRay& ray) {
            (parts_[end].t - parts_[begin].t <= 16 * voxelEdge_ ||
             before_[end + 1].alpha - before_[begin].alpha <= options_.tolerance))
       ++end;
-    const Sum part = refine(ray, begin, end, meanVisibility(ray, begin, end), 20);
-    sum.light += part.light;
-    sum.visibility += part.visibility;
+    sum = sum + refine(ray, begin, end, meanArriving(ray, begin, end), 20);
     begin = end;
   }
   return sum;
@@ -178,9 +187,7 @@ QuadraturePixel::Sum QuadraturePixel::integrateSteps(const IndexRay& ray) {
   for (std::size_t begin = 0; begin < parts_.size();) {
     std::size_t end = begin + 1;
     while (end < parts_.size() && parts_[end].stretch == parts_[begin].stretch) ++end;
-    const Sum part = weigh(begin, end, meanVisibility(ray, begin, end));
-    sum.light += part.light;
-    sum.visibility += part.visibility;
+    sum = sum + weigh(begin, end, meanArriving(ray, begin, end));
     begin = end;
   }
   return sum;

@@ -6,6 +6,7 @@
 #include "reference/convex_region.h"
 #include "reference/eye_ray.h"
 #include "reference/pixel.h"
+#include "scene/light_set.h"
 #include "umbrick/optics/directions.h"
 #include "umbrick/reference/reference.h"
 
@@ -18,7 +19,12 @@ struct ReferenceSpace {
   const EyeRays& rays;
   const ConvexRegion& region;
   const Scene& scene;
+  const LightSet* lights;                         // of cone and lights
+  const std::vector<LightDirection>& directions;  // of all models but emission and coneRay
 };
+
+/// The same light from all of the solid angle that the directions stand for.
+std::vector<LightDirection> evenLight(const std::vector<WeightedDirection>& directions);
 
 /// Optical depth along the ray, up to `limit` and a little more.
 double opticalDepth(const Field& field, Field::Accessor& accessor, const Classifier& classifier, const IndexRay& ray,
@@ -36,20 +42,30 @@ class QuadraturePixel {
   const RayCounts& counts() const { return counts_; }
 
  private:
-  struct LightDirection {
-    glm::dvec3 index;
-    double weight;
+  struct AimedLight {
+    glm::dvec3 index;  // direction
+    glm::dvec3 radiance;
+    double share;  // of the power of all
   };
-  struct Sum {
+  /// What arrives: of each colour, and the share V of the power.
+  struct Arriving {
     glm::dvec3 light{0};
     double visibility = 0;
   };
+  struct Sum {
+    glm::dvec3 light{0};     // scattered
+    glm::dvec3 arriving{0};  // weighted by opacity
+    double visibility = 0;
+    Sum operator+(const Sum& other) const {
+      return {light + other.light, arriving + other.arriving, visibility + other.visibility};
+    }
+  };
 
-  void aimLights(const glm::dvec3& axis);
-  double visibilityAt(const IndexRay& ray, double t);
-  double meanVisibility(const IndexRay& ray, std::size_t begin, std::size_t end);
-  Sum weigh(std::size_t begin, std::size_t end, double visibility) const;
-  Sum refine(const IndexRay& ray, std::size_t begin, std::size_t end, double visibility, int depth);
+  void aim(const std::vector<LightDirection>& lights);
+  Arriving arrivingAt(const IndexRay& ray, double t);
+  Arriving meanArriving(const IndexRay& ray, std::size_t begin, std::size_t end);
+  Sum weigh(std::size_t begin, std::size_t end, const Arriving& arriving) const;
+  Sum refine(const IndexRay& ray, std::size_t begin, std::size_t end, const Arriving& arriving, int depth);
   Sum integrateAdaptive(const IndexRay& ray);
   Sum integrateSteps(const IndexRay& ray);
 
@@ -60,7 +76,8 @@ class QuadraturePixel {
   double step_, voxelEdge_;
   EyeRayOptions eyeOptions_;
   Field::Accessor accessor_;
-  std::vector<LightDirection> lights_;
+  std::vector<AimedLight> lights_;
+  double brightest_ = 1;  // component of the sum of their radiances
   std::vector<Scatterer> parts_;
   std::vector<Scatterer> before_;  // sums of the parts before each one; t weighted by alpha
   RayCounts counts_;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -32,6 +33,9 @@ void checkAtLeast(const char* field, T value, T least) {
                           std::to_string(least));
 }
 
+// Whether the model's light is that of lightDirections.
+bool hasLights(Model model) { return model == Model::cone || model == Model::lights; }
+
 void check(const ScalarGrid& grid, const Scene& scene, const ReferenceOptions& options) {
   if (!grid.grid) throw InvalidArgument("reference: there is no grid");
   if (!scene.transfer || scene.orbit || scene.sampling.spacingInVoxels)
@@ -43,6 +47,29 @@ void check(const ScalarGrid& grid, const Scene& scene, const ReferenceOptions& o
   checkAtLeast("threads", options.threads, 0);
   if (!(options.tolerance > 0 && options.tolerance <= 1))
     throw InvalidArgument("tolerance is " + std::to_string(options.tolerance) + ", must be in (0, 1]");
+  if (!options.lights.empty() && !hasLights(scene.model))
+    throw InvalidArgument("lights: are given, but the model " + modelName(scene.model) + " does not take a list");
+  for (const auto& [direction, radiance] : options.lights) {
+    if (!(std::abs(glm::length(direction) - 1) < 1e-6))
+      throw InvalidArgument("lights: a direction has length " + std::to_string(glm::length(direction)) + ", must be 1");
+    const double darkest = std::min({radiance.r, radiance.g, radiance.b});
+    if (!(darkest >= 0) || !std::isfinite(powerOf(radiance)))
+      throw InvalidArgument("lights: a radiance is [" + std::to_string(radiance.r) + ", " + std::to_string(radiance.g) +
+                            ", " + std::to_string(radiance.b) + "], must be three finite numbers of 0 or more");
+  }
+}
+
+std::optional<LightSet> lightsOf(const Scene& scene, const ReferenceOptions& options) {
+  if (!hasLights(scene.model)) return std::nullopt;
+  return options.lights.empty() ? LightSet(scene) : LightSet(options.lights);
+}
+
+// What the quadrature sums over, where it is the same for all pixels.
+std::vector<LightDirection> directionsOf(const Scene& scene, const ReferenceOptions& options, const LightSet* lights) {
+  if (options.integrator != Integrator::quadrature) return {};
+  if (scene.model == Model::ambient) return evenLight(sphereDirections(options.directions));
+  if (!lights) return {};
+  return options.lights.empty() ? lights->directions(options.directions, 0) : options.lights;
 }
 
 ReferencePicture blankPicture(const Camera& camera) {
@@ -143,6 +170,7 @@ RayCounts integrateAll(const Scene& scene, const ReferenceOptions& options, cons
 ReferencePicture renderReference(const ScalarGrid& grid, const Scene& scene, const ReferenceOptions& options) {
   check(grid, scene, options);
   validateScene(scene);
+  const std::optional<LightSet> lights = lightsOf(scene, options);
   ReferencePicture picture = blankPicture(scene.camera);
   const glm::dmat4 indexToWorld = grid.indexToWorld();
   const Stopwatch prepare;
@@ -154,7 +182,9 @@ ReferencePicture renderReference(const ScalarGrid& grid, const Scene& scene, con
   const EyeRays rays(scene.camera, indexToWorld);
   const bool behindEye = scene.model == Model::coneRay || scene.model == Model::ambient;
   const ConvexRegion region(scene, field.domain(), indexToWorld, behindEye);
-  const ReferenceSpace space{field, classifier, rays, region, scene};
+  const LightSet* const given = lights ? &*lights : nullptr;
+  const std::vector<LightDirection> directions = directionsOf(scene, options, given);
+  const ReferenceSpace space{field, classifier, rays, region, scene, given, directions};
   const Stopwatch integrate;
   RayCounts counts;
   const double edge = shortestVoxelEdge(indexToWorld);

@@ -14,7 +14,9 @@ using Name = std::pair<std::string_view, T>;
 inline constexpr Name<Projection> kProjections[]{{"perspective", Projection::perspective},
                                                  {"orthographic", Projection::orthographic}};
 inline constexpr Name<Model> kModels[]{
-    {"emission", Model::emission}, {"cone", Model::cone}, {"cone-ray", Model::coneRay}, {"ambient", Model::ambient}};
+    {"emission", Model::emission}, {"cone", Model::cone},     {"cone-ray", Model::coneRay},
+    {"ambient", Model::ambient},   {"lights", Model::lights},
+};
 inline constexpr Name<Method> kMethods[]{{"dos", Method::dos}, {"ordinates", Method::ordinates}};
 inline constexpr Name<Quadrature> kQuadratures[]{{"preintegrated", Quadrature::preintegrated},
                                                  {"midpoint", Quadrature::midpoint}};

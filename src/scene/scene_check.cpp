@@ -3,47 +3,14 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "core/json_writer.h"
+#include "scene/checker.h"
+#include "scene/light_check.h"
 #include "scene/names.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
 namespace {
 constexpr double kPi = 3.14159265358979323846;
-
-std::string print(double number) { return std::isfinite(number) ? jsonNumber(number) : std::to_string(number); }
-std::string print(const glm::dvec3& v) { return "[" + print(v.x) + ", " + print(v.y) + ", " + print(v.z) + "]"; }
-std::string printDegrees(double radians) { return print(radians * 180 / kPi) + " degrees"; }
-
-bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-// Collects the first complaint; the checks read as a table of fields and ranges.
-class Checker {
- public:
-  void require(bool holds, const std::string& field, const std::string& is, const std::string& range) {
-    if (!holds && !complaint_) complaint_ = {field, "is " + is + ", must be " + range};
-  }
-  void requireFinite(const glm::dvec3& v, const std::string& field) {
-    require(isFinite(v), field, print(v), "three finite numbers");
-  }
-  void requireRadiance(const glm::dvec3& v, const std::string& field) {
-    require(isFinite(v) && v.r >= 0 && v.g >= 0 && v.b >= 0, field, print(v), "three finite numbers of 0 or more");
-  }
-  void requireWithin(int value, int low, int high, const std::string& field) {
-    require(value >= low && value <= high, field, std::to_string(value),
-            std::to_string(low) + " to " + std::to_string(high));
-  }
-  void requireEither(int value, int a, int b, const std::string& field) {
-    require(value == a || value == b, field, std::to_string(value), std::to_string(a) + " or " + std::to_string(b));
-  }
-  void complain(const std::string& field, const std::string& message) {
-    if (!complaint_) complaint_ = {field, message};
-  }
-  const std::optional<Complaint>& complaint() const { return complaint_; }
-
- private:
-  std::optional<Complaint> complaint_;
-};
 
 void checkCamera(Checker& check, const Camera& camera, const std::optional<Orbit>& orbit) {
   check.require(camera.width >= 1 && camera.height >= 1, "camera.size",
@@ -88,6 +55,16 @@ void checkClip(Checker& check, const Scene& scene) {
       "clip.box", print(box.min) + " to " + print(box.max), "two corners, each number of the first smaller");
 }
 
+// What a light of the world has in front of it is known where the camera stands: see lightDirections.
+void checkLights(Checker& check, const Scene& scene) {
+  check.require(scene.model != Model::lights || !scene.lights.empty(), "light.sources", "empty",
+                "one source or more for the model lights");
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    check.add(findComplaint(scene.lights[i], i));
+    if (scene.lights[i].frame == LightFrame::view) check.add(findBehindViewer(scene.lights[i], i, {0, 0, 1}));
+  }
+}
+
 }  // namespace
 
 std::optional<Complaint> findComplaint(const Scene& scene) {
@@ -95,6 +72,7 @@ std::optional<Complaint> findComplaint(const Scene& scene) {
   checkCamera(check, scene.camera, scene.orbit);
   check.requireRadiance(scene.ambient, "light.ambient");
   if (scene.background) check.requireRadiance(*scene.background, "light.background");
+  checkLights(check, scene);
 
   const SamplingOptions& sampling = scene.sampling;
   check.require(sampling.spacing > 0 && std::isfinite(sampling.spacing), "sampling.spacing", print(sampling.spacing),

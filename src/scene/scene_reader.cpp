@@ -4,6 +4,7 @@
 #include "core/json_reader.h"
 #include "core/text_file.h"
 #include "optics/transfer_json.h"
+#include "scene/light_json.h"
 #include "scene/names.h"
 #include "scene/scene_check.h"
 #include "umbrick/core/error.h"
@@ -91,10 +92,12 @@ TransferFunction readTransfer(const JsonValue& value, const std::filesystem::pat
   return parseTransferFunction(readTextFile(file), file.string());
 }
 
-void readLight(const JsonValue& value, Scene& scene) {
-  value.allowFields({"ambient", "background"});
+void readLight(const JsonValue& value, const std::filesystem::path& folder, Scene& scene) {
+  value.allowFields({"ambient", "background", "sources"});
   read(value, "ambient", scene.ambient);
   if (value.find("background")) read(value, "background", scene.background.emplace());
+  if (const auto sources = value.find("sources"))
+    for (const JsonValue& source : sources->items()) scene.lights.push_back(readLightSource(source, folder));
 }
 
 void readSampling(const JsonValue& value, SamplingOptions& sampling) {
@@ -166,7 +169,7 @@ Scene parseScene(std::string_view text, const std::string& source, const std::fi
   if (const auto factor = root.find("sigmaScale")) scene.transfer = scaledBy(*scene.transfer, *factor);
   read(root, "model", kModels, scene.model);
   read(root, "method", kMethods, scene.method);
-  if (const auto light = root.find("light")) readLight(*light, scene);
+  if (const auto light = root.find("light")) readLight(*light, folder, scene);
   if (const auto sampling = root.find("sampling")) readSampling(*sampling, scene.sampling);
   if (const auto occlusion = root.find("occlusion")) readOcclusion(*occlusion, scene.occlusion);
   if (const auto clip = root.find("clip")) readClip(*clip, scene);

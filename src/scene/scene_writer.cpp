@@ -1,4 +1,5 @@
 #include "core/json_writer.h"
+#include "scene/light_json.h"
 #include "scene/names.h"
 
 namespace umbrick {
@@ -39,6 +40,9 @@ std::string printedCamera(const Camera& camera, const std::optional<Orbit>& orbi
 std::string printedLight(const Scene& scene) {
   JsonFields fields{{"ambient", printed(scene.ambient)}};
   if (scene.background) fields.emplace_back("background", printed(*scene.background));
+  std::vector<std::string> sources;
+  for (const LightSource& source : scene.lights) sources.push_back(printLightSource(source));
+  if (!sources.empty()) fields.emplace_back("sources", jsonArray(sources));
   return jsonObject(fields);
 }
 

@@ -17,7 +17,7 @@
 #include "shade/eye_sweep.h"
 #include "shade/light_plan.h"
 #include "umbrick/core/error.h"
-#include "umbrick/optics/directions.h"
+#include "umbrick/scene/lights.h"
 
 namespace umbrick {
 namespace {
@@ -77,7 +77,7 @@ class OrdinatesPass : public SlicePass {
     stats.directions = static_cast<int>(slopes_.size());
     stats.windowTexel = lattice_.texel;
     stats.windowBytes = texels(windowSize_) * slopes_.size() * static_cast<std::uint64_t>(windowBits_) / 8 +
-                        texels(lattice_.size) * static_cast<std::uint64_t>(slicesTogether_) * 12;
+                        texels(lattice_.size) * static_cast<std::uint64_t>(slicesTogether_) * (coloured_ ? 20 : 12);
     stats.bufferBytes += stats.windowBytes;
     stats.windowUpdates = static_cast<std::uint64_t>(firstTile_.back()) * kTile * kTile * slopes_.size();
   }
@@ -85,14 +85,28 @@ class OrdinatesPass : public SlicePass {
  private:
   // Directions as the slices see them, and the light they bring.
   void aim(const Frame& frame) {
+    if (!slopes_.empty() && aimedFrom_ == frame.camera) return;  // an environment map takes long to walk
+    Scene scene = frame.scene;
+    scene.camera = frame.camera;
+    const CameraFrame axes = cameraFrame(frame.camera);
+    const std::vector<LightDirection> lights = lightDirections(scene, scene.occlusion.directions);
+    light_ = glm::dvec3(0);
+    for (const LightDirection& light : lights) light_ += light.radiance;
+    const double power = light_.r + light_.g + light_.b;
+    coloured_ = false;
     slopes_.clear();
     radiance_.clear();
-    for (const auto& [direction, weight] :
-         coneDirections({0, 0, 1}, frame.scene.occlusion.aperture, frame.scene.occlusion.directions)) {
-      slopes_.push_back(lightSlope(direction));
-      radiance_.emplace_back(glm::vec3(static_cast<float>(weight)), static_cast<float>(weight));
+    for (const auto& [direction, radiance] : lights) {
+      slopes_.push_back(lightSlope(
+          {glm::dot(direction, axes.right), glm::dot(direction, axes.up), -glm::dot(direction, axes.forward)}));
+      const double share = power > 0 ? (radiance.r + radiance.g + radiance.b) / power : 0;
+      radiance_.emplace_back(radiance, share);
+      // Light of one colour is a number per direction.
+      const glm::dvec3 tint = glm::abs(radiance - share * light_);
+      coloured_ = coloured_ || std::max({tint.r, tint.g, tint.b}) > 1e-9 * power;
     }
     group_ = std::min<std::size_t>(kMostDirections, slopes_.size());
+    aimedFrom_ = frame.camera;
   }
 
   void chooseLattice(const Frame& frame) {
@@ -101,7 +115,9 @@ class OrdinatesPass : public SlicePass {
         2 * frame.view.halfExtent.y / frame.camera.height *
         (frame.view.projection == Projection::perspective ? glm::length(frame.camera.lookAt - frame.camera.eye) : 1.0);
     const double scale = frame.scene.occlusion.scale;
-    lattice_.texel = scale > 0 ? frame.voxelEdge / scale : 2 * std::max(frame.voxelEdge, pixel);
+    // Paths are off by up to a texel across and half a slab along: neither alone is worth refining. Detail below a voxel
+    // or a pixel is not worth it either.
+    lattice_.texel = scale > 0 ? frame.voxelEdge / scale : std::max({slices.spacing, frame.voxelEdge, pixel});
     extents_ = {};
     extents_.spacing = slices.spacing;
     extents_.texel = lattice_.texel;
@@ -168,7 +184,7 @@ class OrdinatesPass : public SlicePass {
       for (const LightRun& run : planner_->runs(sweep.first, sweep.last, 1, 0))
         for (const LightWindow& window : run.windows)
           area = std::max(area, static_cast<double>(window.size.x) * window.size.y);
-    const double perSlice = 12.0 * lattice_.size.x * lattice_.size.y;
+    const double perSlice = (coloured_ ? 20.0 : 12.0) * lattice_.size.x * lattice_.size.y;
     slicesTogether_ = static_cast<int>(std::clamp(kSliceBytes / perSlice, 1.0, static_cast<double>(kMostSlices)));
     for (const SweepRun& sweep : sweeps)
       for (LightRun& run : planner_->runs(sweep.first, sweep.last, slicesTogether_, 1.5 * area)) {
@@ -240,7 +256,7 @@ class OrdinatesPass : public SlicePass {
   void makeTextures(const Frame& frame) {
     const GlFunctions& gl = frame.gl;
     if (!lightPolygons_) lightPolygons_.emplace(gl);
-    const Sizes sizes{lattice_.size, windowSize_, static_cast<int>(slopes_.size()), slicesTogether_};
+    const Sizes sizes{lattice_.size, windowSize_, static_cast<int>(slopes_.size()), slicesTogether_, coloured_};
     if (sizes_ == sizes) return;
     sizes_ = sizes;
     windowBits_ = frame.scene.occlusion.bits;
@@ -249,28 +265,30 @@ class OrdinatesPass : public SlicePass {
     };
     extinction_ = array(GL_R32F, lattice_.size, slicesTogether_, GL_NEAREST);
     extinctionTarget_ = makeFramebuffer(gl, {extinction_.name()});
-    visibility_ = array(GL_RG32F, lattice_.size, slicesTogether_, GL_LINEAR);
+    visibility_ = array(visibilityFormat(), lattice_.size, slicesTogether_, GL_LINEAR);
     windows_ = array(windowFormat(frame), windowSize_, static_cast<int>(slopes_.size()), GL_NEAREST);
   }
 
+  GLenum visibilityFormat() const { return coloured_ ? GL_RGBA32F : GL_RG32F; }
   static GLenum windowFormat(const Frame& frame) { return frame.scene.occlusion.bits == 16 ? GL_R16 : GL_R32F; }
 
   void compile(const Frame& frame) {
     const GlFunctions& gl = frame.gl;
-    const ShaderConstants windows{
-        {"kDirections", static_cast<int>(group_)}, {"kFixedPoint", frame.scene.occlusion.bits == 16}, {"kColoured", 0}};
+    const ShaderConstants windows{{"kDirections", static_cast<int>(group_)},
+                                  {"kFixedPoint", frame.scene.occlusion.bits == 16},
+                                  {"kColoured", coloured_}};
     openWindows_.get(gl, windows);
     step_.get(gl, windows);
     ShaderConstants light = slabConstants(frame);
     light["kPerspective"] = 0;
     setSlabUniforms(absorb_.get(gl, light), frame, lightView_, lightPlanes_);
     ShaderConstants eye = slabConstants(frame);
-    eye["kColoured"] = 0;
+    eye["kColoured"] = coloured_;
     GlProgram& program = eye_.get(gl, eye);
     setSlabUniforms(program, frame);
     const glm::dvec2 texels(lattice_.size);
     program.set("lattice_map", glm::vec4(1.0 / (lattice_.texel * texels), -glm::dvec2(lattice_.first) / texels));
-    program.set("whole_light", 1.0f);
+    program.set("whole_light", glm::vec3(light_));
   }
 
   // Brings light to the slices of a run.
@@ -280,7 +298,7 @@ class OrdinatesPass : public SlicePass {
     frame.clock.lap(&PassTimes::extinctionMs);
     gl.BindTextureUnit(5, extinction_.name());
     gl.BindImageTexture(0, windows_.name(), 0, GL_TRUE, 0, GL_READ_WRITE, windowFormat(frame));
-    gl.BindImageTexture(1, visibility_.name(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_RG32F);
+    gl.BindImageTexture(1, visibility_.name(), 0, GL_TRUE, 0, GL_READ_WRITE, visibilityFormat());
     gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, tiles_.name());
     for (std::size_t first = 0; first < slopes_.size(); first += group_) {
       const std::size_t count = std::min(group_, slopes_.size() - first);
@@ -376,6 +394,7 @@ class OrdinatesPass : public SlicePass {
   struct Sizes {
     glm::ivec2 lattice{0}, window{0};
     int directions = 0, slices = 0;
+    bool coloured = false;
     bool operator==(const Sizes&) const = default;
   };
 
@@ -386,7 +405,10 @@ class OrdinatesPass : public SlicePass {
   EyeSweep sweep_;
   std::vector<LightSlope> slopes_;
   std::vector<glm::vec4> radiance_;  // by direction: rgb, and its share of the light
-  std::size_t group_ = 1;            // directions that march together
+  glm::dvec3 light_{0};              // sum of the radiances
+  bool coloured_ = false;            // the directions' radiances differ in more than brightness
+  Camera aimedFrom_;                 // where the directions are from
+  std::size_t group_ = 1;            // directions that one shader takes through a slice
   int slicesTogether_ = 1;
   LightLattice lattice_;
   LightExtents extents_;

@@ -86,7 +86,7 @@ class SliceRenderer::Implementation {
     targets.aux = options.visibilityAndDepth;
     targets_.emplace(gl_, targets);
     polygons_.emplace(gl_);
-    pass_ = dos ? makeOcclusionPass() : scene.model == Model::cone ? makeOrdinatesPass() : makeEmissionPass();
+    pass_ = dos ? makeOcclusionPass() : scene.model == Model::emission ? makeEmissionPass() : makeOrdinatesPass();
   }
 
   const Scene& scene() const { return scene_; }
@@ -193,9 +193,11 @@ class SliceRenderer::Implementation {
   void checkScene(const GlContext& context) const {
     if (!scene_.transfer || scene_.orbit || scene_.sampling.spacingInVoxels)
       throw InvalidArgument("render: the scene is not resolved for its volume");
-    if (scene_.model != Model::emission && scene_.model != Model::cone)
+    if (scene_.model == Model::coneRay || scene_.model == Model::ambient)
       throw InvalidArgument("model: " + modelName(scene_.model) +
-                            " is integrated by the reference alone; slices render emission and cone");
+                            " is integrated by the reference alone; slices render emission, cone and lights");
+    if (scene_.model == Model::lights && scene_.method == Method::dos)
+      throw InvalidArgument("method: dos knows one cone around the view axis; lights need ordinates");
     const int most = context.maxTextureEdge2d();
     if (scene_.camera.width > most || scene_.camera.height > most)
       throw InvalidArgument("size: " + std::to_string(scene_.camera.width) + " x " +

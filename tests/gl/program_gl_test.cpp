@@ -72,7 +72,7 @@ TEST_CASE("Every shader that is not an include compiles by itself or says where 
   CHECK(std::find(names.begin(), names.end(), "shade/emission.frag") != names.end());
   int compiled = 0;
   for (const std::string& name : names) {
-    if (!name.ends_with(".frag")) continue;
+    if (!name.ends_with(".frag") && !name.ends_with(".comp")) continue;
     // Those of polygons say where they lie in the atlas.
     const bool isSlice = shaderSource(name).find("flat in vec4 slab_centre") != std::string::npos;
     INFO(name);
@@ -86,9 +86,20 @@ TEST_CASE("Every shader that is not an include compiles by itself or says where 
                                           {"kAux", planes > 0},
                                           {"kTaps", 9},
                                           {"kAlgorithm", 2 + perspective},
-                                          {"kTileEdge", 8}};
-          const GlProgram program(context->gl(), isSlice ? "shade/slice.vert" : "shade/full_screen.vert", name,
-                                  constants);
+                                          {"kTileEdge", 8},
+                                          {"kDirections", 16},
+                                          {"kColoured", perspective},
+                                          {"kFixedPoint", planes > 0}};
+          if (name.ends_with(".comp")) {
+            const GlProgram program = GlProgram::compute(context->gl(), name, constants);
+            ++compiled;
+            continue;
+          }
+          const GlProgram program(context->gl(),
+                                  name == "shade/ordinates.frag" ? "shade/ordinates.vert"
+                                  : isSlice                      ? "shade/slice.vert"
+                                                                 : "shade/full_screen.vert",
+                                  name, constants);
           ++compiled;
         }
   }

@@ -33,6 +33,15 @@ TransferFunction variedTransfer2d() {
                            {{1, 0, 1}, 2}});
 }
 
+// Soft, sharp, listed ones and a map, tilted, of colours whose channels sum to about 1 each.
+std::vector<LightSource> colouredLights() {
+  return {{LightFrame::view, ConeLight{{1, 0.3, 1}, 0.5, {0.4, 0.1, 0.05}}},
+          {LightFrame::view, ConeLight{{-0.5, 0.2, 1}, 0, {0.1, 0.2, 0.4}}},
+          {LightFrame::world, ConeLight{{25, -22, 19}, 1.1, {0.2, 0.3, 0.2}}},
+          {LightFrame::view, ListedLight{{{{0, 0.7, 1}, 0.5, {0.3, 0.3, 0.6}}, {{0.1, -0.6, 1}, 1, {0.05, 0.2, 0}}}}},
+          environmentOf(8, 5, {0.5, 0.4, 0.6}, true)};
+}
+
 struct Case {
   std::string name;
   ScalarGrid grid;
@@ -41,7 +50,7 @@ struct Case {
 
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const Model model : {Model::emission, Model::cone, Model::coneRay, Model::ambient})
+  for (const Model model : {Model::emission, Model::cone, Model::coneRay, Model::ambient, Model::lights})
     for (const bool parallel : {false, true})
       for (const bool crooked : {false, true}) {
         // One property a time is enough for the slower combinations.
@@ -55,6 +64,7 @@ std::vector<Case> cases() {
         scene.model = model;
         scene.occlusion.aperture = 1.2;
         scene.ambient = {1.5, 1, 0.5};
+        scene.lights = colouredLights();
         if (crooked) scene.clipPlanes = {{0.3, -0.5, 0.8, 3 - glm::dot(glm::dvec3(0.3, -0.5, 0.8), centre)}};
         if (parallel) scene.background = glm::dvec3(0.2, 0.1, 0.4);
         all.push_back({modelName(model) + (parallel  ? " orthographic 2D"

@@ -1,5 +1,6 @@
 // Media with closed forms, as grids, and what the reference makes of them.
 #pragma once
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,3 +9,21 @@
 #include "support/test_grids.h"
 #include "support/test_scenes.h"
 #include "umbrick/reference/reference.h"
+
+namespace umbrick {
+
+/// An environment map of the view, of up to `radiance` in each channel: constant, or with every pixel of its own
+/// colour.
+inline LightSource environmentOf(int width, int height, const glm::dvec3& radiance, bool varied) {
+  Image image(width, height, 3);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < 3; ++c)
+        image.at(x, y)[c] = static_cast<float>(radiance[c] * (varied ? ((5 * x + 3 * y + 7 * c) % 11) / 10.0 : 1));
+  EnvironmentLight light;
+  light.image = std::make_shared<const Image>(std::move(image));
+  light.up = {0.3, 0.9, 0.4};
+  return {LightFrame::view, light};
+}
+
+}  // namespace umbrick

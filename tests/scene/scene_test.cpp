@@ -49,6 +49,9 @@ Scene randomScene(std::mt19937& random) {
   scene.model = Model::cone;
   scene.ambient = vector(0, 5);
   scene.background = vector(0, 1);
+  scene.lights = {{LightFrame::view, ConeLight{{number(-0.1, 0.1), 0.05, 1}, number(0, 1.3), vector(0, 7)}},
+                  {LightFrame::world, ConeLight{vector(-1, 1), number(0, 1.5), vector(0, 1)}},
+                  {LightFrame::world, ListedLight{{{vector(-1, 1), number(0, 1), vector(0, 1)}, {vector(-1, 1)}}}}};
   scene.sampling = {number(1e-4, 5), false, Quadrature::midpoint, 5, 16, number(0, 0.1), 1024};
   scene.occlusion = {number(0, 1.57), 5, 2, 2, false, 16};
   scene.clipPlanes = {ClipPlane(vector(-1, 1), number(-9, 9)), ClipPlane(vector(-1, 1), number(-9, 9))};
@@ -146,6 +149,46 @@ TEST_CASE("Malformed scenes are refused with line, column and field", "[scene]")
   CHECK_THROWS_WITH(readScene("/nowhere/scene.json"), Contains("/nowhere/scene.json: cannot read: No such file"));
 }
 
+TEST_CASE("A light is read in each of its ways", "[scene]") {
+  const auto lights = [](const std::string& sources) {
+    return parse("{\"light\": {\"sources\": [" + sources + "]}}").lights;
+  };
+  const ConeLight cone{{1, 0, 2}, 20 * kPi / 180, glm::dvec3(1)};
+  CHECK(lights(R"({"type": "cone", "axis": [1, 0, 2], "theta": 20})")[0] == LightSource{LightFrame::view, cone});
+  CHECK(lights(R"({"type": "directional", "direction": [1, 0, 2], "softAngle": 20, "frame": "world"})")[0] ==
+        LightSource{LightFrame::world, cone});
+  CHECK(lights(R"({"type": "directional", "direction": [1, 0, 2], "radiance": 3})")[0] ==
+        LightSource{LightFrame::view, ConeLight{{1, 0, 2}, 0, glm::dvec3(3)}});
+  CHECK(lights(R"({"type": "cone", "axis": [1, 0, 2], "theta": 1, "radiance": [3, 2, 1]})").size() == 1);
+  CHECK(lights(R"({"type": "directions", "list": [{"direction": [1, 0, 2]}, {"direction": [0, 0, 1], "weight": 0.5,
+                   "colour": [1, 0.5, 0]}]})")[0] ==
+        LightSource{LightFrame::view, ListedLight{{{{1, 0, 2}, 1, glm::dvec3(1)}, {{0, 0, 1}, 0.5, {1, 0.5, 0}}}}});
+  CHECK_THROWS_WITH(lights(R"({"axis": [0, 0, 1]})"), Contains("light.sources[0]: the field 'type' is missing"));
+  CHECK_THROWS_WITH(
+      lights(R"({"type": "lamp"})"),
+      Contains("light.sources[0].type: expected one of cone, directional, directions") && Contains("found 'lamp'"));
+  CHECK_THROWS_WITH(lights(R"({"type": "cone", "frame": "eye"})"),
+                    Contains("expected one of view, world, found 'eye'"));
+  CHECK_THROWS_WITH(lights(R"({"type": "cone", "axis": [0, 0, 1]})"), Contains("the field 'theta' is missing"));
+  CHECK_THROWS_WITH(lights(R"({"type": "directional", "axis": [0, 0, 1]})"),
+                    Contains("light.sources[0].axis: unknown field"));
+  CHECK_THROWS_WITH(lights(R"({"type": "cone", "axis": [0, 0, 1], "theta": 20, "radiance": "red"})"),
+                    Contains("light.sources[0].radiance: expected a number, found 'red'"));
+  CHECK_THROWS_WITH(lights(R"({"type": "cone", "axis": [0, 0, 1], "theta": 20, "radiance": [1, -2, 3]})"),
+                    Contains("light.sources[0].radiance: is [1, -2, 3], must be three finite numbers of 0 or more"));
+  CHECK_THROWS_WITH(lights(R"({"type": "cone", "axis": [0, 0, 1], "theta": 90})"),
+                    Contains("light.sources[0]: is a cone of half-angle 90 degrees, must be of one in [0, 90)"));
+  CHECK_THROWS_WITH(lights(R"({"type": "cone", "axis": [0, 0, 0], "theta": 9})"),
+                    Contains("light.sources[0]: is along the axis [0, 0, 0], must be along three finite numbers"));
+  CHECK_THROWS_WITH(lights(R"({"type": "directions", "list": []})"), Contains("light.sources[0].list: is empty"));
+  CHECK_THROWS_WITH(lights(R"({"type": "directions", "list": [{"direction": [0, 0, 1], "weight": -1}]})"),
+                    Contains("light.sources[0].list[0].weight: is -1, must be 0 or more"));
+  CHECK_THROWS_WITH(lights(R"({"type": "directional", "direction": [0, 1, -1]})"),
+                    Contains("light.sources[0]: its axis is 135 degrees from the direction to the viewer"));
+  CHECK_THROWS_WITH(parse(R"({"model": "lights", "light": {"ambient": [1, 1, 1]}})"),
+                    Contains("light: is empty, must be one source or more for the model lights"));
+}
+
 TEST_CASE("Every field of a scene has its range, however the scene was made", "[scene]") {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   struct Case {
@@ -168,6 +211,35 @@ TEST_CASE("Every field of a scene has its range, however the scene was made", "[
        }},
       {"light.ambient", [](Scene& s) { s.ambient.g = -0.1; }},
       {"light.background", [=](Scene& s) { s.background = glm::dvec3(infinity); }},
+      {"light.sources: is empty", [](Scene& s) { s.model = Model::lights; }},
+      {"light.sources[0]: is along",
+       [=](Scene& s) {
+         s.lights = {{LightFrame::world, ConeLight{{nan, 0, 1}, 0.1}}};
+       }},
+      {"light.sources[0]: is a cone",
+       [](Scene& s) {
+         s.lights = {{LightFrame::view, ConeLight{{0, 0, 1}, -0.1}}};
+       }},
+      {"light.sources[0].radiance",
+       [](Scene& s) {
+         s.lights = {{LightFrame::view, ConeLight{{0, 0, 1}, 0.1, {1, -1, 1}}}};
+       }},
+      {"light.sources[0].list",
+       [](Scene& s) {
+         s.lights = {{LightFrame::view, ListedLight{}}};
+       }},
+      {"light.sources[0].list[0].direction",
+       [](Scene& s) {
+         s.lights = {{LightFrame::view, ListedLight{{{{0, 0, 0}}}}}};
+       }},
+      {"light.sources[0].list[0].weight",
+       [=](Scene& s) {
+         s.lights = {{LightFrame::view, ListedLight{{{{0, 0, 1}, infinity}}}}};
+       }},
+      {"light.sources[0].list[0].colour",
+       [=](Scene& s) {
+         s.lights = {{LightFrame::view, ListedLight{{{{0, 0, 1}, 1, {0, nan, 0}}}}}};
+       }},
       {"sampling.spacing", [](Scene& s) { s.sampling.spacing = -1; }},
       {"sampling.spacing", [=](Scene& s) { s.sampling.spacing = nan; }},
       {"sampling.segments", [](Scene& s) { s.sampling.segments = 9; }},

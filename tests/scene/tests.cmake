@@ -1,1 +1,1 @@
-umbrick_tests(scene scene_test.cpp)
+umbrick_tests(scene scene_test.cpp lights_test.cpp environment_test.cpp)

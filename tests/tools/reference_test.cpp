@@ -79,6 +79,35 @@ TEST_CASE("Monte Carlo writes its standard error as a layer and repeats by its s
   CHECK(a.layers[0].image.pixels != c.layers[0].image.pixels);
 }
 
+TEST_CASE("The reference lights a scene by its sources, which dos refuses", "[tools]") {
+  const Workplace at;
+  writeBytes(at.folder.path() / "lit.json",
+             R"({"volume": {"file": "ball.vdb"}, "transfer": "ball.json", "camera": {"size": [24, 20]},
+                 "light": {"sources": [{"type": "directional", "direction": [1, 1, 1], "softAngle": 5,
+                                        "radiance": [1, 0.5, 0]},
+                                       {"type": "environment", "file": "sky.exr", "scale": 0.2}]}})");
+  Image sky(8, 4, 3);
+  for (std::size_t i = 0; i < sky.pixels.size(); i += 3) sky.pixels[i] = 1;
+  writeExr(at.folder.path() / "sky.exr", {{"", sky}});
+  for (const std::string integrator : {"quadrature", "monte-carlo"}) {
+    const ProgramResult made =
+        at.run("reference lit.json --model lights --directions 8 --integrator " + integrator + " -o a.exr");
+    REQUIRE(made.err == "");
+    REQUIRE(made.status == 0);
+    const Image image = at.exr("a.exr").layers[0].image;
+    CHECK(largest(image) > 0.2);
+    for (int x = 0; x < 24; ++x) CHECK(image.at(x, 10)[2] == 0);  // there is no blue light
+  }
+  // The header has the sources.
+  writeBytes(at.folder.path() / "again.json", at.exr("a.exr").metadata.at("umbrick.scene"));
+  REQUIRE(at.run("reference again.json --integrator monte-carlo -o b.exr").status == 0);
+  CHECK(at.exr("b.exr").layers[0].image.pixels == at.exr("a.exr").layers[0].image.pixels);
+  CHECK_THAT(at.run("reference " + kScene + "--model lights -o c.exr").err, Contains("light.sources: is empty"));
+  const ProgramResult sliced = at.run("render lit.json --model lights --method dos -o c.exr");
+  CHECK(sliced.status == 1);
+  CHECK_THAT(sliced.err, Contains("method: dos knows one cone around the view axis; lights need ordinates"));
+}
+
 TEST_CASE("A standard error is reached, or the pixels that do not reach it are counted", "[tools]") {
   const Workplace at;
   const std::string options = "reference " + kScene + "--model cone --integrator monte-carlo --standard-error 0.01 ";

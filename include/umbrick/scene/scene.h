@@ -11,15 +11,17 @@
 
 #include "umbrick/core/camera.h"
 #include "umbrick/optics/transfer_function.h"
+#include "umbrick/scene/light_source.h"
 
 namespace umbrick {
 
 /// What light is scattered at a point: `emission` all of the ambient radiance; the others the share V of it that the
 /// medium lets in, as the mean over directions of a cone around the slice normal (`cone`) or around the ray to the eye
-/// (`coneRay`, Eq. 6 of Schott et al. to the letter), or of the whole sphere (`ambient`, their Fig. 2a). The slice
-/// renderer knows the first two, the reference all.
-enum class Model { emission, cone, coneRay, ambient };
-/// What a scene file and the command line call it: "emission", "cone", "cone-ray", "ambient".
+/// (`coneRay`, Eq. 6 of Schott et al. to the letter), of the whole sphere (`ambient`, their Fig. 2a), or what the
+/// medium lets in of the scene's light sources (`lights`). The slice renderer knows
+/// emission, cone and lights, the reference all.
+enum class Model { emission, cone, coneRay, ambient, lights };
+/// What a scene file and the command line call it: "emission", "cone", "cone-ray", "ambient", "lights".
 std::string modelName(Model model);
 /// @throw InvalidArgument  another name; lists those there are
 Model parseModel(std::string_view name);
@@ -42,7 +44,7 @@ struct OcclusionOptions {
   bool perspectiveCorrection = true;     // Eqs. 12-15 of the paper
   int bits = 32;                         // of the occlusion buffer or the windows, 16 or 32; see SamplingOptions
   int directions = 16;                   // K: of ordinates, about so many over the cone, 1 to 1024
-  double scale = 0;                      // of ordinates: window texels per voxel edge; 0: by voxels and pixels
+  double scale = 0;                      // of ordinates: window texels per voxel edge; 0: as large as slabs, voxels, pixels
   bool operator==(const OcclusionOptions&) const = default;
 };
 
@@ -94,6 +96,7 @@ struct Scene {
   Method method = Method::dos;
   glm::dvec3 ambient{1};                 // L_a, radiance from every direction
   std::optional<glm::dvec3> background;  // L_b; when set the picture is opaque (alpha 1)
+  std::vector<LightSource> lights;       // for the model `lights`, which needs one or more
   SamplingOptions sampling;
   OcclusionOptions occlusion;
   std::vector<ClipPlane> clipPlanes;
@@ -109,12 +112,17 @@ struct Scene {
 ///              elevation around the volume, or eye, lookAt, up and viewHeight
 ///   transfer   name of a preset, name of a file, or the function itself (also ParaView's array);
 ///   window [low, high], sigmaScale    applied to it
-///   model      "emission", "cone", "cone-ray", "ambient"
-///   method     "dos"
-///   light      ambient [r, g, b], background [r, g, b]
+///   model      "emission", "cone", "cone-ray", "ambient", "lights"
+///   method     "dos", "ordinates"
+///   light      ambient [r, g, b], background [r, g, b], sources [{type, frame ("view", "world"), ...}, ...]; by type,
+///                "cone"         axis, theta, radiance ([r, g, b], or one number)
+///                "directional"  direction, softAngle (of theta's kind), radiance: the same, and printed as a cone
+///                "directions"   list [{direction, weight, colour}, ...]
+///                "environment"  file (EXR), up, front, scale; up and front are [0, 1, 0] and [0, 0, 1] in the view,
+///                               [0, 0, 1] and [0, -1, 0] in the world, the same at azimuth 0 and elevation 0
 ///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), segments, bits, saturation,
 ///              tableSize
-///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits
+///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits, directions, scale
 ///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]
 ///   bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16", "half", "float32"), budgetMiB
 /// @param source  what messages call the text, usually its file name
@@ -122,9 +130,9 @@ struct Scene {
 Scene parseScene(std::string_view text, const std::string& source, const std::filesystem::path& folder = {});
 /// @throw IoError
 Scene readScene(const std::filesystem::path& path);
-/// JSON that parses back to an equal scene, to the last bit. With an orbit, what follows from the volume (eye, lookAt,
-/// up and viewHeight) is left out.
-/// @throw InvalidArgument  a number that is not finite, a name that is not UTF-8
+/// JSON that parses back to an equal scene, to the last bit, as long as the files that it names are there. With an
+/// orbit, what follows from the volume (eye, lookAt, up and viewHeight) is left out.
+/// @throw InvalidArgument  a number that is not finite, a name that is not UTF-8, an environment map of no file
 std::string printScene(const Scene& scene);
 
 /// Checks every field against its range, however the scene was made.

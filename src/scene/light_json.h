@@ -1,0 +1,15 @@
+// Light sources as JSON, see parseScene.
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "core/json_reader.h"
+#include "umbrick/scene/light_source.h"
+
+namespace umbrick {
+
+/// @param folder  that file names are relative to
+LightSource readLightSource(const JsonValue& value, const std::filesystem::path& folder);
+std::string printLightSource(const LightSource& source);
+
+}  // namespace umbrick

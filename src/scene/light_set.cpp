@@ -1,0 +1,206 @@
+#include "scene/light_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <string>
+
+#include "scene/environment.h"
+#include "scene/light_check.h"
+#include "umbrick/core/error.h"
+#include "umbrick/core/random.h"
+#include "umbrick/optics/directions.h"
+
+namespace umbrick {
+namespace {
+constexpr double kPi = 3.14159265358979323846;
+
+class UniformCone : public Light {
+ public:
+  UniformCone(const glm::dvec3& axis, double aperture, const glm::dvec3& radiance)
+      : Light(powerOf(radiance), 2 * kPi * (1 - std::cos(aperture))),
+        axis_(axis),
+        aperture_(aperture),
+        radiance_(radiance) {}
+
+  std::vector<LightDirection> directions(int count, double rotation) const override {
+    std::vector<LightDirection> result;
+    for (const auto& [direction, weight] : coneDirections(axis_, aperture_, count, rotation))
+      result.push_back({direction, weight * radiance_});
+    return result;
+  }
+  LightDirection sample(double u, double v) const override { return {sampleCone(axis_, aperture_, u, v), radiance_}; }
+
+ private:
+  glm::dvec3 axis_;
+  double aperture_;
+  glm::dvec3 radiance_;
+};
+
+double sumOfPowers(const std::vector<LightDirection>& list) {
+  double power = 0;
+  for (const LightDirection& light : list) power += powerOf(light.radiance);
+  return power;
+}
+
+class ListOfDirections : public Light {
+ public:
+  explicit ListOfDirections(std::vector<LightDirection> list) : Light(sumOfPowers(list), 0), list_(std::move(list)) {
+    double sum = 0;
+    for (const LightDirection& light : list_) sums_.push_back(sum += powerOf(light.radiance));
+  }
+
+  std::vector<LightDirection> directions(int, double) const override { return list_; }
+  LightDirection sample(double u, double) const override {
+    const auto found = std::upper_bound(sums_.begin(), sums_.end(), u * sums_.back());
+    const auto index = std::min<std::size_t>(static_cast<std::size_t>(found - sums_.begin()), list_.size() - 1);
+    const LightDirection& light = list_[index];
+    const double power = powerOf(light.radiance);
+    return {light.direction, power > 0 ? light.radiance * (sums_.back() / power) : glm::dvec3(0)};
+  }
+
+ private:
+  std::vector<LightDirection> list_;
+  std::vector<double> sums_;  // of the powers up to and with each one
+};
+
+std::unique_ptr<Light> makeLight(const ConeLight& cone, const glm::dmat3& toWorld, const glm::dvec3&) {
+  return std::make_unique<UniformCone>(glm::normalize(toWorld * cone.axis), cone.aperture, cone.radiance);
+}
+
+std::unique_ptr<Light> makeLight(const ListedLight& light, const glm::dmat3& toWorld, const glm::dvec3&) {
+  std::vector<LightDirection> list;
+  for (const ListedDirection& listed : light.list)
+    list.push_back({glm::normalize(toWorld * listed.direction), listed.weight * listed.colour});
+  return std::make_unique<ListOfDirections>(std::move(list));
+}
+
+std::unique_ptr<Light> makeLight(const EnvironmentLight& light, const glm::dmat3& toWorld, const glm::dvec3& viewer) {
+  return std::make_unique<Environment>(light, toWorld, viewer);
+}
+
+// Point `index` of the sequence R2: multiples of 1/g and 1/g^2, g^3 = g + 1. In fixed point, so that no index is too
+// large for it.
+struct UnitPoint {
+  double u, v;
+};
+UnitPoint pointOfR2(std::uint64_t index, std::uint64_t shiftU, std::uint64_t shiftV) {
+  constexpr std::uint64_t kU = 13925035116211876495u, kV = 10511698010929265437u;  // 2^64 / g, 2^64 / g^2
+  const auto toUnit = [](std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; };
+  return {toUnit(shiftU + index * kU), toUnit(shiftV + index * kV)};
+}
+
+std::uint64_t wide(Random& random) {
+  const std::uint64_t high = random.next();
+  return high << 32 | random.next();
+}
+
+void checkCount(int count) {
+  if (count < 1) throw InvalidArgument("directions: expected at least 1, found " + std::to_string(count));
+}
+
+}  // namespace
+
+LightSet::LightSet(const Scene& scene) {
+  if (scene.orbit) throw InvalidArgument("lights: the scene is not resolved for its volume");
+  const CameraFrame frame = cameraFrame(scene.camera);
+  const glm::dmat3 viewToWorld(frame.right, frame.up, -frame.forward);
+  if (scene.model == Model::cone) {
+    lights_.push_back(
+        makeLight(ConeLight{{0, 0, 1}, scene.occlusion.aperture, glm::dvec3(1)}, viewToWorld, -frame.forward));
+  } else if (scene.model == Model::lights) {
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+      const LightSource& source = scene.lights[i];
+      const bool view = source.frame == LightFrame::view;
+      auto complaint = findComplaint(source, i);
+      if (!complaint) complaint = findBehindViewer(source, i, view ? glm::dvec3(0, 0, 1) : -frame.forward);
+      if (complaint) throw InvalidArgument(complaint->field + ": " + complaint->message);
+      const glm::dmat3 toWorld = view ? viewToWorld : glm::dmat3(1);
+      lights_.push_back(
+          std::visit([&](const auto& light) { return makeLight(light, toWorld, -frame.forward); }, source.light));
+    }
+    if (lights_.empty())
+      throw InvalidArgument("light.sources: is empty, must be one source or more for the model lights");
+  } else {
+    throw InvalidArgument("lights: the model " + modelName(scene.model) +
+                          " has no list of directions; cone and lights have one");
+  }
+  for (const auto& light : lights_) power_ += light->power();
+}
+
+LightSet::LightSet(std::vector<LightDirection> directions) {
+  lights_.push_back(std::make_unique<ListOfDirections>(std::move(directions)));
+  power_ = lights_.front()->power();
+}
+
+// How many of `count` directions each source takes; 1 for those that do not ask.
+std::vector<int> LightSet::shares(int count) const {
+  std::vector<double> wanted;
+  double sum = 0;
+  int left = count;
+  for (const auto& light : lights_) {
+    wanted.push_back(light->power() * std::sqrt(light->solidAngle()));
+    sum += wanted.back();
+    if (light->solidAngle() == 0) left -= static_cast<int>(light->directions(1, 0).size());
+  }
+  std::vector<int> result;
+  double carried = 0;
+  for (const double want : wanted) {
+    if (sum > 0) carried += std::max(0, left) * (want / sum);
+    const int whole = want > 0 ? std::max(1, static_cast<int>(std::lround(carried))) : 1;
+    if (want > 0) carried -= whole;
+    result.push_back(whole);
+  }
+  return result;
+}
+
+std::vector<LightDirection> LightSet::directions(int count, double rotation) const {
+  checkCount(count);
+  const std::vector<int> share = shares(count);
+  std::vector<LightDirection> result;
+  for (std::size_t i = 0; i < lights_.size(); ++i)
+    for (const LightDirection& light : lights_[i]->directions(share[i], rotation)) result.push_back(light);
+  return result;
+}
+
+std::vector<LightDirection> LightSet::samples(std::uint64_t first, int count, std::uint64_t seed) const {
+  checkCount(count);
+  const std::vector<int> share = shares(count);
+  const auto set = static_cast<std::uint64_t>(count);
+  std::vector<LightDirection> result;
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    const Light& light = *lights_[i];
+    if (light.solidAngle() == 0 || light.power() == 0) {
+      for (const LightDirection& direction : light.directions(1, 0)) result.push_back(direction);
+      continue;
+    }
+    Random random(seed, i);
+    const std::uint64_t shiftU = wide(random), shiftV = wide(random);
+    const auto n = static_cast<std::uint64_t>(share[i]);
+    const std::uint64_t begin = first / set * n + first % set * n / set;
+    for (std::uint64_t k = begin; k < begin + n; ++k) {
+      const auto [u, v] = pointOfR2(k, shiftU, shiftV);
+      const LightDirection sample = light.sample(u, v);
+      result.push_back({sample.direction, sample.radiance / static_cast<double>(n)});
+    }
+  }
+  return result;
+}
+
+LightDirection LightSet::sample(double source, double u, double v) const {
+  double below = source * power_;
+  const Light* chosen = nullptr;
+  for (const auto& light : lights_) {
+    if (light->power() == 0) continue;
+    chosen = light.get();
+    if (below < light->power()) break;
+    below -= light->power();
+  }
+  // Light of no power comes from anywhere.
+  if (!chosen) return {lights_.front()->directions(1, 0).front().direction, glm::dvec3(0)};
+  const LightDirection sample = chosen->sample(u, v);
+  return {sample.direction, lights_.size() == 1 ? sample.radiance : sample.radiance * (power_ / chosen->power())};
+}
+
+}  // namespace umbrick

@@ -1,0 +1,61 @@
+// The light of a scene as distributions of directions that can be listed and sampled.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "umbrick/scene/lights.h"
+
+namespace umbrick {
+
+/// How much a radiance counts when lights share directions, and in V: the mean of R, G and B.
+inline double powerOf(const glm::dvec3& radiance) { return (radiance.r + radiance.g + radiance.b) / 3; }
+
+/// One source, in the world.
+class Light {
+ public:
+  virtual ~Light() = default;
+  /// Of what a point of albedo 1 scatters when nothing is in the way.
+  double power() const { return power_; }
+  /// sr that the light comes from; 0 where directions() is the same for any count.
+  double solidAngle() const { return solidAngle_; }
+  /// About `count` directions whose radiances sum to the light.
+  virtual std::vector<LightDirection> directions(int count, double rotation) const = 0;
+  /// A direction by power, with radiances whose mean over (u, v) in [0, 1)^2 is the light. Not for one of no power.
+  virtual LightDirection sample(double u, double v) const = 0;
+
+ protected:
+  Light() = default;
+  Light(double power, double solidAngle) : power_(power), solidAngle_(solidAngle) {}
+  void setSize(double power, double solidAngle) {
+    power_ = power;
+    solidAngle_ = solidAngle;
+  }
+
+ private:
+  double power_ = 0, solidAngle_ = 0;
+};
+
+class LightSet {
+ public:
+  /// @throw InvalidArgument  as lightDirections
+  explicit LightSet(const Scene& resolved);
+  /// Of these directions and no others.
+  explicit LightSet(std::vector<LightDirection> directions);
+
+  std::vector<LightDirection> directions(int count, double rotation) const;
+  std::vector<LightDirection> samples(std::uint64_t first, int count, std::uint64_t seed) const;
+  /// One direction of one source, chosen by power: radiances whose mean over [0, 1)^3 is the light.
+  LightDirection sample(double source, double u, double v) const;
+
+  std::size_t size() const { return lights_.size(); }
+  double power() const { return power_; }
+
+ private:
+  std::vector<int> shares(int count) const;
+
+  std::vector<std::unique_ptr<Light>> lights_;
+  double power_ = 0;
+};
+
+}  // namespace umbrick
