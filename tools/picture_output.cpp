@@ -59,7 +59,11 @@ void checkOutputs(const PictureOutput& output) {
   if (!output.stats.empty()) PendingFile probe(output.stats);
 }
 
-void writeOutputs(const PictureOutput& output, std::vector<ImageLayer> layers,
+void printOutputs(const PictureOutput& output) {
+  for (const std::filesystem::path& path : output.files) std::cout << path.string() << '\n';
+}
+
+void writeOutputs(const PictureOutput& output, const std::vector<ImageLayer>& layers,
                   const std::map<std::string, std::string>& metadata) {
   for (const std::filesystem::path& path : output.files) {
     if (isExr(path)) {
@@ -76,7 +80,6 @@ void writeOutputs(const PictureOutput& output, std::vector<ImageLayer> layers,
       if (const auto scene = metadata.find("umbrick.scene"); scene != metadata.end()) options.metadata.insert(*scene);
       writePng(path, layers.front().image, options);
     }
-    std::cout << path.string() << '\n';
   }
 }
 

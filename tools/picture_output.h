@@ -29,11 +29,13 @@ void checkApart(const std::vector<std::filesystem::path>& files);
 /// A picture can take long: what cannot be written is said before it is made. @throw UsageError, IoError
 void checkOutputs(const PictureOutput& output);
 
-/// Writes the picture and prints the names of its files.
+/// Writes the picture.
 /// @param layers    of EXR files, the colour first
 /// @param metadata  of EXR files; a PNG keeps the scene
 /// @throw IoError
-void writeOutputs(const PictureOutput& output, std::vector<ImageLayer> layers,
+void writeOutputs(const PictureOutput& output, const std::vector<ImageLayer>& layers,
                   const std::map<std::string, std::string>& metadata);
+/// Prints the names of the files that hold the picture.
+void printOutputs(const PictureOutput& output);
 
 }  // namespace umbrick::tools

@@ -97,12 +97,13 @@ int runReference(ReferenceCommand& command) {
     layers.push_back({"V", picture.visibility});
     layers.push_back({"Z", picture.depth});
   }
-  writeOutputs(output, std::move(layers),
+  writeOutputs(output, layers,
                {{"umbrick.scene", printScene(loaded.scene)},
                 {"umbrick.renderer", "reference"},
                 {"umbrick.reference", describe(options)},
                 {"umbrick.complete", picture.complete ? "true" : "false"},
                 {"umbrick.version", UMBRICK_VERSION}});
+  printOutputs(output);
   if (!output.stats.empty()) writeTextFile(output.stats, printStats(command, loaded, picture).dump(2) + "\n");
   if (picture.stats.unconvergedPixels > 0)
     std::cerr << "umbrick: " << picture.stats.unconvergedPixels << " pixels took all " << options.samples

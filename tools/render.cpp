@@ -1,18 +1,24 @@
 // umbrick render: a picture of a volume.
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "command.h"
 #include "picture_output.h"
+#include "progress.h"
 #include "scene_options.h"
 #include "umbrick/atlas/brick_atlas.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/shade/progressive.h"
 #include "umbrick/shade/slice_renderer.h"
 
 namespace umbrick::tools {
@@ -24,6 +30,9 @@ struct RenderCommand {
   std::string backend = "auto";
   int frames = 1;
   bool timePasses = false;
+  std::optional<int> passes;  // of a progressive picture
+  std::optional<double> maxSeconds, targetError;
+  std::uint64_t seed = 1;
 };
 
 nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& picture,
@@ -64,39 +73,111 @@ nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& pict
   return json;
 }
 
-int render(const RenderCommand& command) {
-  const PictureOutput& output = *command.output;
-  checkOutputs(output);
-  const Scene scene = makeScene(*command.scene);
-  const LoadedScene loaded = loadScene(scene);
-  const auto context = createGlContext(parseBackend(command.backend));
-  RenderOptions options;
-  options.visibilityAndDepth = output.layers;
-  options.countFragments = !output.stats.empty();
-  options.timePasses = command.timePasses;
-  SliceRenderer renderer(*context, *loaded.bricks, loaded.scene, options);
-  std::vector<double> framesMs;
-  Picture picture;
-  for (int i = 0; i < command.frames; ++i) {
-    const Stopwatch frame;
-    picture = renderer.render();
-    framesMs.push_back(frame.elapsedMs());
-  }
-  const Stopwatch write;
+nlohmann::ordered_json printPasses(const ProgressivePicture& picture, std::uint64_t seed) {
+  nlohmann::ordered_json json;
+  json["passes"] = picture.passes;
+  json["seconds"] = picture.seconds;
+  json["seed"] = seed;
+  json["standard_error"] = picture.error.statistical;
+  json["systematic_error"] = picture.error.systematic;
+  json["error"] = picture.error.total();
+  json["reached_target"] = picture.reachedTarget;
+  return json;
+}
+
+void writePicture(const PictureOutput& output, const Picture& picture, const Scene& scene, const GlContext& context) {
   std::vector<ImageLayer> layers{{"", picture.colour}};
   if (output.layers) {
     layers.push_back({"V", picture.visibility});
     layers.push_back({"Z", picture.depth});
   }
-  writeOutputs(output, std::move(layers),
-               {{"umbrick.scene", printScene(loaded.scene)},
-                {"umbrick.renderer", context->description()},
+  writeOutputs(output, layers,
+               {{"umbrick.scene", printScene(scene)},
+                {"umbrick.renderer", context.description()},
                 {"umbrick.version", UMBRICK_VERSION}});
+}
+
+std::string describe(const ProgressivePicture& picture) {
+  const auto rounded = [](double number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g", number);
+    return std::string(std::isfinite(number) ? text : "not known yet");
+  };
+  return "passes " + std::to_string(picture.passes) + ", standard error " + rounded(picture.error.statistical) +
+         ", systematic error " + rounded(picture.error.systematic) + ", together " + rounded(picture.error.total());
+}
+
+// Passes until enough of them, of time or of accuracy; the picture on disk gets better meanwhile.
+ProgressivePicture renderPasses(const RenderCommand& command, const GlContext& context, const LoadedScene& loaded,
+                                const RenderOptions& options, std::vector<double>& framesMs) {
+  constexpr double kWriteEveryMs = 1000;
+  ProgressiveOptions progressive;
+  progressive.passes = command.passes.value_or(1 << 20);
+  progressive.maxSeconds = command.maxSeconds.value_or(0);
+  progressive.targetError = command.targetError.value_or(0);
+  progressive.refine = command.targetError.has_value();
+  progressive.seed = command.seed;
+  const StopRequest stop;
+  Stopwatch pass, written;
+  int told = 0;
+  bool first = true;
+  const ProgressivePicture last = renderProgressive(
+      context, *loaded.bricks, loaded.scene, progressive, options, [&](const ProgressivePicture& picture) {
+        framesMs.push_back(pass.elapsedMs());
+        if (first || written.elapsedMs() > kWriteEveryMs) {
+          writePicture(*command.output, picture.picture, picture.scene, context);
+          written = Stopwatch();
+          first = false;
+        }
+        if (picture.passes < told) told = 0;
+        if (picture.passes >= 2 * told) {
+          std::cerr << describe(picture) << '\n';
+          told = picture.passes;
+        }
+        pass = Stopwatch();
+        return !stop.requested();
+      });
+  if (last.passes != told) std::cerr << describe(last) << '\n';
+  if (command.targetError && !last.reachedTarget)
+    std::cerr << "the error asked for, " << *command.targetError << ", is not reached\n";
+  return last;
+}
+
+int render(const RenderCommand& command) {
+  const PictureOutput& output = *command.output;
+  checkOutputs(output);
+  const Scene scene = makeScene(*command.scene);
+  const bool progressive = command.passes || command.maxSeconds || command.targetError;
+  LoadedScene loaded = loadScene(scene, progressive);
+  const auto context = createGlContext(parseBackend(command.backend));
+  RenderOptions options;
+  options.visibilityAndDepth = output.layers;
+  options.countFragments = !output.stats.empty();
+  options.timePasses = command.timePasses;
+  std::vector<double> framesMs;
+  Picture picture;
+  std::optional<ProgressivePicture> passes;
+  if (progressive) {
+    passes = renderPasses(command, *context, loaded, options, framesMs);
+    picture = passes->picture;
+    loaded.scene = passes->scene;
+  } else {
+    SliceRenderer renderer(*context, *loaded.bricks, loaded.scene, options);
+    for (int i = 0; i < command.frames; ++i) {
+      const Stopwatch frame;
+      picture = renderer.render();
+      framesMs.push_back(frame.elapsedMs());
+    }
+  }
+  const Stopwatch write;
+  writePicture(output, picture, loaded.scene, *context);
+  printOutputs(output);
   if (!output.stats.empty()) {
-    const auto stats = printStats(loaded, picture, framesMs, *context, write.elapsedMs(), command.timePasses);
+    auto stats = printStats(loaded, picture, framesMs, *context, write.elapsedMs(), command.timePasses);
+    if (passes) stats["progressive"] = printPasses(*passes, command.seed);
     writeTextFile(output.stats, stats.dump(2) + "\n");
   }
-  return 0;
+  return command.targetError && !passes->reachedTarget ? 1 : 0;
 }
 
 }  // namespace
@@ -112,6 +193,21 @@ Command addRender(CLI::App& app) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str()
       ->group("Output");
+  const std::string progressive = "Progressive";
+  sub->add_option("--progressive", command->passes,
+                  "ordinates: average so many passes, each of other directions, slices and texels; the picture is "
+                  "written again meanwhile")
+      ->check(CLI::Range(1, 1 << 20))
+      ->group(progressive);
+  sub->add_option("--max-seconds", command->maxSeconds, "begin no pass later")
+      ->check(CLI::PositiveNumber)
+      ->group(progressive);
+  sub->add_option("--target-error", command->targetError,
+                  "stop when the estimated RMSE of linear RGB is no larger; slabs and texels are halved where they are "
+                  "in its way; exit status 1 when it is not reached")
+      ->check(CLI::PositiveNumber)
+      ->group(progressive);
+  sub->add_option("--seed", command->seed, "of the passes")->capture_default_str()->group(progressive);
   sub->add_flag("--time-passes", command->timePasses, "also time each kind of pass, for --stats; slower");
   sub->get_option("--time-passes")->group("Output");
   return {sub, [command] { return render(*command); }};

@@ -9,6 +9,7 @@
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/scene/resolve.h"
 #include "umbrick/shade/prepare.h"
+#include "umbrick/shade/progressive.h"
 
 namespace umbrick::tools {
 namespace {
@@ -79,6 +80,15 @@ void applyModel(const SceneOptions& options, Scene& scene) {
   if (options.background) scene.background = toVector(*options.background);
 }
 
+// Before what it stands for is given one by one.
+void applyQuality(const SceneOptions& options, Scene& scene) {
+  if (options.quality)
+    applyQuality(*options.quality == "draft"    ? Quality::draft
+                 : *options.quality == "normal" ? Quality::normal
+                                                : Quality::high,
+                 scene);
+}
+
 void applySampling(const SceneOptions& options, Scene& scene) {
   SamplingOptions& sampling = scene.sampling;
   apply(options.spacing, sampling.spacing);
@@ -145,6 +155,12 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
       ->group(light);
   command.add_option("--method", o.method, "of the models cone (dos or ordinates) and lights (ordinates) [dos]")
       ->check(CLI::IsMember({"dos", "ordinates"}))
+      ->group(light);
+  command
+      .add_option("--quality", o.quality,
+                  "draft, normal or high: ordinates with spacing, segments and directions that go together; options "
+                  "that name one of them win")
+      ->check(CLI::IsMember({"draft", "normal", "high"}))
       ->group(light);
   command
       .add_option("--directions", o.directions,
@@ -234,6 +250,7 @@ Scene makeScene(const SceneOptions& options, const DefaultTransfer& defaultTrans
   apply(options.grid, scene.volume.grid);
   applyTransfer(options, defaultTransfer, scene);
   applyCamera(options, scene);
+  applyQuality(options, scene);
   applyModel(options, scene);
   applySampling(options, scene);
   applyClipping(options, scene);
@@ -265,10 +282,16 @@ void warnOfNonFinite(const Scene& scene, std::uint64_t voxels) {
     std::cerr << scene.volume.file.string() << ": " << voxels << " voxels are not finite and count as background\n";
 }
 
-LoadedScene loadScene(const Scene& scene) {
+LoadedScene loadScene(const Scene& scene, bool coarserToo) {
   LoadedScene loaded{loadVolume(scene)};
   const Stopwatch brick;
-  loaded.bricks = cutBricks(loaded.grid, loaded.scene);
+  const Scene coarser = coarserScene(loaded.scene);
+  try {
+    if (coarserToo) requiredApron(coarser, loaded.grid.indexToWorld());
+  } catch (const InvalidArgument&) {
+    coarserToo = false;
+  }
+  loaded.bricks = cutBricks(loaded.grid, coarserToo ? coarser : loaded.scene);
   loaded.brickMs = brick.elapsedMs();
   warnOfNonFinite(scene, loaded.bricks->nonFiniteVoxels);
   return loaded;

@@ -18,10 +18,11 @@ namespace umbrick::tools {
 /// What the command line says of a scene; what it leaves out comes from the scene file or keeps its default.
 struct SceneOptions {
   std::filesystem::path input;
-  std::optional<std::string> grid, transfer, model, method, spacingUnit, quadrature, format;
+  std::optional<std::string> grid, transfer, model, method, quality, spacingUnit, quadrature, format;
   std::optional<std::vector<double>> window, eye, lookAt, up, ambient, background, clipBox;
   std::vector<std::vector<double>> clipPlanes;
-  std::optional<double> occlusionScale, sigmaScale, azimuth, elevation, fov, viewHeight, nearDistance, spacing, saturation, theta;
+  std::optional<double> occlusionScale, sigmaScale, azimuth, elevation, fov, viewHeight, nearDistance, spacing,
+      saturation, theta;
   std::optional<std::string> size;
   std::optional<int> eyeBits, occlusionBits, tableSize, segments, footprint, passes, algorithm, directions, interior;
   std::optional<std::uint64_t> budgetMiB;
@@ -56,8 +57,9 @@ struct LoadedScene : LoadedVolume {
   double brickMs = 0;
 };
 
-/// Reads the grid and cuts it as the scene wants. @throw IoError, InvalidArgument
-LoadedScene loadScene(const Scene& scene);
+/// Reads the grid and cuts it as the scene wants. @param coarserToo  with the apron of coarserScene() as well, if
+/// bricks are large enough for that. @throw IoError, InvalidArgument
+LoadedScene loadScene(const Scene& scene, bool coarserToo = false);
 /// Cuts a grid that is in memory already as the resolved scene wants.
 std::unique_ptr<Bricks> cutBricks(const ScalarGrid& grid, const Scene& resolved);
 

@@ -66,6 +66,7 @@ struct Frame {
   bool reverseBricks = false;  // see RenderOptions
   double voxelEdge = 1;        // shortest, world units
   PassClock clock;
+  RenderSample sample;
 
   glm::ivec2 size() const { return {camera.width, camera.height}; }
 };

@@ -31,13 +31,14 @@ struct LightSlope {
 LightSlope lightSlope(const glm::dvec3& towards);
 
 /// The grid of points at which light is known on every slice: texel (i, j) covers
-/// [first + (i, j), first + (i + 1, j + 1)] * texel in view coordinates. One grid for all slices, aligned with the view
-/// axis, so that it does not depend on which bricks there are.
+/// [first + shift + (i, j), first + shift + (i + 1, j + 1)] * texel in view coordinates. One grid for all slices,
+/// aligned with the view axis, so that it does not depend on which bricks there are.
 struct LightLattice {
-  double texel = 1;  // edge, world units
+  double texel = 1;     // edge, world units
+  glm::dvec2 shift{0};  // texels
   glm::ivec2 first{0}, size{0};
-  glm::dvec2 low() const { return glm::dvec2(first) * texel; }
-  glm::dvec2 centre() const { return (glm::dvec2(first) + 0.5 * glm::dvec2(size)) * texel; }
+  glm::dvec2 offset() const { return shift * texel; }
+  glm::dvec2 centre() const { return (glm::dvec2(first) + shift + 0.5 * glm::dvec2(size)) * texel; }
 };
 
 /// The window of one direction while it passes a run of slices: texels [first, first + size) of its own endless plane.

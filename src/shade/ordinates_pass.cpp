@@ -31,6 +31,7 @@ class OrdinatesPass : public SlicePass {
  public:
   void plan(Frame& frame) override {
     aim(frame);
+    chooseRoundings(frame.sample.rounding);
     chooseLattice(frame);
     cutLightSlices(frame);
     planner_.emplace(extents_, slopes_);
@@ -85,11 +86,13 @@ class OrdinatesPass : public SlicePass {
  private:
   // Directions as the slices see them, and the light they bring.
   void aim(const Frame& frame) {
-    if (!slopes_.empty() && aimedFrom_ == frame.camera) return;  // an environment map takes long to walk
+    // An environment map takes long to walk.
+    if (!slopes_.empty() && frame.sample.lights.empty() && aimedFrom_ == frame.camera) return;
     Scene scene = frame.scene;
     scene.camera = frame.camera;
     const CameraFrame axes = cameraFrame(frame.camera);
-    const std::vector<LightDirection> lights = lightDirections(scene, scene.occlusion.directions);
+    const std::vector<LightDirection> lights =
+        frame.sample.lights.empty() ? lightDirections(scene, scene.occlusion.directions) : frame.sample.lights;
     light_ = glm::dvec3(0);
     for (const LightDirection& light : lights) light_ += light.radiance;
     const double power = light_.r + light_.g + light_.b;
@@ -106,7 +109,18 @@ class OrdinatesPass : public SlicePass {
       coloured_ = coloured_ || std::max({tint.r, tint.g, tint.b}) > 1e-9 * power;
     }
     group_ = std::min<std::size_t>(kMostDirections, slopes_.size());
-    aimedFrom_ = frame.camera;
+    aimedFrom_.reset();
+    if (frame.sample.lights.empty()) aimedFrom_ = frame.camera;
+  }
+
+  // What is added to the shift of a direction before it is cut to whole texels: one half for all, or for each its own,
+  // spread evenly (Roberts 2018, the sequence R2).
+  void chooseRoundings(const glm::dvec2& rounding) {
+    const glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
+    roundings_.assign(slopes_.size(), rounding);
+    if (rounding == glm::dvec2(0.5)) return;
+    for (std::size_t k = 0; k < roundings_.size(); ++k)
+      roundings_[k] = glm::fract(rounding + static_cast<double>(k) * step);
   }
 
   void chooseLattice(const Frame& frame) {
@@ -115,14 +129,15 @@ class OrdinatesPass : public SlicePass {
         2 * frame.view.halfExtent.y / frame.camera.height *
         (frame.view.projection == Projection::perspective ? glm::length(frame.camera.lookAt - frame.camera.eye) : 1.0);
     const double scale = frame.scene.occlusion.scale;
-    // Paths are off by up to a texel across and half a slab along: neither alone is worth refining. Detail below a voxel
-    // or a pixel is not worth it either.
+    // Paths are off by up to a texel across and half a slab along: neither alone is worth refining. Detail below a
+    // voxel or a pixel is not worth it either.
     lattice_.texel = scale > 0 ? frame.voxelEdge / scale : std::max({slices.spacing, frame.voxelEdge, pixel});
     extents_ = {};
     extents_.spacing = slices.spacing;
     extents_.texel = lattice_.texel;
     for (std::int64_t i = 0; i < slices.count(); ++i) extents_.depths.push_back(slices.depth(i));
-    extents_.seen = polygonExtents(slices, frame.view, glm::dvec2(0), lattice_.texel);
+    lattice_.shift = frame.sample.latticeShift;
+    extents_.seen = polygonExtents(slices, frame.view, -lattice_.offset(), lattice_.texel);
     needed_ = neededRegions(extents_, slopes_);
     Rectangle all;
     const Rectangle bricks = bricksAcross(frame);
@@ -145,7 +160,7 @@ class OrdinatesPass : public SlicePass {
       const glm::dvec3 low = glm::dvec3(brick.origin) - 0.5;
       for (unsigned c = 0; c < 8; ++c) {
         const glm::dvec3 corner = low + edge * glm::dvec3(c & 1, c >> 1 & 1, c >> 2 & 1);
-        const glm::dvec2 point = glm::dvec2(frame.view.toView(corner)) / lattice_.texel;
+        const glm::dvec2 point = glm::dvec2(frame.view.toView(corner)) / lattice_.texel - lattice_.shift;
         across.min = glm::min(across.min, point);
         across.max = glm::max(across.max, point);
       }
@@ -166,8 +181,9 @@ class OrdinatesPass : public SlicePass {
     for (glm::dvec4& plane : lightPlanes_) plane.w += plane.x * centre.x + plane.y * centre.y;
     std::vector<glm::ivec3> origins;
     for (const Brick& brick : frame.atlas.bricks()) origins.push_back(brick.origin);
-    lightSlices_ = cutSlices(lightView_, origins, frame.atlas.layout().interior, lightPlanes_, frame.slices.spacing);
-    extents_.occluding = polygonExtents(lightSlices_, lightView_, centre, lattice_.texel);
+    lightSlices_ = cutSlices(lightView_, origins, frame.atlas.layout().interior, lightPlanes_, frame.slices.spacing,
+                             frame.slices.phase);
+    extents_.occluding = polygonExtents(lightSlices_, lightView_, centre - lattice_.offset(), lattice_.texel);
     for (std::size_t i = 0; i < needed_.size(); ++i)
       extents_.occluding[i] = extents_.occluding[i].within(needed_[i].grown(2));
   }
@@ -215,9 +231,9 @@ class OrdinatesPass : public SlicePass {
         };
         const auto slice = static_cast<std::int64_t>(i);
         // What is seen is interpolated between texels.
-        forEachPolygon(frame.slices, slice, frame.view, glm::dvec2(0), lattice_.texel,
+        forEachPolygon(frame.slices, slice, frame.view, -lattice_.offset(), lattice_.texel,
                        [&](const Rectangle& texels) { mark(texels.grown(1)); });
-        forEachPolygon(lightSlices_, slice, lightView_, lattice_.centre(), lattice_.texel,
+        forEachPolygon(lightSlices_, slice, lightView_, lattice_.centre() - lattice_.offset(), lattice_.texel,
                        [&](const Rectangle& texels) { mark(texels.within(extents_.occluding[i])); });
         for (std::size_t t = 0; t < marked.size(); ++t)
           if (marked[t])
@@ -287,7 +303,8 @@ class OrdinatesPass : public SlicePass {
     GlProgram& program = eye_.get(gl, eye);
     setSlabUniforms(program, frame);
     const glm::dvec2 texels(lattice_.size);
-    program.set("lattice_map", glm::vec4(1.0 / (lattice_.texel * texels), -glm::dvec2(lattice_.first) / texels));
+    program.set("lattice_map",
+                glm::vec4(1.0 / (lattice_.texel * texels), -(glm::dvec2(lattice_.first) + lattice_.shift) / texels));
     program.set("whole_light", glm::vec3(light_));
   }
 
@@ -376,7 +393,7 @@ class OrdinatesPass : public SlicePass {
     GlProgram& program = step_.current();
     std::vector<glm::vec4> paths;
     for (std::size_t k = first; k < first + count; ++k) {
-      const glm::dvec2 shift = glm::floor(extents_.depths[slice] / lattice_.texel * slopes_[k].slope + 0.5);
+      const glm::dvec2 shift = glm::floor(extents_.depths[slice] / lattice_.texel * slopes_[k].slope + roundings_[k]);
       const double stretch = slopes_[k].stretch;
       paths.emplace_back(glm::vec2(glm::dvec2(lattice_.first - run.windows[k].first) + shift), stretch,
                          1 / (1 + stretch));
@@ -404,11 +421,12 @@ class OrdinatesPass : public SlicePass {
   SpecialisedProgram eye_{"shade/ordinates.vert", "shade/ordinates.frag"};
   EyeSweep sweep_;
   std::vector<LightSlope> slopes_;
-  std::vector<glm::vec4> radiance_;  // by direction: rgb, and its share of the light
-  glm::dvec3 light_{0};              // sum of the radiances
-  bool coloured_ = false;            // the directions' radiances differ in more than brightness
-  Camera aimedFrom_;                 // where the directions are from
-  std::size_t group_ = 1;            // directions that one shader takes through a slice
+  std::vector<glm::dvec2> roundings_;  // by direction, see RenderSample
+  std::vector<glm::vec4> radiance_;    // by direction: rgb, and its share of the light
+  glm::dvec3 light_{0};                // sum of the radiances
+  bool coloured_ = false;              // the directions' radiances differ in more than brightness
+  std::optional<Camera> aimedFrom_;    // whose directions of the scene these are
+  std::size_t group_ = 1;              // directions that one shader takes through a slice
   int slicesTogether_ = 1;
   LightLattice lattice_;
   LightExtents extents_;

@@ -91,13 +91,13 @@ class SliceRenderer::Implementation {
 
   const Scene& scene() const { return scene_; }
 
-  Picture render(const Camera& camera) {
+  Picture render(const Camera& camera, const RenderSample& sample) {
     if (camera.width != scene_.camera.width || camera.height != scene_.camera.height)
       throw InvalidArgument("render: the renderer was made for pictures of another size");
     Picture picture;
     RenderStats& stats = picture.stats;
     Stopwatch geometry;
-    prepareFrame(camera);
+    prepareFrame(camera, sample);
     Frame& frame = *frame_;
     const std::uint64_t uploadedBefore = atlas_->uploadedBricks();
     stats.geometryMs = geometry.elapsedMs();
@@ -224,14 +224,18 @@ class SliceRenderer::Implementation {
     return planes;
   }
 
-  void prepareFrame(const Camera& camera) {
+  void prepareFrame(const Camera& camera, const RenderSample& sample) {
     const IndexView view = indexView(camera, volume_.indexToWorld);
     checkReach(view);
     std::vector<glm::dvec4> planes = viewPlanes(camera);
-    ProxySlices slices = cutSlices(view, origins_, volume_.layout.interior, planes, scene_.sampling.spacing);
+    const double spacing = scene_.sampling.spacing;
+    ProxySlices slices = cutSlices(view, origins_, volume_.layout.interior, planes, spacing);
+    // The first slab of another phase begins before or behind the eye: there must be nothing.
+    if (sample.phase != 0.5 && slices.first > 0)
+      slices = cutSlices(view, origins_, volume_.layout.interior, planes, spacing, sample.phase);
     frame_.emplace(Frame{gl_, scene_, camera, view, std::move(planes), std::move(slices), *atlas_, *transfer_,
                          *targets_, *polygons_, FragmentCounter(gl_, options_.countFragments), options_.reverseBricks,
-                         shortestVoxelEdge(volume_.indexToWorld), PassClock(gl_, options_.timePasses)});
+                         shortestVoxelEdge(volume_.indexToWorld), PassClock(gl_, options_.timePasses), sample});
     pass_->plan(*frame_);
     std::vector<const ProxySlices*> sweeps{&frame_->slices};
     if (pass_->occluders()) sweeps.push_back(pass_->occluders());
@@ -296,7 +300,9 @@ SliceRenderer::SliceRenderer(const GlContext& context, const Bricks& volume, con
 SliceRenderer::~SliceRenderer() = default;
 
 Picture SliceRenderer::render() { return render(implementation_->scene().camera); }
-Picture SliceRenderer::render(const Camera& camera) { return implementation_->render(camera); }
+Picture SliceRenderer::render(const Camera& camera, const RenderSample& sample) {
+  return implementation_->render(camera, sample);
+}
 Image SliceRenderer::probe(std::int64_t slice) { return implementation_->probe(slice); }
 std::vector<double> SliceRenderer::sliceDepths() const { return implementation_->sliceDepths(); }
 

@@ -36,18 +36,18 @@ struct SliceInterval {
 };
 
 // Slices whose middle is in (nearest corner, farthest corner] and in front of the eye.
-SliceInterval slicesThrough(const Corners& corners, double spacing) {
+SliceInterval slicesThrough(const Corners& corners, double spacing, double phase) {
   double nearest = corners[0].z, farthest = corners[0].z;
   for (const glm::dvec3& corner : corners) {
     nearest = std::min(nearest, corner.z);
     farthest = std::max(farthest, corner.z);
   }
   if (!(farthest > 0)) return {};
-  const auto middle = [&](std::int64_t i) { return (static_cast<double>(i) + 0.5) * spacing; };
+  const auto middle = [&](std::int64_t i) { return (static_cast<double>(i) + phase) * spacing; };
   // The quotient may be off by rounding: step to the exact answer.
-  std::int64_t first = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(nearest / spacing - 0.5)) - 1);
+  std::int64_t first = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(nearest / spacing - phase)) - 1);
   while (middle(first) <= nearest) ++first;
-  std::int64_t last = static_cast<std::int64_t>(std::ceil(farthest / spacing - 0.5)) + 1;
+  std::int64_t last = static_cast<std::int64_t>(std::ceil(farthest / spacing - phase)) + 1;
   while (last >= first && middle(last) > farthest) --last;
   return {first, last};
 }
@@ -203,9 +203,10 @@ Buckets sortBySlice(std::span<const SliceInterval> intervals, std::int64_t first
   return buckets;
 }
 
-ProxySlices join(std::vector<SlicePolygons>& slices, std::int64_t first, double spacing) {
+ProxySlices join(std::vector<SlicePolygons>& slices, std::int64_t first, double spacing, double phase) {
   ProxySlices all;
   all.spacing = spacing;
+  all.phase = phase;
   all.first = first;
   std::size_t polygons = 0, vertices = 0;
   for (const SlicePolygons& slice : slices) {
@@ -233,9 +234,11 @@ ProxySlices join(std::vector<SlicePolygons>& slices, std::int64_t first, double 
 }  // namespace
 
 ProxySlices cutSlices(const IndexView& view, std::span<const glm::ivec3> origins, const glm::ivec3& interior,
-                      std::span<const glm::dvec4> viewPlanes, double spacing, std::int64_t maxSlices) {
+                      std::span<const glm::dvec4> viewPlanes, double spacing, double phase, std::int64_t maxSlices) {
   if (!(spacing > 0) || !std::isfinite(spacing))
     throw InvalidArgument("slices: spacing is " + std::to_string(spacing) + ", must be above 0");
+  if (!(phase > 0 && phase < 1))
+    throw InvalidArgument("slices: phase is " + std::to_string(phase) + ", must be in (0, 1)");
   std::vector<Corners> corners(origins.size());
   std::vector<SliceInterval> intervals(origins.size());
   std::int64_t first = std::numeric_limits<std::int64_t>::max(), last = -1;
@@ -249,13 +252,14 @@ ProxySlices cutSlices(const IndexView& view, std::span<const glm::ivec3> origins
     throw InvalidArgument("slices: spacing " + std::to_string(spacing) + " is too small for a volume at depth " +
                           std::to_string(farthest));
   for (std::size_t i = 0; i < origins.size(); ++i) {
-    intervals[i] = slicesThrough(corners[i], spacing);
+    intervals[i] = slicesThrough(corners[i], spacing, phase);
     if (intervals[i].last < intervals[i].first) continue;
     first = std::min(first, intervals[i].first);
     last = std::max(last, intervals[i].last);
   }
   ProxySlices none;
   none.spacing = spacing;
+  none.phase = phase;
   if (last < first) return none;
   const std::int64_t count = last - first + 1;
   if (count > maxSlices)
@@ -267,12 +271,12 @@ ProxySlices cutSlices(const IndexView& view, std::span<const glm::ivec3> origins
   std::vector<SlicePolygons> slices(static_cast<std::size_t>(count));
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, slices.size()), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const double depth = (static_cast<double>(first + static_cast<std::int64_t>(i)) + 0.5) * spacing;
+      const double depth = (static_cast<double>(first + static_cast<std::int64_t>(i)) + phase) * spacing;
       cutter.cut(depth, std::span(buckets.list).subspan(buckets.start[i], buckets.start[i + 1] - buckets.start[i]),
                  slices[i]);
     }
   });
-  return join(slices, first, spacing);
+  return join(slices, first, spacing, phase);
 }
 
 }  // namespace umbrick

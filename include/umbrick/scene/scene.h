@@ -29,6 +29,8 @@ Model parseModel(std::string_view name);
 /// doi:10.1111/j.1467-8659.2009.01464.x. ordinates: a set of directions, each with a transmittance of its own that is
 /// carried along its paths
 enum class Method { dos, ordinates };
+/// What a scene file and the command line call it.
+std::string methodName(Method method);
 
 /// How a slab between two slices is integrated.
 enum class Quadrature {
@@ -44,7 +46,7 @@ struct OcclusionOptions {
   bool perspectiveCorrection = true;     // Eqs. 12-15 of the paper
   int bits = 32;                         // of the occlusion buffer or the windows, 16 or 32; see SamplingOptions
   int directions = 16;                   // K: of ordinates, about so many over the cone, 1 to 1024
-  double scale = 0;                      // of ordinates: window texels per voxel edge; 0: as large as slabs, voxels, pixels
+  double scale = 0;  // of ordinates: window texels per voxel edge; 0: as large as slabs, voxels, pixels
   bool operator==(const OcclusionOptions&) const = default;
 };
 
@@ -134,6 +136,12 @@ Scene readScene(const std::filesystem::path& path);
 /// orbit, what follows from the volume (eye, lookAt, up and viewHeight) is left out.
 /// @throw InvalidArgument  a number that is not finite, a name that is not UTF-8, an environment map of no file
 std::string printScene(const Scene& scene);
+
+/// What ordinates spend on a picture.
+enum class Quality { draft, normal, high };
+/// Sets method, spacing, segments, directions and the scale of windows to what goes together. RMSE of linear
+/// premultiplied RGB on the bundled CT, 256 x 256: see the README.
+void applyQuality(Quality quality, Scene& scene);
 
 /// Checks every field against its range, however the scene was made.
 /// @throw InvalidArgument  names the field as in the JSON, what it is and what it may be

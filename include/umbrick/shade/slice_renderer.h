@@ -1,12 +1,14 @@
 // Renders bricks of a volume by proxy slices, nearest first.
 #pragma once
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <memory>
 #include <vector>
 
 #include "umbrick/brick/bricks.h"
 #include "umbrick/gl/context.h"
 #include "umbrick/image/image.h"
+#include "umbrick/scene/lights.h"
 #include "umbrick/scene/scene.h"
 
 namespace umbrick {
@@ -51,6 +53,15 @@ struct RenderStats {
   double readMs = 0;                 // picture back to memory
 };
 
+/// Where the freedom of a picture lies: pictures of other samples have other errors, so that their mean has less. The
+/// defaults are those of a single picture.
+struct RenderSample {
+  std::vector<LightDirection> lights;  // of ordinates; empty: lightDirections() of the scene
+  double phase = 0.5;          // of the slices, see ProxySlices; 1/2 where less than a slab is between eye and volume
+  glm::dvec2 latticeShift{0};  // of ordinates: of the lattice of the light, texels
+  glm::dvec2 rounding{0.5};    // of ordinates: what is added to shifts before they are cut to whole texels, in [0, 1)
+};
+
 struct Picture {
   Image colour;      // linear premultiplied RGBA
   Image visibility;  // 1 channel: V weighted by opacity, so that V / A is the mean visibility along the ray
@@ -81,7 +92,7 @@ class SliceRenderer {
   Picture render();
   /// The same scene from another camera of the same image size.
   /// @throw InvalidArgument  another size, or slabs that reach beyond the apron
-  Picture render(const Camera& camera);
+  Picture render(const Camera& camera, const RenderSample& sample = {});
 
   /// What slice i (of those in the last picture) samples: channel 0 the interpolated value, grid units, at the middle
   /// of the slab, channel 1 how many bricks shade the pixel.

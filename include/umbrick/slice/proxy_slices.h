@@ -51,16 +51,17 @@ struct ProxyPolygon {
   std::int32_t vertices;  // 3 or more, in order, to be drawn as a fan around the first
 };
 
-/// Slices first, first + 1, ... with the polygons of each. The middle of slice i is at depth (i + 1/2) spacing from the
-/// eye, one phase for all bricks, so that a slice moves with the camera and not with a brick.
+/// Slices first, first + 1, ... with the polygons of each. The middle of slice i is at depth (i + phase) spacing from
+/// the eye, one phase for all bricks, so that a slice moves with the camera and not with a brick.
 struct ProxySlices {
   double spacing = 0;  // world units
+  double phase = 0.5;
   std::int64_t first = 0;
   std::vector<std::int32_t> start{0};  // polygons of slice first + i are [start[i], start[i + 1])
   std::vector<ProxyPolygon> polygons;  // within a slice in order of the bricks
   std::vector<glm::vec2> vertices;     // normalised device coordinates
   std::int64_t count() const { return static_cast<std::int64_t>(start.size()) - 1; }
-  double depth(std::int64_t i) const { return (static_cast<double>(first + i) + 0.5) * spacing; }
+  double depth(std::int64_t i) const { return (static_cast<double>(first + i) + phase) * spacing; }
 };
 
 /// Where slices cut bricks of one size.
@@ -77,9 +78,11 @@ struct ProxySlices {
 /// @param viewPlanes half-spaces (see planeInView) beyond which nothing is drawn; what is left of a slab that a plane
 /// cuts
 ///                   stays, so polygons reach half a slab and kPlaneMargin beyond it
+/// @param phase      in (0, 1): 1/2 has the first slab begin at the eye
 /// @return slices between the nearest and the farthest that anything crosses; polygons outside the image are left out
 /// @throw InvalidArgument  spacing <= 0 or so small that there would be more than `maxSlices`
 ProxySlices cutSlices(const IndexView& view, std::span<const glm::ivec3> origins, const glm::ivec3& interior,
-                      std::span<const glm::dvec4> viewPlanes, double spacing, std::int64_t maxSlices = 1'000'000);
+                      std::span<const glm::dvec4> viewPlanes, double spacing, double phase = 0.5,
+                      std::int64_t maxSlices = 1'000'000);
 
 }  // namespace umbrick

@@ -1,0 +1,230 @@
+#include "umbrick/shade/progressive.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <vector>
+
+#include "umbrick/core/error.h"
+#include "umbrick/core/random.h"
+#include "umbrick/core/stopwatch.h"
+#include "umbrick/scene/resolve.h"
+#include "umbrick/shade/prepare.h"
+
+namespace umbrick {
+namespace {
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Powers of the plastic number's inverse, the steps of R2, and of the golden ratio.
+const glm::dvec2 kStep2(0.7548776662466927, 0.5698402909980532);
+constexpr double kStep1 = 0.6180339887498949;
+
+/// Sum of pictures.
+class Accumulator {
+ public:
+  void add(const Picture& picture) {
+    if (count_ == 0) {
+      colour_.assign(picture.colour.pixels.size(), 0);
+      visibility_.assign(picture.visibility.pixels.size(), 0);
+      depth_.assign(picture.depth.pixels.size(), glm::dvec2(0));
+    }
+    for (std::size_t i = 0; i < colour_.size(); ++i) colour_[i] += picture.colour.pixels[i];
+    for (std::size_t i = 0; i < visibility_.size(); ++i) visibility_[i] += picture.visibility.pixels[i];
+    // Depth is a mean by opacity; with a background the picture's alpha has forgotten that, and all passes agree but
+    // for the slices.
+    for (std::size_t i = 0; i < depth_.size(); ++i) {
+      const float depth = picture.depth.pixels[i];
+      if (!std::isfinite(depth)) continue;
+      const double weight = std::max(picture.colour.pixels[4 * i + 3], 1e-30f);
+      depth_[i] += glm::dvec2(weight * depth, weight);
+    }
+    ++count_;
+  }
+  int count() const { return count_; }
+  double colour(std::size_t i) const { return colour_[i] / count_; }
+  std::size_t values() const { return colour_.size(); }
+  /// Replaces the pixels of a picture of the same size by the means.
+  void store(Picture& picture) const {
+    for (std::size_t i = 0; i < colour_.size(); ++i) picture.colour.pixels[i] = static_cast<float>(colour(i));
+    for (std::size_t i = 0; i < visibility_.size(); ++i)
+      picture.visibility.pixels[i] = static_cast<float>(visibility_[i] / count_);
+    for (std::size_t i = 0; i < depth_.size(); ++i)
+      picture.depth.pixels[i] =
+          depth_[i].y > 0 ? static_cast<float>(depth_[i].x / depth_[i].y) : std::numeric_limits<float>::infinity();
+  }
+
+ private:
+  int count_ = 0;
+  std::vector<double> colour_, visibility_;
+  std::vector<glm::dvec2> depth_;  // weighted, weight
+};
+
+// Root of the mean over R, G, B of the pixels of f(i).
+template <class Value>
+double rootMean(std::size_t values, const Value& squared) {
+  double sum = 0;
+  for (std::size_t i = 0; i < values; ++i)
+    if (i % 4 != 3) sum += squared(i);
+  return std::sqrt(sum / (0.75 * static_cast<double>(values)));
+}
+
+// The samples of one stream.
+class Stream {
+ public:
+  Stream(std::uint64_t seed, std::uint64_t number) : random_(seed, number) {
+    seed_ = static_cast<std::uint64_t>(random_.uniform() * 0x1p53);
+    phase_ = random_.uniform();
+    for (int axis = 0; axis < 2; ++axis) {
+      shift_[axis] = random_.uniform();
+      rounding_[axis] = random_.uniform();
+    }
+  }
+  RenderSample sample(const Scene& scene, int pass) const {
+    const int count = scene.occlusion.directions;
+    RenderSample sample;
+    sample.lights =
+        lightSamples(scene, static_cast<std::uint64_t>(pass) * static_cast<std::uint64_t>(count), count, seed_);
+    // A phase is in the open interval: at 0 a slice would lie in the eye.
+    sample.phase = std::clamp(glm::fract(phase_ + pass * kStep1), 1e-3, 1 - 1e-3);
+    sample.latticeShift = glm::fract(shift_ + static_cast<double>(pass) * kStep2);
+    sample.rounding = glm::fract(rounding_ + static_cast<double>(pass) * kStep2);
+    return sample;
+  }
+
+ private:
+  Random random_;
+  std::uint64_t seed_ = 0;
+  double phase_ = 0;
+  glm::dvec2 shift_{0}, rounding_{0};
+};
+
+void check(const Scene& scene, const ProgressiveOptions& options) {
+  if ((scene.model != Model::cone && scene.model != Model::lights) || scene.method != Method::ordinates)
+    throw InvalidArgument("progressive: needs the model cone or lights and the method ordinates, found " +
+                          modelName(scene.model) + " and " + methodName(scene.method));
+  if (options.passes < 1)
+    throw InvalidArgument("progressive: passes is " + std::to_string(options.passes) + ", must be 1 or more");
+  if (!(options.maxSeconds >= 0) || !(options.targetError >= 0))
+    throw InvalidArgument("progressive: seconds and target error are " + std::to_string(options.maxSeconds) + " and " +
+                          std::to_string(options.targetError) + ", must be 0 or more");
+}
+
+bool fits(const Bricks& volume, const Scene& scene) {
+  try {
+    return requiredApron(scene, volume.indexToWorld) <= volume.layout.apron;
+  } catch (const InvalidArgument&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+double ErrorEstimate::total() const { return std::hypot(statistical, systematic); }
+
+Scene coarserScene(const Scene& scene) {
+  Scene coarse = scene;
+  coarse.sampling.spacing *= 2;
+  coarse.sampling.segments = std::min(8, 2 * scene.sampling.segments);
+  coarse.occlusion.scale = scene.occlusion.scale / 2;
+  return coarse;
+}
+
+namespace {
+
+Scene finerScene(const Scene& scene) {
+  Scene fine = scene;
+  fine.sampling.spacing /= 2;
+  fine.sampling.segments = std::max(1, scene.sampling.segments / 2);
+  fine.occlusion.scale = scene.occlusion.scale * 2;
+  return fine;
+}
+
+// Passes over one scene.
+class PassSeries {
+ public:
+  PassSeries(const GlContext& context, const Bricks& volume, const Scene& scene, std::uint64_t seed,
+             const RenderOptions& render)
+      : scene_(scene), fine_(context, volume, scene, render) {
+    const Scene coarse = coarserScene(scene);
+    if (fits(volume, coarse)) coarse_.emplace(context, volume, coarse, render);
+    for (int i = 0; i < kStreams; ++i) streams_.emplace_back(seed, static_cast<std::uint64_t>(i));
+  }
+
+  // One more; the picture is the mean so far.
+  void pass(Picture& picture, ErrorEstimate& error) {
+    const auto stream = static_cast<std::size_t>(passes_ % kStreams);
+    const RenderSample sample = streams_[stream].sample(scene_, passes_ / kStreams);
+    picture = fine_.render(scene_.camera, sample);
+    means_[stream].add(picture);
+    all_.add(picture);
+    // The same light: what differs are slabs and texels.
+    if (coarse_) coarseMean_.add(coarse_->render(scene_.camera, sample));
+    if (++passes_ >= kStreams) error.statistical = standardError();
+    if (coarse_ && passes_ == kStreams) {
+      error.systematic = rootMean(all_.values(), [&](std::size_t i) {
+        const double difference = coarseMean_.colour(i) - all_.colour(i);
+        return difference * difference;
+      });
+      coarse_.reset();
+    }
+    all_.store(picture);
+  }
+
+ private:
+  double standardError() const {
+    return rootMean(all_.values(), [&](std::size_t i) {
+      double mean = 0, square = 0;
+      for (const Accumulator& stream : means_) mean += stream.colour(i) / kStreams;
+      for (const Accumulator& stream : means_) square += (stream.colour(i) - mean) * (stream.colour(i) - mean);
+      return square / (kStreams - 1) / kStreams;
+    });
+  }
+
+  Scene scene_;
+  SliceRenderer fine_;
+  std::optional<SliceRenderer> coarse_;
+  std::vector<Stream> streams_;
+  std::array<Accumulator, kStreams> means_;
+  Accumulator all_, coarseMean_;
+  int passes_ = 0;
+};
+
+}  // namespace
+
+ProgressivePicture renderProgressive(const GlContext& context, const Bricks& volume, const Scene& scene,
+                                     const ProgressiveOptions& options, const RenderOptions& render,
+                                     const std::function<bool(const ProgressivePicture&)>& onPass) {
+  check(scene, options);
+  const Stopwatch watch;
+  const double finest = shortestVoxelEdge(volume.indexToWorld) / 8;
+  Scene current = scene;
+  auto series = std::make_unique<PassSeries>(context, volume, current, options.seed, render);
+  ProgressivePicture result;
+  result.error = {kInfinity, kInfinity};
+  for (int pass = 0; pass < options.passes; ++pass) {
+    series->pass(result.picture, result.error);
+    ++result.passes;
+    result.scene = current;
+    result.seconds = watch.elapsedMs() / 1e3;
+    result.reachedTarget = options.targetError > 0 && result.error.total() <= options.targetError;
+    if (onPass && !onPass(result)) break;
+    if (result.reachedTarget || (options.maxSeconds > 0 && result.seconds >= options.maxSeconds)) break;
+    // Half of the squared error is for either kind.
+    if (options.refine && std::isfinite(result.error.systematic) &&
+        result.error.systematic > options.targetError / std::sqrt(2.0) && current.sampling.spacing / 2 >= finest) {
+      current = finerScene(current);
+      series.reset();
+      series = std::make_unique<PassSeries>(context, volume, current, options.seed, render);
+      result.passes = 0;
+      result.error = {kInfinity, kInfinity};
+    }
+  }
+  return result;
+}
+
+}  // namespace umbrick
