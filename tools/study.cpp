@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.h"
@@ -29,7 +30,7 @@ struct StudyCommand {
   bool quick = false;
   std::vector<std::string> methods, bits;
   std::vector<int> slices, segments, sizes;
-  std::vector<double> thetas;
+  std::vector<double> thetas, scales;
   std::map<std::string, std::vector<int>> details;  // by name
   std::optional<int> repeats, directions;
   std::optional<double> tolerance;
@@ -66,6 +67,7 @@ StudySettings makeSettings(const StudyCommand& command) {
   apply(command.slices, settings.slices);
   apply(command.segments, settings.segments);
   apply(command.sizes, settings.sizes);
+  if (!command.scales.empty()) settings.scales = command.scales;
   if (!command.bits.empty()) {
     settings.bits.clear();
     for (const std::string& text : command.bits) settings.bits.push_back(parseBits(text));
@@ -117,6 +119,22 @@ std::string printedList(const std::vector<int>& values) {
   return text;
 }
 
+// "64 128 (emission, dos), 16 32 (ordinates)": of the methods that are in a study, or a quick one, by themselves.
+std::string slicesOfMethods(bool quick) {
+  std::vector<std::pair<std::string, std::string>> lists;  // slices, methods
+  for (const StudyMethod& method : studyMethods()) {
+    if (!(quick ? method.quick : method.usual)) continue;
+    const std::string slices = printedList(quick ? method.quickSlices : method.slices);
+    if (lists.empty() || lists.back().first != slices)
+      lists.emplace_back(slices, method.name);
+    else
+      lists.back().second += ", " + method.name;
+  }
+  std::string text;
+  for (const auto& [slices, methods] : lists) text += (text.empty() ? "" : "; ") + slices + " (" + methods + ")";
+  return text;
+}
+
 void addSweeps(CLI::App& sub, StudyCommand& c) {
   const StudySettings full, quick = quickStudySettings();
   const std::string group = "Sweeps";
@@ -126,9 +144,9 @@ void addSweeps(CLI::App& sub, StudyCommand& c) {
   std::string quickMethods;
   for (const std::string& name : quick.methods) quickMethods += " " + name;
   sub.add_option("--methods", c.methods, methodNames() + " [all; quick:" + quickMethods + "]")->group(group);
-  sub.add_option("--slices", c.slices,
-                 "through the visible extent along the view axis" +
-                     defaults(printedList(full.slices), printedList(quick.slices)))
+  sub.add_option(
+         "--slices", c.slices,
+         "through the visible extent along the view axis" + defaults(slicesOfMethods(false), slicesOfMethods(true)))
       ->group(group);
   // One option per name; several methods may share it.
   for (const StudyMethod& method : studyMethods()) {
@@ -148,6 +166,12 @@ void addSweeps(CLI::App& sub, StudyCommand& c) {
   sub.add_option("--sizes", c.sizes,
                  "height of the picture and of both buffers, pixels; the width follows from the scene's --size" +
                      defaults(printedList(full.sizes), printedList(quick.sizes)))
+      ->group(group);
+  std::string scales;
+  for (const double scale : kUsualScales) scales += (scales.empty() ? "" : " ") + CLI::detail::to_string(scale);
+  sub.add_option("--scales", c.scales,
+                 "of the windows of ordinates: texels per voxel edge, 0.015625 to 64, beside the automatic scale [" +
+                     scales + "; quick: none]")
       ->group(group);
   sub.add_option("--thetas", c.thetas, "half-angles of the cone, degrees, in [0, 90) [the scene's and 80]")
       ->group(group);
@@ -179,7 +203,8 @@ Command addStudy(CLI::App& app) {
   CLI::App* sub = app.add_subcommand(
       "study",
       "Measure speed against error. Around a base point (the middle of the slices and of the detail, the most bits, "
-      "fewest segments, largest size, the scene's theta) slices x detail and each other list alone are swept; the "
+      "fewest segments, largest size, the scene's theta) slices x detail, slices x theta and each other list alone are "
+      "swept; the "
       "folder gets index.html, study.csv and study.json. A stopped study goes on when it is started again.");
   command->scene = addSceneOptions(*sub);
   addBackendOption(*sub, command->backend);

@@ -27,7 +27,7 @@ Scene studyScene(const Scene& resolved, const StudyPlan& plan, double voxelEdge)
   scene.method = Method::dos;
   scene.sampling.spacing = SamplingOptions{}.spacing * voxelEdge;
   scene.sampling.spacingInVoxels = false;
-  scene.sampling.segments = plan.baseSegments;
+  scene.sampling.segments = plan.settings.segments.front();
   scene.sampling.bits = plan.baseBits.eye;
   const bool perspectiveCorrection = scene.occlusion.perspectiveCorrection;
   scene.occlusion = OcclusionOptions{};
@@ -36,18 +36,21 @@ Scene studyScene(const Scene& resolved, const StudyPlan& plan, double voxelEdge)
   return scene;
 }
 
-Scene caseScene(const Scene& scene, const StudyCase& what, double extent) {
+Scene caseScene(const Scene& scene, const StudyCase& what, const StudyGeometry& geometry) {
   const StudyMethod& method = studyMethod(what.method);
   Scene result = scene;
   setSize(result.camera, what.size);
   result.model = method.model;
-  result.sampling.spacing = extent / what.slices;
+  result.sampling.spacing = geometry.extent / what.slices;
   result.sampling.spacingInVoxels = false;
-  result.sampling.segments = what.segments;
+  result.sampling.segments = what.segments == kAutomaticSegments
+                                 ? automaticSegments(result.sampling.spacing, geometry.voxelEdge)
+                                 : what.segments;
   result.sampling.bits = what.bits.eye;
   if (method.model != Model::emission) {
     result.occlusion.bits = what.bits.occlusion;
     result.occlusion.aperture = what.theta;
+    result.occlusion.scale = what.scale;
   }
   method.apply(what.detail, result);
   return result;
@@ -61,12 +64,12 @@ Scene referenceScene(const Scene& scene, const StudyReference& what) {
   return result;
 }
 
-Scene baselineScene(const Scene& scene, int size, double extent) {
+Scene baselineScene(const Scene& scene, int size, const StudyGeometry& geometry) {
   StudyCase baseline;
   baseline.method = "emission";
   baseline.slices = kBaselineSlices;
   baseline.size = size;
-  return caseScene(scene, baseline, extent);
+  return caseScene(scene, baseline, geometry);
 }
 
 ReferenceOptions referenceOptions(const StudySettings& settings, bool coarser) {
@@ -76,16 +79,17 @@ ReferenceOptions referenceOptions(const StudySettings& settings, bool coarser) {
   return options;
 }
 
-std::string renderCommand(const StudyCase& what, const Scene& scene, double extent) {
+std::string renderCommand(const StudyCase& what, const Scene& scene, const StudyGeometry& geometry) {
   const StudyMethod& method = studyMethod(what.method);
-  const Scene result = caseScene(scene, what, extent);
+  const Scene result = caseScene(scene, what, geometry);
   std::string text = "umbrick render scene.json --model " + modelName(method.model);
   const std::string options = method.options(what.detail);
   if (!options.empty()) text += " " + options;
   if (method.model != Model::emission)
     text += " --theta " + jsonDegrees(what.theta) + " --occlusion-bits " + std::to_string(what.bits.occlusion);
+  if (what.scale > 0) text += " --occlusion-scale " + jsonNumber(what.scale);
   text += " --eye-bits " + std::to_string(what.bits.eye) + " --spacing " + jsonNumber(result.sampling.spacing) +
-          " --spacing-unit world --segments " + std::to_string(what.segments) + sizeOption(result) +
+          " --spacing-unit world --segments " + std::to_string(result.sampling.segments) + sizeOption(result) +
           " --exr-pixel float -o " + what.id() + ".exr";
   return text;
 }

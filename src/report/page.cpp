@@ -1,6 +1,8 @@
 #include "report/page.h"
 
+#include <algorithm>
 #include <glm/common.hpp>
+#include <utility>
 
 #include "core/json_writer.h"
 #include "core/text_file.h"
@@ -39,13 +41,25 @@ std::string modelTitle(Model model) {
   return model == Model::emission ? "Emission: no occlusion" : "Cone: directional occlusion";
 }
 
+// Methods that share a base are named together.
 std::string baseText(const StudyPlan& plan) {
-  std::string text = std::to_string(plan.baseSlices) + " slices";
-  for (const auto& [name, value] : plan.baseDetails) text += ", " + name + " " + std::to_string(value);
-  return text + ", " + std::to_string(plan.baseBits.eye) + "-bit eye and " + std::to_string(plan.baseBits.occlusion) +
-         "-bit occlusion buffer, " + std::to_string(plan.baseSegments) +
-         (plan.baseSegments == 1 ? " segment" : " segments") + " per slab, " + std::to_string(plan.baseSize) +
-         " pixels high, theta " + jsonDegrees(plan.baseTheta) + " degrees";
+  std::vector<std::pair<std::string, std::string>> bases;  // description, methods
+  for (const std::string& name : plan.settings.methods) {
+    const StudyCase& base = plan.bases.at(name);
+    const StudyMethod::Detail& detail = studyMethod(name).detail;
+    std::string text = std::to_string(base.slices) + " slices, " + describeSegments(base.segments);
+    if (!detail.name.empty()) text += ", " + detail.symbol + " = " + std::to_string(base.detail);
+    const auto known = std::find_if(bases.begin(), bases.end(), [&](const auto& b) { return b.first == text; });
+    if (known == bases.end())
+      bases.emplace_back(text, name);
+    else
+      known->second += ", " + name;
+  }
+  std::string text;
+  for (const auto& [base, methods] : bases) text += base + " (" + methods + "); ";
+  return text + std::to_string(plan.baseBits.eye) + "-bit eye and " + std::to_string(plan.baseBits.occlusion) +
+         "-bit occlusion buffer, " + std::to_string(plan.baseSize) + " pixels high, theta " +
+         jsonDegrees(plan.baseTheta) + " degrees";
 }
 
 // The front in two numbers: the least error, and what a picture costs that is nearly as good.
@@ -90,7 +104,7 @@ std::string speedSections(const StudyRecord& record, const StudyFolder& folder,
                         "<h3>Convergence in the distance of slices</h3>\n" + convergence);
     std::string details;
     for (const StudyMethod& method : studyMethods())
-      if (method.model == model && record.plan.baseDetails.contains(method.detail.name) &&
+      if (method.model == model && record.plan.settings.details.contains(method.detail.name) &&
           details.find("detail-" + method.detail.name) == std::string::npos)
         details += plotFigure(folder, detailPlot(record, method.detail), "At the base of everything else.");
     if (!details.empty()) html += "<h3>Finer and coarser occlusion</h3>\n" + details;
@@ -124,7 +138,7 @@ std::string machineSection(const StudyRecord& record) {
     row("Load average while timing", printShort(least) + " to " + printShort(most) + " (1 minute)");
   row("Versions", "umbrick " + machine.version + ", " + machine.compiler + ", " + machine.gnuplot);
   row("Volume", record.volume.file + ", " + std::to_string(record.volume.bytes) + " bytes");
-  row("Visible extent along the view axis", printShort(record.extent) + " world units");
+  row("Visible extent along the view axis", printShort(record.geometry.extent) + " world units");
   row("Base point", baseText(record.plan));
   const StudySettings& settings = record.plan.settings;
   return printHtml(table) + "<p><b>Time.</b> Case and baseline took turns in one process, at least " +

@@ -18,6 +18,8 @@ void writePage(const StudyRecord& record, const StudyFolder& folder);
 
 /// A case in words: "dos, Algorithm 3, n = 3, 256 slices"; what is at the base is left out, slices and detail are not.
 std::string describeCase(const StudyCase& what, const StudyPlan& plan);
+/// "2 segments per slab"
+std::string describeSegments(int segments);
 
 std::string frontTable(const StudyRecord& record, const ComparableCases& group);
 std::string aroundBaseTable(const StudyRecord& record);

@@ -78,7 +78,7 @@ std::string commandList(const StudyRecord& record) {
   html += "</details>\n";
   for (const StudyCase& what : record.plan.cases)
     html += "<details id=\"c-" + what.id() + "\"><summary>" + escapeHtml(describeCase(what, record.plan)) +
-            "</summary>\n<pre>" + escapeHtml(renderCommand(what, record.scene, record.extent)) + "\n" +
+            "</summary>\n<pre>" + escapeHtml(renderCommand(what, record.scene, record.geometry)) + "\n" +
             escapeHtml(compareCommand(what, record.plan.referenceOf(what))) + "</pre></details>\n";
   return html;
 }

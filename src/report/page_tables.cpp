@@ -62,22 +62,27 @@ std::vector<Variation> variationsOf(const StudyCase& what, const StudyPlan& plan
   std::vector<Variation> all;
   const StudyMethod& method = studyMethod(what.method);
   const bool occlusion = method.model != Model::emission;
-  if (what.slices != plan.baseSlices) all.push_back({"slices", std::to_string(what.slices) + " slices"});
-  if (!method.detail.name.empty() && what.detail != plan.baseDetails.at(method.detail.name))
+  const StudyCase& base = plan.bases.at(what.method);
+  if (what.slices != base.slices) all.push_back({"slices", std::to_string(what.slices) + " slices"});
+  if (!method.detail.name.empty() && what.detail != base.detail)
     all.push_back({method.detail.name, method.detail.symbol + " = " + std::to_string(what.detail)});
-  if (what.segments != plan.baseSegments)
-    all.push_back(
-        {"segments", std::to_string(what.segments) + (what.segments == 1 ? " segment" : " segments") + " per slab"});
+  if (what.segments != base.segments) all.push_back({"segments", describeSegments(what.segments)});
   const std::string eye = std::to_string(what.bits.eye);
   if (what.bits.eye != plan.baseBits.eye || (occlusion && what.bits.occlusion != plan.baseBits.occlusion))
     all.push_back({"bits", occlusion ? eye + "/" + std::to_string(what.bits.occlusion) + " bits" : eye + " bits"});
   if (what.size != plan.baseSize) all.push_back({"size", std::to_string(what.size) + " pixels high"});
   if (occlusion && what.theta != plan.baseTheta)
     all.push_back({"theta", "theta " + jsonDegrees(what.theta) + " degrees"});
+  if (what.scale != base.scale) all.push_back({"scale", jsonNumber(what.scale) + " window texels per voxel edge"});
   return all;
 }
 
 }  // namespace
+
+std::string describeSegments(int segments) {
+  if (segments == kAutomaticSegments) return "segments of at most " + printShort(kLongestSegmentVoxels) + " voxels";
+  return std::to_string(segments) + (segments == 1 ? " segment" : " segments") + " per slab";
+}
 
 std::string describeCase(const StudyCase& what, const StudyPlan& plan) {
   const StudyMethod& method = studyMethod(what.method);
@@ -162,7 +167,7 @@ std::string caseTable(const StudyRecord& record, const std::vector<ComparableCas
     row.cells = {text("<a href=\"#c-" + what.id() + "\">" + escapeHtml(what.method) + "</a>"),
                  words(method.detail.name.empty() ? "" : method.detail.symbol + " = " + std::to_string(what.detail)),
                  {std::to_string(what.slices)},
-                 {std::to_string(what.segments)},
+                 {std::to_string(result->segments)},
                  {std::to_string(what.bits.eye) + (occlusion ? "/" + std::to_string(what.bits.occlusion) : "")},
                  {std::to_string(what.size)},
                  {occlusion ? jsonDegrees(what.theta) : ""},

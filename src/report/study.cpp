@@ -18,13 +18,17 @@ StudyOutcome runStudy(const GlContext& context, const ScalarGrid& grid, const Sc
   StudyRecord record;
   record.plan = planStudy(settings, scene.occlusion.aperture);
   validateScene(scene);
-  record.scene = studyScene(scene, record.plan, shortestVoxelEdge(grid.indexToWorld()));
+  record.geometry.voxelEdge = shortestVoxelEdge(grid.indexToWorld());
+  record.scene = studyScene(scene, record.plan, record.geometry.voxelEdge);
   record.volume = identify(scene.volume.file);
   record.scene.volume.file = record.volume.file;
   record.machine = describeMachine(context, gnuplotVersion());
+  record.geometry.extent = visibleExtent(context, grid, record.scene);
+  // Again, now that it is known how few slices can be drawn.
+  const int least = leastSlices(grid, record.scene, record.geometry.extent);
+  record.plan = planStudy(settings, scene.occlusion.aperture, least);
   const StudyFolder folder(root);
   folder.restore(record);
-  if (record.extent == 0) record.extent = visibleExtent(context, grid, record.scene);
   if (!record.complete()) checkCases(context, grid, record);
 
   folder.create(record);

@@ -62,12 +62,15 @@ std::vector<SliceSeries> sliceSeries(const StudyRecord& record, Model model) {
     const StudyMethod& method = studyMethod(name);
     if (method.model != model) continue;
     const std::vector<int> none{0};
+    const StudyCase& base = plan.bases.at(name);
     const bool hasDetail = !method.detail.name.empty();
     for (const int detail : hasDetail ? plan.settings.details.at(method.detail.name) : none) {
       SliceSeries series{method.title, &method, detail, {}, {}};
       if (hasDetail) series.title += ", " + method.detail.symbol + " = " + std::to_string(detail);
-      for (const int slices : plan.settings.slices) {
-        StudyCase what{name, slices, plan.baseSegments, detail, plan.baseBits, plan.baseSize, plan.baseTheta};
+      for (const int slices : plan.slices.at(name)) {
+        StudyCase what = base;
+        what.slices = slices;
+        what.detail = detail;
         if (model == Model::emission) {
           what.theta = 0;
           what.bits.occlusion = what.bits.eye;

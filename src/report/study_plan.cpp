@@ -26,11 +26,15 @@ bool less(const T& a, const T& b) {
 }
 
 template <class T>
-void sortList(const std::string& name, std::vector<T>& list) {
+void sortList(const std::string& name, std::vector<T>& list, std::string (*print)(const T&)) {
   if (list.empty()) throw InvalidArgument(name + ": nothing to sweep, expected at least one");
   std::sort(list.begin(), list.end(), [](const T& a, const T& b) { return less(a, b); });
   const auto twice = std::adjacent_find(list.begin(), list.end());
-  if (twice != list.end()) throw InvalidArgument(name + ": " + printed(*twice) + " is given twice");
+  if (twice != list.end()) throw InvalidArgument(name + ": " + print(*twice) + " is given twice");
+}
+template <class T>
+void sortList(const std::string& name, std::vector<T>& list) {
+  sortList<T>(name, list, [](const T& value) { return printed(value); });
 }
 
 void checkRange(const std::string& name, const std::vector<int>& list, int least, int most) {
@@ -54,6 +58,12 @@ std::vector<std::string> completeMethods(std::vector<std::string> names) {
   return complete;
 }
 
+std::string pluralOf(const std::string& detail) {
+  for (const StudyMethod& method : studyMethods())
+    if (method.detail.name == detail) return method.detail.plural;
+  return "a " + detail;
+}
+
 std::map<std::string, std::vector<int>> completeDetails(const StudySettings& settings) {
   std::map<std::string, std::vector<int>> complete;
   for (const std::string& name : settings.methods) {
@@ -66,8 +76,22 @@ std::map<std::string, std::vector<int>> completeDetails(const StudySettings& set
     complete[detail.name] = values;
   }
   for (const auto& [name, values] : settings.details)
-    if (!complete.contains(name)) throw InvalidArgument("no method of this study has a " + name + " to sweep");
+    if (!complete.contains(name)) throw InvalidArgument("no method of this study has " + pluralOf(name) + " to sweep");
   return complete;
+}
+
+std::vector<double> completeScales(const StudySettings& settings) {
+  const bool windows = std::any_of(settings.methods.begin(), settings.methods.end(),
+                                   [](const std::string& name) { return studyMethod(name).windows; });
+  if (!windows && settings.scales && !settings.scales->empty())
+    throw InvalidArgument("no method of this study has windows whose scales could be swept");
+  std::vector<double> scales = settings.scales.value_or(windows ? kUsualScales : std::vector<double>());
+  if (!scales.empty()) sortList<double>("scales", scales, [](const double& scale) { return jsonNumber(scale); });
+  for (const double scale : scales)
+    if (!(scale >= 1.0 / 64 && scale <= 64))
+      throw InvalidArgument("scales: is " + (std::isfinite(scale) ? jsonNumber(scale) : std::to_string(scale)) +
+                            ", must be in [0.015625, 64]");
+  return scales;
 }
 
 // Of angles that were read from degrees in different ways.
@@ -76,7 +100,7 @@ bool sameAngle(double a, double b) { return std::abs(a - b) < 1e-9; }
 StudySettings completed(StudySettings settings, double aperture) {
   settings.methods = completeMethods(settings.methods);
   settings.details = completeDetails(settings);
-  sortList("slices", settings.slices);
+  if (!settings.slices.empty()) sortList("slices", settings.slices);
   checkRange("slices", settings.slices, 1, 100'000);
   sortList("bits", settings.bits);
   for (const BufferBits& bits : settings.bits)
@@ -85,6 +109,7 @@ StudySettings completed(StudySettings settings, double aperture) {
         throw InvalidArgument("bits: is " + std::to_string(buffer) + ", must be 16 or 32");
   sortList("segments", settings.segments);
   checkRange("segments", settings.segments, 1, 8);
+  settings.scales = completeScales(settings);
   sortList("sizes", settings.sizes);
   checkRange("sizes", settings.sizes, 1, 65'536);
   if (settings.thetas.empty()) {
@@ -103,27 +128,44 @@ StudySettings completed(StudySettings settings, double aperture) {
   return settings;
 }
 
-int middleOf(const std::vector<int>& sorted) { return sorted[sorted.size() / 2]; }
+template <class T>
+T middleOf(const std::vector<T>& sorted) {
+  return sorted[sorted.size() / 2];
+}
+
+std::vector<int> slicesOf(const StudyMethod& method, const StudySettings& settings, int leastSlices) {
+  if (!settings.slices.empty()) return settings.slices;
+  std::vector<int> slices = settings.quick ? method.quickSlices : method.slices;
+  std::erase_if(slices, [&](int count) { return count < leastSlices; });
+  if (slices.empty())
+    throw InvalidArgument("slices: fewer than " + std::to_string(leastSlices) + " cannot be drawn, and " + method.name +
+                          " has no more to sweep; give others");
+  return slices;
+}
+
+std::vector<int> detailsOf(const StudyMethod& method, const StudySettings& settings) {
+  return method.detail.name.empty() ? std::vector<int>{0} : settings.details.at(method.detail.name);
+}
+
+StudyCase baseOf(const StudyPlan& plan, const StudyMethod& method) {
+  StudyCase base;
+  base.method = method.name;
+  base.slices = middleOf(plan.slices.at(method.name));
+  base.segments = method.fineSegments ? kAutomaticSegments : plan.settings.segments.front();
+  base.detail = middleOf(detailsOf(method, plan.settings));
+  base.bits = plan.baseBits;
+  base.size = plan.baseSize;
+  base.theta = plan.baseTheta;
+  return base;
+}
 
 // Everything that a method is swept over, each value once.
 class CaseList {
  public:
-  CaseList(const StudyPlan& plan, const StudyMethod& method, std::vector<StudyCase>& cases)
-      : plan_(plan), method_(method), cases_(cases) {}
+  CaseList(const StudyCase& base, std::vector<StudyCase>& cases) : base_(base), cases_(cases) {}
 
-  StudyCase base() const {
-    StudyCase one;
-    one.method = method_.name;
-    one.slices = plan_.baseSlices;
-    one.segments = plan_.baseSegments;
-    one.detail = method_.detail.name.empty() ? 0 : plan_.baseDetails.at(method_.detail.name);
-    one.bits = plan_.baseBits;
-    one.size = plan_.baseSize;
-    one.theta = plan_.baseTheta;
-    return one;
-  }
   void add(StudyCase one) {
-    if (method_.model == Model::emission) {
+    if (studyMethod(one.method).model == Model::emission) {
       one.theta = 0;
       one.bits.occlusion = one.bits.eye;
     }
@@ -132,34 +174,38 @@ class CaseList {
   template <class T>
   void sweep(T StudyCase::*field, const std::vector<T>& values) {
     for (const T& value : values) {
-      StudyCase one = base();
+      StudyCase one = base_;
       one.*field = value;
       add(one);
     }
   }
+  // With all slices for each value.
+  template <class T>
+  void sweep(T StudyCase::*field, const std::vector<T>& values, const std::vector<int>& slices) {
+    for (const T& value : values)
+      for (const int count : slices) {
+        StudyCase one = base_;
+        one.*field = value;
+        one.slices = count;
+        add(one);
+      }
+  }
 
  private:
-  const StudyPlan& plan_;
-  const StudyMethod& method_;
+  const StudyCase& base_;
   std::vector<StudyCase>& cases_;
 };
 
 void appendCases(StudyPlan& plan, const StudyMethod& method) {
   const StudySettings& settings = plan.settings;
-  CaseList list(plan, method, plan.cases);
-  const std::vector<int> none{0};
-  const std::vector<int>& details = method.detail.name.empty() ? none : settings.details.at(method.detail.name);
-  for (const int detail : details)
-    for (const int slices : settings.slices) {
-      StudyCase one = list.base();
-      one.detail = detail;
-      one.slices = slices;
-      list.add(one);
-    }
+  const std::vector<int>& slices = plan.slices.at(method.name);
+  CaseList list(plan.bases.at(method.name), plan.cases);
+  list.sweep(&StudyCase::detail, detailsOf(method, settings), slices);
   list.sweep(&StudyCase::segments, settings.segments);
   list.sweep(&StudyCase::bits, settings.bits);
   list.sweep(&StudyCase::size, settings.sizes);
-  list.sweep(&StudyCase::theta, settings.thetas);
+  if (method.windows) list.sweep(&StudyCase::scale, *settings.scales);
+  list.sweep(&StudyCase::theta, settings.thetas, slices);
 }
 
 void appendReference(StudyPlan& plan, const StudyReference& reference) {
@@ -171,14 +217,15 @@ void appendReference(StudyPlan& plan, const StudyReference& reference) {
 
 StudySettings quickStudySettings() {
   StudySettings quick;
+  quick.quick = true;
   for (const StudyMethod& method : studyMethods()) {
     if (!method.quick) continue;
     quick.methods.push_back(method.name);
     if (!method.detail.name.empty()) quick.details[method.detail.name] = method.detail.quick;
   }
-  quick.slices = {32, 64, 128, 256, 512};
   quick.bits = {{32, 32}, {16, 16}};
-  quick.segments = {1, 4};
+  quick.segments = {1};
+  quick.scales = std::vector<double>();
   quick.sizes = {64, 128};
   quick.repeats = 3;
   quick.directions = 48;
@@ -190,10 +237,12 @@ std::string StudyCase::id() const {
   const StudyMethod& known = studyMethod(method);
   std::string text = method;
   if (!known.detail.name.empty()) text += "-" + known.detail.symbol + std::to_string(detail);
-  text += "-N" + std::to_string(slices) + "-k" + std::to_string(segments) + "-e" + std::to_string(bits.eye);
+  text += "-N" + std::to_string(slices) + "-k" + (segments == kAutomaticSegments ? "a" : std::to_string(segments)) +
+          "-e" + std::to_string(bits.eye);
   if (known.model != Model::emission) text += "o" + std::to_string(bits.occlusion);
   text += "-s" + std::to_string(size);
   if (known.model != Model::emission) text += "-t" + jsonDegrees(theta);
+  if (scale > 0) text += "-w" + jsonNumber(scale);
   return text;
 }
 
@@ -208,19 +257,21 @@ StudyReference StudyPlan::referenceOf(const StudyCase& one) const {
   return {model, one.size, model == Model::emission ? 0 : one.theta};
 }
 
-StudyPlan planStudy(const StudySettings& settings, double aperture) {
+StudyPlan planStudy(const StudySettings& settings, double aperture, int leastSlices) {
   StudyPlan plan;
   plan.settings = completed(settings, aperture);
   const StudySettings& complete = plan.settings;
-  plan.baseSlices = middleOf(complete.slices);
-  plan.baseSegments = complete.segments.front();
   plan.baseSize = complete.sizes.back();
   plan.baseBits = complete.bits.back();
   const auto& thetas = complete.thetas;
   const auto own = std::find_if(thetas.begin(), thetas.end(), [&](double theta) { return sameAngle(theta, aperture); });
   plan.baseTheta = own != thetas.end() ? *own : thetas.front();
-  for (const auto& [name, values] : complete.details) plan.baseDetails[name] = middleOf(values);
-  for (const std::string& name : complete.methods) appendCases(plan, studyMethod(name));
+  for (const std::string& name : complete.methods) {
+    const StudyMethod& method = studyMethod(name);
+    plan.slices[name] = slicesOf(method, complete, leastSlices);
+    plan.bases[name] = baseOf(plan, method);
+    appendCases(plan, method);
+  }
   for (const StudyCase& one : plan.cases) appendReference(plan, plan.referenceOf(one));
   // The model error: the cone beside the whole sphere, at the base size.
   const bool occlusion = std::any_of(plan.references.begin(), plan.references.end(),

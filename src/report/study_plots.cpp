@@ -89,7 +89,7 @@ Plot detailPlot(const StudyRecord& record, const StudyMethod::Detail& detail) {
     const StudyMethod& method = studyMethod(name);
     if (method.detail.name != detail.name) continue;
     const std::vector<SliceSeries> series = sliceSeries(record, method.model);
-    for (const int slices : record.plan.settings.slices) {
+    for (const int slices : record.plan.slices.at(name)) {
       PlotSeries line{method.title + ", N = " + std::to_string(slices), PlotStyle::line, {}, false};
       for (const SliceSeries& one : series)
         for (const CaseResult* result : one.cases)

@@ -14,7 +14,7 @@ namespace umbrick {
 namespace {
 using Json = nlohmann::ordered_json;
 
-constexpr int kFormat = 1;  // of study.json
+constexpr int kFormat = 2;  // of study.json
 
 // --- what is written ---
 
@@ -26,14 +26,19 @@ Json number(const std::optional<double>& value) { return value ? number(*value) 
 
 Json toJson(const BufferBits& bits) { return {{"eye", bits.eye}, {"occlusion", bits.occlusion}}; }
 
-Json toJson(const StudySettings& settings) {
+Json settingsOf(const StudyPlan& plan) {
+  const StudySettings& settings = plan.settings;
   Json json;
   json["methods"] = settings.methods;
-  json["slices"] = settings.slices;
+  if (settings.slices.empty())
+    for (const std::string& name : settings.methods) json["slices"][name] = plan.slices.at(name);
+  else
+    json["slices"] = settings.slices;
   for (const auto& [name, values] : settings.details) json[name] = values;
   json["bits"] = Json::array();
   for (const BufferBits& bits : settings.bits) json["bits"].push_back(toJson(bits));
   json["segments"] = settings.segments;
+  json["scales"] = settings.scales.value_or(kUsualScales);
   json["sizes"] = settings.sizes;
   json["thetas"] = Json::array();
   for (const double theta : settings.thetas) json["thetas"].push_back(degrees(theta));
@@ -55,21 +60,23 @@ Json toJson(const Spread& spread) {
           {"max", spread.most}};
 }
 
-void addCase(Json& json, const StudyCase& what) {
+void addCase(Json& json, const CaseResult& result) {
+  const StudyCase& what = result.what;
   const StudyMethod& method = studyMethod(what.method);
   json["id"] = what.id();
   json["method"] = what.method;
   json["slices"] = what.slices;
-  json["segments"] = what.segments;
+  json["segments"] = result.segments;
   if (!method.detail.name.empty()) json[method.detail.name] = what.detail;
   json["bits"] = toJson(what.bits);
   json["size"] = what.size;
   if (method.model != Model::emission) json["theta"] = degrees(what.theta);
+  if (method.windows) json["window_scale"] = what.scale;
 }
 
 Json toJson(const CaseResult& result) {
   Json json;
-  addCase(json, result.what);
+  addCase(json, result);
   json["spacing_world"] = result.spacing;
   json["slices_drawn"] = result.slicesDrawn;
   json["time_ratio"] = toJson(result.timeRatio);
@@ -78,6 +85,14 @@ Json toJson(const CaseResult& result) {
   json["baseline_ms"] = result.baselineMs;
   json["load"] = result.load;
   json["bytes"] = {{"buffers", result.bufferBytes}, {"brick_textures", result.textureBytes}};
+  json["fragments"] = result.fragments;
+  json["pass_ms"] = {
+      {"extinction", result.passes.extinctionMs}, {"windows", result.passes.windowsMs}, {"eye", result.passes.eyeMs}};
+  if (studyMethod(result.what.method).windows)
+    json["windows"] = {{"directions", result.directions},
+                       {"texel_world", result.windowTexel},
+                       {"bytes", result.windowBytes},
+                       {"updates", result.windowUpdates}};
   json["error"] = toJson(result.error);
   return json;
 }
@@ -140,6 +155,7 @@ CaseResult readCase(const JsonValue& value, const StudyPlan& plan) {
   CaseResult result;
   result.what = *planned;
   result.spacing = value.at("spacing_world").number();
+  result.segments = value.at("segments").integer();
   result.slicesDrawn = value.at("slices_drawn").integer();
   result.timeRatio = readSpread(value.at("time_ratio"));
   result.pairs = value.at("pairs").integer();
@@ -149,6 +165,16 @@ CaseResult readCase(const JsonValue& value, const StudyPlan& plan) {
   const JsonValue bytes = value.at("bytes");
   result.bufferBytes = bytes.at("buffers").unsignedInteger();
   result.textureBytes = bytes.at("brick_textures").unsignedInteger();
+  result.fragments = value.at("fragments").unsignedInteger();
+  const JsonValue passes = value.at("pass_ms");
+  result.passes = {passes.at("extinction").number(), passes.at("windows").number(), passes.at("eye").number()};
+  if (studyMethod(result.what.method).windows) {
+    const JsonValue windows = value.at("windows");
+    result.directions = windows.at("directions").integer();
+    result.windowTexel = windows.at("texel_world").number();
+    result.windowBytes = windows.at("bytes").unsignedInteger();
+    result.windowUpdates = windows.at("updates").unsignedInteger();
+  }
   result.error = readError(value.at("error"));
   return result;
 }
@@ -211,13 +237,19 @@ void checkSame(const StudyRecord& record, const Json& stored, const std::string&
     refuseOther("of another volume",
                 firstDifference("volume." + std::string(key), stored.at("volume").at(key), volume.at(key)), source);
   // First, since the scene has the base size.
-  refuseOther("with other settings", firstDifference("", stored.at("settings"), toJson(record.plan.settings)), source);
+  refuseOther("with other settings", firstDifference("", stored.at("settings"), settingsOf(record.plan)), source);
   refuseOther("of another scene",
               firstDifference("", withoutFile(stored.at("scene")), withoutFile(Json::parse(printScene(record.scene)))),
               source);
 }
 
 }  // namespace
+
+std::array<double, 3> passShares(const PassTimes& passes) {
+  const double all = passes.extinctionMs + passes.windowsMs + passes.eyeMs;
+  if (!(all > 0)) return {0, 0, 1};
+  return {passes.extinctionMs / all, passes.windowsMs / all, passes.eyeMs / all};
+}
 
 const CaseResult* StudyRecord::find(const StudyCase& what) const {
   const auto at = std::find_if(cases.begin(), cases.end(), [&](const CaseResult& r) { return r.what == what; });
@@ -246,16 +278,13 @@ std::string printRecord(const StudyRecord& record) {
   Json json;
   json["umbrick_study"] = kFormat;
   json["complete"] = record.complete();
-  json["settings"] = toJson(record.plan.settings);
-  json["base"] = {{"slices", record.plan.baseSlices},
-                  {"segments", record.plan.baseSegments},
-                  {"bits", toJson(record.plan.baseBits)},
-                  {"size", record.plan.baseSize},
-                  {"theta", degrees(record.plan.baseTheta)}};
-  for (const auto& [name, value] : record.plan.baseDetails) json["base"][name] = value;
+  json["settings"] = settingsOf(record.plan);
+  json["base"] = Json::object();
+  for (const auto& [name, base] : record.plan.bases) json["base"][name] = base.id();
   json["machine"] = toJson(record.machine);
   json["volume"] = toJson(record.volume);
-  json["extent_world"] = record.extent;
+  json["extent_world"] = record.geometry.extent;
+  json["voxel_edge_world"] = record.geometry.voxelEdge;
   json["references"] = Json::array();
   for (const ReferenceResult& result : record.references) json["references"].push_back(toJson(result));
   json["model_errors"] = Json::array();
@@ -279,7 +308,7 @@ void restoreRecord(StudyRecord& record, std::string_view text, const std::string
   checkSame(record, Json::parse(text), source);
   StudyRecord restored = record;
   restored.machine = readMachine(root.at("machine"));
-  restored.extent = root.at("extent_world").number();
+  restored.geometry.extent = root.at("extent_world").number();
   for (const JsonValue& value : root.at("references").items())
     restored.references.push_back(readReferenceResult(value));
   for (const JsonValue& value : root.at("model_errors").items())

@@ -1,30 +1,42 @@
 // All that is known of a study: what it is of, where it ran, and what was measured so far. Kept as study.json.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "report/case_scene.h"
 #include "report/error_measures.h"
 #include "report/machine.h"
 #include "report/statistics.h"
 #include "report/volume_identity.h"
 #include "umbrick/report/study_plan.h"
+#include "umbrick/shade/slice_renderer.h"
 
 namespace umbrick {
 
 struct CaseResult {
   StudyCase what;
   double spacing = 0;                 // of slices, world units
+  int segments = 1;                   // of a slab
   std::int64_t slicesDrawn = 0;       // between the nearest and the farthest visible brick
   ErrorMeasures error;                // against the reference of its model
   Spread timeRatio;                   // over the baseline
   double caseMs = 0, baselineMs = 0;  // medians
   int pairs = 0;                      // of which these are
   std::uint64_t bufferBytes = 0, textureBytes = 0;
-  double load = 0;  // 1-minute load average when it was timed
+  std::uint64_t fragments = 0;                       // of bricks that passed the depth test, all passes
+  PassTimes passes;                                  // of one picture that waits for every pass and is not timed else
+  double windowTexel = 0;                            // edge, world units; the windows of methods that have them
+  std::uint64_t windowBytes = 0, windowUpdates = 0;  // bytes; texels that slices were taken through
+  int directions = 0;                                // of the light
+  double load = 0;                                   // 1-minute load average when it was timed
 };
+
+/// Of extinction, windows and eye: they sum up to 1.
+std::array<double, 3> passShares(const PassTimes& passes);
 
 struct ReferenceResult {
   StudyReference what;
@@ -45,7 +57,7 @@ struct StudyRecord {
   Scene scene;  // resolved; what the plan sweeps has a fixed value
   VolumeIdentity volume;
   Machine machine;
-  double extent = 0;  // of what is visible along the view axis, world units
+  StudyGeometry geometry;
   std::vector<ReferenceResult> references;
   std::vector<ModelError> modelErrors;
   std::vector<CaseResult> cases;

@@ -1,6 +1,7 @@
 #include "report/study_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "umbrick/reference/reference.h"
 #include "umbrick/scene/resolve.h"
 #include "umbrick/shade/prepare.h"
+#include "umbrick/slice/proxy_slices.h"
 
 namespace umbrick {
 namespace {
@@ -40,8 +42,8 @@ double estimatedWork(const StudyReference& what, const StudySettings& settings) 
 }
 double estimatedWork(const StudyCase& what, const StudySettings& settings) {
   const double pixels = 0.4 * what.size * what.size, baseline = pixels * kBaselineSlices / 4e7 + 0.02;
-  const double cost = 1 + 0.25 * what.detail * what.detail;
-  return (settings.repeats + 1) * (pixels * what.slices * cost / 4e7 + 1e-4 * what.slices + baseline);
+  const double cost = studyMethod(what.method).work(what.detail);
+  return (settings.repeats + 3) * (pixels * what.slices * cost / 4e7 + 1e-4 * what.slices + baseline);
 }
 
 // What makes a stored reference the one that is wanted.
@@ -57,8 +59,8 @@ double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Sce
   probe.method = "emission";
   probe.slices = 1;
   probe.size = 64;  // pixels: enough to know what lies in the picture
-  const double spacing = 0.5 * shortestVoxelEdge(grid.indexToWorld());
-  const Scene fine = caseScene(scene, probe, spacing);
+  const double voxelEdge = shortestVoxelEdge(grid.indexToWorld()), spacing = 0.5 * voxelEdge;
+  const Scene fine = caseScene(scene, probe, {spacing, voxelEdge});
   const std::unique_ptr<Bricks> bricks = cut(grid, fine, requiredApron(fine, grid.indexToWorld()));
   SliceRenderer renderer(context, *bricks, fine, quietly());
   const auto slices = static_cast<double>(renderer.render().stats.slices);
@@ -68,9 +70,17 @@ double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Sce
   return slices * spacing;
 }
 
+int leastSlices(const ScalarGrid& grid, const Scene& scene, double extent) {
+  if (scene.sampling.quadrature != Quadrature::preintegrated) return 1;
+  // See requiredApron: a slab reaches at most to the other side of a brick.
+  const glm::dvec3 reach = slabReach(indexView(scene.camera, grid.indexToWorld()), extent);
+  return std::max(
+      1, static_cast<int>(std::ceil(std::max({reach.x, reach.y, reach.z}) / (scene.bricks.interior - 0.5) - 1e-9)));
+}
+
 void checkCases(const GlContext& context, const ScalarGrid& grid, const StudyRecord& record) {
   for (const StudyCase& what : record.plan.cases) {
-    const Scene scene = caseScene(record.scene, what, record.extent);
+    const Scene scene = caseScene(record.scene, what, record.geometry);
     if (std::max(scene.camera.width, scene.camera.height) > context.maxTextureEdge2d())
       throw InvalidArgument("sizes: " + std::to_string(scene.camera.width) + " x " +
                             std::to_string(scene.camera.height) + " pixels are beyond the driver's limit of " +
@@ -157,7 +167,7 @@ const Bricks& StudyRun::bricksFor(const Scene& scene) {
 StudyRun::Baseline& StudyRun::baselineOf(int size) {
   if (!baseline_ || baseline_->size != size) {
     baseline_.reset();
-    const Scene scene = baselineScene(record_.scene, size, record_.extent);
+    const Scene scene = baselineScene(record_.scene, size, record_.geometry);
     baseline_.reset(new Baseline{size, SliceRenderer(context_, bricksFor(scene), scene, quietly())});
   }
   return *baseline_;
@@ -226,28 +236,46 @@ void StudyRun::measureModelError(const StudyReference& cone) {
 
 // --- cases ---
 
+RenderStats StudyRun::countedPicture(const Scene& scene) {
+  RenderOptions options;
+  options.timePasses = true;
+  SliceRenderer renderer(context_, bricksFor(scene), scene, options);
+  renderer.render();  // uploads and compiles
+  return renderer.render().stats;
+}
+
 void StudyRun::measureCase(const StudyCase& what) {
-  const Scene scene = caseScene(record_.scene, what, record_.extent);
+  const Scene scene = caseScene(record_.scene, what, record_.geometry);
   const StudyReference reference = record_.plan.referenceOf(what);
   const Image& truth = referenceImage(reference);
   Baseline& baseline = baselineOf(what.size);
-  SliceRenderer renderer(context_, bricksFor(scene), scene, quietly());
   Picture picture;
   CaseResult result;
   result.what = what;
   result.load = loadAverage();
   TimingOptions timing;
   timing.pairs = record_.plan.settings.repeats;
-  const PairedTimes times =
-      timePairs([&] { baseline.renderer.render(); }, [&] { picture = renderer.render(); }, timing);
+  PairedTimes times;
+  {
+    SliceRenderer renderer(context_, bricksFor(scene), scene, quietly());
+    times = timePairs([&] { baseline.renderer.render(); }, [&] { picture = renderer.render(); }, timing);
+  }
   result.timeRatio = spreadOf(ratios(times.caseMs, times.baselineMs));
   result.caseMs = spreadOf(times.caseMs).median;
   result.baselineMs = spreadOf(times.baselineMs).median;
   result.pairs = static_cast<int>(times.caseMs.size());
   result.spacing = scene.sampling.spacing;
+  result.segments = scene.sampling.segments;
   result.slicesDrawn = picture.stats.slices;
   result.bufferBytes = picture.stats.bufferBytes;
   result.textureBytes = picture.stats.textureBytes;
+  const RenderStats counted = countedPicture(scene);
+  result.fragments = counted.fragments;
+  result.passes = counted.passes;
+  result.directions = counted.directions;
+  result.windowTexel = counted.windowTexel;
+  result.windowBytes = counted.windowBytes;
+  result.windowUpdates = counted.windowUpdates;
   result.error = measureError(picture.colour, truth);
   const glm::dvec3 light = record_.scene.ambient;
   writeStudyPicture(folder_, what.id(), picture.colour);

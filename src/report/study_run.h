@@ -18,6 +18,9 @@ using StudyCallback = std::function<bool(const StudyProgress&)>;
 /// @throw InvalidArgument  nothing is visible
 double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Scene& scene);
 
+/// With fewer slices bricks are too narrow for the slabs. @param extent  of visibleExtent
+int leastSlices(const ScalarGrid& grid, const Scene& scene, double extent);
+
 /// Could all cases be drawn? @throw InvalidArgument  says which value of the plan is the reason
 void checkCases(const GlContext& context, const ScalarGrid& grid, const StudyRecord& record);
 
@@ -43,6 +46,8 @@ class StudyRun {
   bool measureReference(const StudyReference& what);
   void measureModelError(const StudyReference& cone);
   void measureCase(const StudyCase& what);
+  /// Of a picture that counts its fragments and times its passes, which makes it slower.
+  RenderStats countedPicture(const Scene& scene);
   void save() const;
 
   const GlContext& context_;

@@ -50,6 +50,8 @@ std::vector<std::string> header(bool milliseconds) {
                                  "pareto_front",
                                  "reference",
                                  "reference_error_rmse"};
+  names.insert(names.end(), {"window_scale", "window_texel_world", "window_bytes", "window_updates", "fragments",
+                             "extinction_share", "windows_share", "eye_share"});
   if (milliseconds) names.insert(names.end(), {"case_ms", "baseline_ms"});
   return names;
 }
@@ -63,7 +65,7 @@ std::vector<std::string> cells(const StudyRecord& record, const CaseResult& resu
   std::vector<std::string> values{what.id(),
                                   what.method,
                                   std::to_string(what.slices),
-                                  std::to_string(what.segments),
+                                  std::to_string(result.segments),
                                   method.detail.name,
                                   hasDetail ? std::to_string(what.detail) : "",
                                   std::to_string(what.bits.eye),
@@ -88,6 +90,13 @@ std::vector<std::string> cells(const StudyRecord& record, const CaseResult& resu
                                   onFront ? "1" : "0",
                                   reference.id(),
                                   cell(referenceError(record, reference))};
+  if (method.windows)
+    values.insert(values.end(), {what.scale > 0 ? cell(what.scale) : "auto", cell(result.windowTexel),
+                                 std::to_string(result.windowBytes), std::to_string(result.windowUpdates)});
+  else
+    values.insert(values.end(), 4, "");
+  values.push_back(std::to_string(result.fragments));
+  for (const double share : passShares(result.passes)) values.push_back(cell(share));
   if (!record.machine.software) {
     values.push_back(cell(result.caseMs));
     values.push_back(cell(result.baselineMs));

@@ -11,11 +11,13 @@ namespace umbrick {
 inline StudyRecord inventedStudy() {
   constexpr double kDegree = 3.14159265358979323846 / 180;
   StudySettings settings;
-  settings.methods = {"emission", "dos"};
+  settings.methods = {"emission", "dos", "ordinates"};
   settings.slices = {8, 16, 32};
   settings.details["footprint"] = {2, 3};
+  settings.details["directions"] = {4, 8};
   settings.bits = {{16, 16}, {32, 32}};
   settings.segments = {1, 2};
+  settings.scales = {0.5, 1};
   settings.sizes = {16, 24};
   settings.thetas = {60 * kDegree, 80 * kDegree};
   StudyRecord record;
@@ -26,7 +28,7 @@ inline StudyRecord inventedStudy() {
   record.scene = studyScene(scene, record.plan, 1);
   record.volume = {"/data/a <b> & \"c\".vdb", 12345, 0xdeadbeef};
   record.machine = {"a CPU & more", 2, "OSMesa: llvmpipe <x>", true, "0.0", "compiler", "gnuplot 5.4"};
-  record.extent = 10.0 / 3;
+  record.geometry = {10.0 / 3, 0.25};
   for (const StudyReference& what : record.plan.references)
     record.references.push_back({what, 1234.5, 17.25, {0.001, 0.01, 0.005, 1e-5, 0.999, 0.01}});
   for (const StudyReference& what : record.plan.references)
@@ -35,11 +37,13 @@ inline StudyRecord inventedStudy() {
   for (const StudyCase& what : record.plan.cases) {
     CaseResult result;
     result.what = what;
-    result.spacing = record.extent / what.slices;
+    result.spacing = record.geometry.extent / what.slices;
+    const bool windows = studyMethod(what.method).windows;
+    result.segments = caseScene(record.scene, what, record.geometry).sampling.segments;
     result.slicesDrawn = what.slices + 1;
     const double rmse = 0.3 * result.spacing / (1 + what.detail) + (what.bits.eye == 16 ? 0.01 : 0);
     result.error = {rmse, 5 * rmse, 4 * rmse, rmse * rmse, 1 - rmse, 2 * rmse};
-    const double time = what.slices * (1.0 + what.detail) / 32;
+    const double time = what.slices * (1.0 + what.detail) / (windows ? 96 : 32);
     result.timeRatio = {0.8 * time, 0.9 * time, time, 1.1 * time, 1.3 * time};
     result.caseMs = 40 * time;
     result.baselineMs = 40;
@@ -47,6 +51,14 @@ inline StudyRecord inventedStudy() {
     result.bufferBytes = 1000;
     result.textureBytes = 2000;
     result.load = 0.5;
+    result.fragments = 100'000;
+    result.passes = {windows ? 1.0 : 0.0, windows ? 3.0 : 0.0, 4};
+    if (windows) {
+      result.directions = what.detail;
+      result.windowTexel = what.scale > 0 ? 0.25 / what.scale : 0.5;
+      result.windowBytes = 3'000'000;
+      result.windowUpdates = 5'000'000;
+    }
     record.cases.push_back(result);
   }
   return record;

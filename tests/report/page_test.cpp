@@ -52,10 +52,10 @@ TEST_CASE("The page is well-formed, whatever names there are", "[report]") {
   const std::string page = pageOf(inventedStudy(), folder);
   CHECK(xmlFault(page) == "");
   CHECK_THAT(page, Contains("a &lt;b&gt; &amp; &quot;c&quot;.vdb") && !Contains("a <b>"));
-  // One plot per model for time and for convergence, one for the footprint.
+  // One plot per model for time and for convergence, one for the footprint and one for the directions.
   std::size_t plots = 0;
   for (std::size_t at = 0; (at = page.find("<svg", at)) != std::string::npos; ++at) ++plots;
-  CHECK(plots == 5);
+  CHECK(plots == 6);
   CHECK_THAT(page, Contains("order 1.00"));  // inventedStudy's error is proportional to d
   CHECK_THAT(page, Contains("data:image/png;base64,iVBORw0KGgo"));
   CHECK_THAT(page, Contains("missing"));  // the pictures that are not there
@@ -124,6 +124,14 @@ TEST_CASE("The table has a row per case, of as many columns as the head, that re
     CHECK(std::stod(cells[column("rmse")]) == record.cases[i].error.rmse);
     CHECK(std::stod(cells[column("time_ratio")]) == record.cases[i].timeRatio.median);
     CHECK(std::stod(cells[column("reference_error_rmse")]) == 0.001);
+  }
+  // Only ordinates has windows; the shares of the passes are those of its picture.
+  for (const std::string& line : std::vector<std::string>(lines.begin() + 1, lines.end())) {
+    const std::vector<std::string> cells = split(line, ',');
+    const bool windows = cells[column("method")] == "ordinates";
+    CHECK(cells[column("window_texel_world")].empty() == !windows);
+    CHECK(cells[column("windows_share")] == (windows ? "0.375" : "0"));
+    CHECK(cells[column("eye_share")] == (windows ? "0.5" : "1"));
   }
   // Milliseconds say something of hardware only.
   CHECK(std::find(head.begin(), head.end(), "case_ms") == head.end());

@@ -196,7 +196,7 @@ TEST_CASE("What a study cannot use is refused before anything is written", "[rep
   fs::create_directory(study.report());
   writeBytes(study.report() / "notes.txt", "mine");
   CHECK_THAT(refusal(), Contains("report: holds files but no study.json"));
-  writeBytes(study.report() / "study.json", "{\"umbrick_study\": 1}");
+  writeBytes(study.report() / "study.json", "{\"umbrick_study\": 2}");
   const auto before = contentsOf(study.report());
   CHECK_THAT(
       complaint<IoError>([&] { runStudy(*context, study.grid, study.resolved(), study.settings, study.report()); }),

@@ -24,7 +24,7 @@ StudyRecord unmeasured() {
   record.references.clear();
   record.modelErrors.clear();
   record.cases.clear();
-  record.extent = 0;
+  record.geometry.extent = 0;
   return record;
 }
 
@@ -53,6 +53,8 @@ TEST_CASE("What is written of a study is read back to the last bit", "[report]")
     CHECK(a.timeRatio == b.timeRatio);
     CHECK(a.spacing == b.spacing);
     CHECK(a.slicesDrawn == b.slicesDrawn);
+    CHECK(a.windowTexel == b.windowTexel);
+    CHECK(a.passes.windowsMs == b.passes.windowsMs);
   }
 }
 
@@ -62,8 +64,9 @@ TEST_CASE("The record is JSON that names each case and its numbers", "[report]")
   CHECK(json["complete"] == true);
   REQUIRE(json["cases"].size() == record.cases.size());
   const Json& last = json["cases"].back();
-  CHECK(last["method"] == "dos");
-  CHECK(last["footprint"] == 3);
+  CHECK(last["method"] == "ordinates");
+  CHECK(last["directions"] == 8);
+  CHECK(last["windows"]["updates"] == record.cases.back().windowUpdates);
   CHECK(last["theta"] == 80);
   CHECK(last["time_ratio"]["median"] == record.cases.back().timeRatio.median);
   CHECK(last["error"]["rmse"] == record.cases.back().error.rmse);
@@ -129,7 +132,7 @@ TEST_CASE("A damaged record is reported with its place, and changes nothing", "[
     change(json);
     return fault(json.dump(2));
   };
-  CHECK_THAT(changed([](Json& j) { j["umbrick_study"] = 9; }), Contains("umbrick_study: expected 1, found 9"));
+  CHECK_THAT(changed([](Json& j) { j["umbrick_study"] = 9; }), Contains("umbrick_study: expected 2, found 9"));
   CHECK_THAT(changed([](Json& j) { j.erase("settings"); }), Contains("settings"));
   CHECK_THAT(changed([](Json& j) { j["cases"][0]["id"] = "dos-n9"; }), Contains("cases[0].id") && Contains("'dos-n9'"));
   CHECK_THAT(changed([](Json& j) { j["cases"][0]["pairs"] = "five"; }), Contains("cases[0].pairs"));

@@ -17,9 +17,10 @@ namespace {
 
 const std::string kSmoke = "study '" UMBRICK_ASSETS "/densityAndHeat.vdb' --tf smoke ";
 // Every axis has two values, all of them small.
-const std::string kTiny = kSmoke +
-                          "--quick --slices 16 32 --footprints 1 2 --sizes 16 32 --thetas 30 60 --repeats 1 "
-                          "--reference-directions 8 --reference-tolerance 0.05 -o report";
+const std::string kTiny =
+    kSmoke +
+    "--quick --slices 16 32 --footprints 1 2 --directions 2 4 --scales 0.5 --sizes 16 32 --thetas 30 60 --repeats 1 "
+    "--reference-directions 8 --reference-tolerance 0.05 -o report";
 
 // The commands of a case in the page, as a shell takes them.
 std::string commandsOf(const std::string& page, const std::string& id) {
@@ -54,7 +55,7 @@ TEST_CASE("A study of a bundled volume is written whole, and its commands make i
       CHECK(fs::exists(report / "plots" / (std::string(plot) + ending)));
 
   // One of each method: render and compare as the page says.
-  for (const char* method : {"emission", "dos"}) {
+  for (const char* method : {"emission", "dos", "ordinates"}) {
     const Json& one = *std::find_if(cases.begin(), cases.end(), [&](const Json& c) { return c["method"] == method; });
     const std::string commands = commandsOf(page, one["id"]);
     const std::size_t line = commands.find('\n');
@@ -96,7 +97,10 @@ TEST_CASE("Studies that cannot be say so in one line and leave nothing behind", 
   check(kSmoke + "-o r --bits 8", 1, "bits: is 8, must be 16 or 32");
   check(kSmoke + "-o r --thetas 90", 1, "thetas: is 90 degrees");
   check(kSmoke + "-o r --reference-directions 1", 2, "--reference-directions");
-  check(kSmoke + "-o r --methods emission --footprints 2", 1, "no method of this study has a footprint to sweep");
+  check(kSmoke + "-o r --methods emission --footprints 2", 1, "no method of this study has footprints to sweep");
+  check(kSmoke + "-o r --methods dos --scales 1", 1, "no method of this study has windows");
+  check(kSmoke + "-o r --scales 0", 1, "scales: is 0, must be in [0.015625, 64]");
+  check(kSmoke + "-o r --directions 1025", 1, "directions: is 1025, must be in [1, 1024]");
   check(kSmoke + "-o r --slices 1", 1, "slices: 1 are too few: ");
   check("study none.json -o r", 1, "none.json");
   fs::create_directory(folder.path() / "other");

@@ -1,6 +1,7 @@
 // What a study measures: the methods, the values that are swept, and the list of cases that follows.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,15 +26,27 @@ struct StudyMethod {
   } detail;
   void (*apply)(int detail, Scene& scene);  // makes a scene of the model one of this method
   std::string (*options)(int detail);       // the same as options of `umbrick render`
+  double (*work)(int detail);               // of a slice, about so many times that of emission
+  std::vector<int> slices, quickSlices;     // where it is worth using; swept unless the user says others
   bool usual = true;                        // part of a study unless the user says otherwise
   bool quick = false;                       // and of a quick one
+  bool fineSegments = false;  // at the base slabs are cut into kAutomaticSegments, else into the fewest that are swept
+  bool windows = false;       // carries light in windows, whose scale is swept
 };
+
+/// As many segments as make them no longer than this, at most 8.
+inline constexpr int kAutomaticSegments = 0;
+inline constexpr double kLongestSegmentVoxels = 0.6;
+/// @param spacing    of slices, world units
+/// @param voxelEdge  the shortest, world units
+int automaticSegments(double spacing, double voxelEdge);
 
 /// emission       slices, pixels that are opaque are shaded no more (as the scene says)
 /// emission-full  the same without that shortcut, the reference point of convergence
 /// dos            directional occlusion shading, Algorithm 3 of Schott et al. 2009
 /// dos-2          the same, Algorithm 2
 /// dos-two-pass   Algorithm 3 in two passes per slice
+/// ordinates      a set of directions, each with a transmittance of its own, in slabs of several segments
 const std::vector<StudyMethod>& studyMethods();
 /// @throw InvalidArgument  another name; lists those there are
 const StudyMethod& studyMethod(std::string_view name);
@@ -46,19 +59,24 @@ struct BufferBits {
 
 /// The values that are swept. The order within a list does not matter.
 struct StudySettings {
-  std::vector<std::string> methods;                  // empty: the usual ones
-  std::vector<int> slices{64, 128, 256, 512, 1024};  // through the visible extent of the volume along the view axis
-  std::map<std::string, std::vector<int>> details;   // by name of the detail; one left out: as the method says
+  std::vector<std::string> methods;  // empty: the usual ones
+  std::vector<int> slices;  // through the visible extent of the volume along the view axis; empty: as each method says
+  std::map<std::string, std::vector<int>> details;  // by name of the detail; one left out: as the method says
   std::vector<BufferBits> bits{{32, 32}, {32, 16}, {16, 32}, {16, 16}};
-  std::vector<int> segments{1, 2, 4};  // of a slab along the ray
+  std::vector<int> segments{1, 2, 4};         // of a slab along the ray
+  std::optional<std::vector<double>> scales;  // window texels per voxel edge, of methods that have windows; empty: none
   std::vector<int> sizes{128,
                          256};  // height of picture, eye and occlusion buffer, pixels; the width follows the scene's
   std::vector<double> thetas;   // rad; empty: the scene's and 80 degrees
   int repeats = 7;              // timed pairs of baseline and case, at least
   int directions = 256;         // of the references
   double tolerance = 1e-3;      // of the references
+  bool quick = false;           // where a method says what is swept, it says less
   bool operator==(const StudySettings&) const = default;
 };
+
+/// Scales that are swept unless the user says others.
+inline const std::vector<double> kUsualScales{0.25, 0.5, 1, 2};
 
 /// A small study, of minutes.
 StudySettings quickStudySettings();
@@ -66,12 +84,13 @@ StudySettings quickStudySettings();
 /// One picture that is timed and compared.
 struct StudyCase {
   std::string method;
-  int slices = 0, segments = 1;
-  int detail = 0;   // footprint n, directions K, ...; 0 when the method has none
-  BufferBits bits;  // occlusion equals eye where there is no occlusion buffer
+  int slices = 0, segments = 1;  // segments can be kAutomaticSegments
+  int detail = 0;                // footprint n, directions K, ...; 0 when the method has none
+  BufferBits bits;               // occlusion equals eye where there is no occlusion buffer
   int size = 0;
   double theta = 0;  // rad; 0 for emission
-  /// "dos-n3-N256-k1-e32o32-s256-t60"; also the name of its files.
+  double scale = 0;  // window texels per voxel edge; 0: automatic, or no windows
+  /// "dos-n3-N256-k1-e32o32-s256-t60", "ordinates-K16-N64-ka-e32o32-s256-t60-w0.5"; also the name of its files.
   std::string id() const;
   bool operator==(const StudyCase&) const = default;
 };
@@ -89,22 +108,25 @@ struct StudyReference {
 struct StudyPlan {
   StudySettings settings;  // complete: every default written out, lists sorted
   std::vector<StudyCase> cases;
-  std::vector<StudyReference> references;  // cases need them, or the model error at the base size
-  int baseSlices = 0, baseSegments = 1, baseSize = 0;
+  std::vector<StudyReference> references;          // cases need them, or the model error at the base size
+  std::map<std::string, std::vector<int>> slices;  // by method
+  std::map<std::string, StudyCase> bases;          // by method
+  int baseSize = 0;                                // the same for every method, and the next two
   BufferBits baseBits;
   double baseTheta = 0;
-  std::map<std::string, int> baseDetails;  // by name
 
   StudyReference referenceOf(const StudyCase& one) const;
 };
 
 /// The cases of a study: not all combinations, which would be thousands, but around a base point
-///   slices x detail      at the base of everything else
-///   bits, segments, sizes, thetas    each alone, at the base of everything else
+///   slices x detail, slices x theta     at the base of everything else
+///   bits, segments, sizes, scales       each alone, at the base of everything else
 /// for every method. The base is the middle of the slices and of the detail (the upper one of two), the most bits, the
-/// fewest segments, the largest size, and the scene's theta if it is swept, else the smallest.
-/// @param aperture  theta of the scene, rad
+/// fewest segments or automatic ones, the largest size, automatic windows, and the scene's theta if it is swept, else
+/// the smallest.
+/// @param aperture     theta of the scene, rad
+/// @param leastSlices  fewer cannot be drawn: the methods' own lists begin there
 /// @throw InvalidArgument  an unknown method, an empty list, a value out of range or given twice
-StudyPlan planStudy(const StudySettings& settings, double aperture);
+StudyPlan planStudy(const StudySettings& settings, double aperture, int leastSlices = 1);
 
 }  // namespace umbrick
