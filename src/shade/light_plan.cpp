@@ -19,7 +19,10 @@ Rectangle Rectangle::within(const Rectangle& other) const {
 }
 Rectangle Rectangle::grown(double by) const { return empty() ? *this : Rectangle{min - by, max + by}; }
 
-LightSlope lightSlope(const glm::dvec3& towards) { return {glm::dvec2(towards) / towards.z, 1 / towards.z}; }
+LightSlope lightSlope(const glm::dvec3& towards) {
+  const double along = std::max(towards.z, 1e-6);
+  return {glm::dvec2(towards) / along, 1 / along};
+}
 
 std::vector<Rectangle> neededRegions(const LightExtents& extents, std::span<const LightSlope> slopes) {
   const std::size_t count = extents.depths.size();
@@ -57,8 +60,8 @@ LightPlanner::LightPlanner(const LightExtents& extents, std::span<const LightSlo
 LightWindow LightPlanner::window(std::size_t direction, std::int64_t first, std::int64_t last) const {
   const Rectangle live = readFrom_[at(direction, first)].within(touchedUntil_[at(direction, last)]);
   if (live.empty()) return {};
-  const glm::ivec2 low(glm::floor(live.min)), high(glm::ceil(live.max));
-  return {low, high - low};
+  const glm::vec<2, std::int64_t> low(glm::floor(live.min)), high(glm::ceil(live.max));
+  return {low, glm::ivec2(high - low)};
 }
 
 std::vector<LightRun> LightPlanner::runs(std::int64_t first, std::int64_t last, int longest, double most) const {

@@ -27,7 +27,8 @@ struct LightSlope {
   glm::dvec2 slope;    // change across per depth on the way to the light, against the view direction
   double stretch = 1;  // length per depth: 1 / cos(angle to the view axis)
 };
-/// @param towards  unit length, along (right, up, towards the viewer), the last above 0
+/// @param towards  unit length, along (right, up, towards the viewer), the last above 0; less than 1e-6 counts as that,
+/// so that numbers of texels stay exact
 LightSlope lightSlope(const glm::dvec3& towards);
 
 /// The grid of points at which light is known on every slice: texel (i, j) covers
@@ -43,7 +44,8 @@ struct LightLattice {
 
 /// The window of one direction while it passes a run of slices: texels [first, first + size) of its own endless plane.
 struct LightWindow {
-  glm::ivec2 first{0}, size{0};
+  glm::vec<2, std::int64_t> first{0};  // grows with the depth times the slope
+  glm::ivec2 size{0};
 };
 
 /// Slices that are lit together, with what each direction needs for them.

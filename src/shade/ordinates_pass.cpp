@@ -355,7 +355,7 @@ class OrdinatesPass : public SlicePass {
   void setWindows(GlProgram& program, const LightRun& run, std::size_t first, std::size_t count) const {
     std::vector<glm::vec4> windows;
     for (std::size_t k = first; k < first + count; ++k) {
-      const glm::ivec2 texel = run.windows[k].first % windowSize_;
+      const glm::ivec2 texel(run.windows[k].first % glm::vec<2, std::int64_t>(windowSize_));
       windows.emplace_back(glm::vec2(run.windows[k].size),
                            glm::vec2(texel + windowSize_ * glm::ivec2(glm::lessThan(texel, glm::ivec2(0)))));
     }
@@ -369,20 +369,20 @@ class OrdinatesPass : public SlicePass {
     std::vector<glm::vec4> before;
     glm::ivec2 largest(0);
     for (std::size_t k = first; k < first + count; ++k) {
-      const glm::ivec2 from = open_[k].first - run.windows[k].first;
-      before.emplace_back(glm::vec2(from), glm::vec2(from + open_[k].size));
+      const glm::vec<2, std::int64_t> from = open_[k].first - run.windows[k].first;
+      before.emplace_back(glm::vec2(from), glm::vec2(from + glm::vec<2, std::int64_t>(open_[k].size)));
       largest = glm::max(largest, run.windows[k].size);
     }
+    setWindows(step_.current(), run, first, count);
+    step_.current().set("radiance", std::span(radiance_).subspan(first, count));
+    step_.current().set("direction_count", static_cast<int>(count));
+    step_.current().set("add", first > 0 ? 1 : 0);
     if (largest.x == 0 || largest.y == 0) return;
     setWindows(program, run, first, count);
     program.set("window_before", before);
     program.use();
     gl.DispatchCompute(tilesAlong(largest.x), tilesAlong(largest.y), static_cast<GLuint>(count));
     gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    setWindows(step_.current(), run, first, count);
-    step_.current().set("radiance", std::span(radiance_).subspan(first, count));
-    step_.current().set("direction_count", static_cast<int>(count));
-    step_.current().set("add", first > 0 ? 1 : 0);
   }
 
   // Through slice m of the run.
@@ -395,7 +395,7 @@ class OrdinatesPass : public SlicePass {
     for (std::size_t k = first; k < first + count; ++k) {
       const glm::dvec2 shift = glm::floor(extents_.depths[slice] / lattice_.texel * slopes_[k].slope + roundings_[k]);
       const double stretch = slopes_[k].stretch;
-      paths.emplace_back(glm::vec2(glm::dvec2(lattice_.first - run.windows[k].first) + shift), stretch,
+      paths.emplace_back(glm::vec2(glm::dvec2(lattice_.first) - glm::dvec2(run.windows[k].first) + shift), stretch,
                          1 / (1 + stretch));
     }
     program.set("path", paths);
