@@ -1,9 +1,10 @@
 // The part of one proxy slice that lies in one brick, lit by what the windows let through.
-// Reads   atlas, transfer (see medium.glsl)   visibility (see window_visibility.comp)
+// Reads   atlas, transfer (see medium.glsl)   visibility, visibility_weight (see window_step.comp)
 // Writes  eye  premultiplied RGBA, blended under: (ONE_MINUS_DST_ALPHA, ONE)
 //         aux  kAux: opacity-weighted visibility and depth, blended alike
 #include "shade/slab.glsl"
 layout(binding = 8) uniform sampler2DArray visibility;
+layout(binding = 9) uniform sampler2DArray visibility_weight;
 uniform vec4 lattice_map;  // view coordinates across to visibility's coordinates: xy scale, zw offset
 uniform vec3 whole_light;  // that nothing is in the way of
 flat in vec4 slab_centre;
@@ -22,7 +23,8 @@ void main() {
   Slab slab = evaluateSlab(slab_centre);
   vec2 p = screenPoint();
   vec2 across = kPerspective != 0 ? slab_centre.w * p : p;
-  vec4 light = textureLod(visibility, vec3(across * lattice_map.xy + lattice_map.zw, slice_layer), 0.0);
+  vec3 place = vec3(across * lattice_map.xy + lattice_map.zw, slice_layer);
+  vec4 light = textureLod(visibility, place, 0.0) / textureLod(visibility_weight, place, 0.0).r;
   float share = kColoured != 0 ? dot(light.rgb, vec3(1.0)) / dot(whole_light, vec3(1.0)) : light.r;
   float weighted = kColoured != 0 ? light.a : light.g;
   float stretch = rayStretch(p);

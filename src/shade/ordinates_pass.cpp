@@ -65,6 +65,7 @@ class OrdinatesPass : public SlicePass {
       const std::span<const SliceDraw> draws = drawsOf(frame.polygons.draws(), run);
       if (!draws.empty()) {
         frame.gl.BindTextureUnit(8, visibility_.name());
+        frame.gl.BindTextureUnit(9, weights_.name());
         sweep_.draw(frame, draws, eye_.current());
         frame.clock.lap(&PassTimes::eyeMs);
       }
@@ -75,10 +76,10 @@ class OrdinatesPass : public SlicePass {
     const auto texels = [](const glm::ivec2& size) {
       return static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
     };
-    stats.directions = static_cast<int>(slopes_.size());
+    stats.directions = static_cast<int>(slopes_.size()) - 1;
     stats.windowTexel = lattice_.texel;
     stats.windowBytes = texels(windowSize_) * slopes_.size() * static_cast<std::uint64_t>(windowBits_) / 8 +
-                        texels(lattice_.size) * static_cast<std::uint64_t>(slicesTogether_) * (coloured_ ? 20 : 12);
+                        texels(lattice_.size) * static_cast<std::uint64_t>(slicesTogether_) * (coloured_ ? 24 : 16);
     stats.bufferBytes += stats.windowBytes;
     stats.windowUpdates = static_cast<std::uint64_t>(firstTile_.back()) * kTile * kTile * slopes_.size();
   }
@@ -99,6 +100,9 @@ class OrdinatesPass : public SlicePass {
     coloured_ = false;
     slopes_.clear();
     radiance_.clear();
+    // The view axis comes first: it brings no light, but tells where the eye sees anything.
+    slopes_.push_back({glm::dvec2(0), 1});
+    radiance_.emplace_back(0.0f);
     for (const auto& [direction, radiance] : lights) {
       slopes_.push_back(lightSlope(
           {glm::dot(direction, axes.right), glm::dot(direction, axes.up), -glm::dot(direction, axes.forward)}));
@@ -200,7 +204,7 @@ class OrdinatesPass : public SlicePass {
       for (const LightRun& run : planner_->runs(sweep.first, sweep.last, 1, 0))
         for (const LightWindow& window : run.windows)
           area = std::max(area, static_cast<double>(window.size.x) * window.size.y);
-    const double perSlice = (coloured_ ? 20.0 : 12.0) * lattice_.size.x * lattice_.size.y;
+    const double perSlice = (coloured_ ? 24.0 : 16.0) * lattice_.size.x * lattice_.size.y;
     slicesTogether_ = static_cast<int>(std::clamp(kSliceBytes / perSlice, 1.0, static_cast<double>(kMostSlices)));
     for (const SweepRun& sweep : sweeps)
       for (LightRun& run : planner_->runs(sweep.first, sweep.last, slicesTogether_, 1.5 * area)) {
@@ -281,6 +285,7 @@ class OrdinatesPass : public SlicePass {
     };
     extinction_ = array(GL_R32F, lattice_.size, slicesTogether_, GL_NEAREST);
     extinctionTarget_ = makeFramebuffer(gl, {extinction_.name()});
+    weights_ = array(GL_R32F, lattice_.size, slicesTogether_, GL_LINEAR);
     visibility_ = array(visibilityFormat(), lattice_.size, slicesTogether_, GL_LINEAR);
     windows_ = array(windowFormat(frame), windowSize_, static_cast<int>(slopes_.size()), GL_NEAREST);
   }
@@ -315,6 +320,7 @@ class OrdinatesPass : public SlicePass {
     frame.clock.lap(&PassTimes::extinctionMs);
     gl.BindTextureUnit(5, extinction_.name());
     gl.BindImageTexture(0, windows_.name(), 0, GL_TRUE, 0, GL_READ_WRITE, windowFormat(frame));
+    gl.BindImageTexture(2, weights_.name(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_R32F);
     gl.BindImageTexture(1, visibility_.name(), 0, GL_TRUE, 0, GL_READ_WRITE, visibilityFormat());
     gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, tiles_.name());
     for (std::size_t first = 0; first < slopes_.size(); first += group_) {
@@ -440,7 +446,7 @@ class OrdinatesPass : public SlicePass {
   glm::ivec2 windowSize_{1};
   Sizes sizes_;
   int windowBits_ = 32;
-  GlTexture extinction_, visibility_, windows_;
+  GlTexture extinction_, visibility_, weights_, windows_;
   GlFramebuffer extinctionTarget_;
   GlBuffer tiles_;
   std::vector<int> firstTile_;     // by slice, and one more

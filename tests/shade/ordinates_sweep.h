@@ -34,6 +34,7 @@ inline std::vector<std::array<double, 5>> sweepOrdinates(const FieldBricks& volu
                      radiance.r,
                      {}});
   }
+  paths.push_back({0, 0, 1, 0, {}});
   // Texels of the lattice that the volume can be in.
   const int reach = static_cast<int>(std::ceil(glm::length(glm::dvec3(volume.domain.extent())) / texel)) + 2;
   const glm::dvec3 middle = glm::dvec3(
@@ -54,14 +55,20 @@ inline std::vector<std::array<double, 5>> sweepOrdinates(const FieldBricks& volu
         const double py = glm::dot(point - camera.eye, axes.up) / texel - 0.5;
         const int i = static_cast<int>(std::floor(px)), j = static_cast<int>(std::floor(py));
         const double fx = px - i, fy = py - j;
-        double share = 0, weighted = 0;
-        for (const Path& path : paths) {
-          const int u = i + shift(path.x), v = j + shift(path.y);
-          const double arrives = (1 - fy) * ((1 - fx) * path.at(u, v) + fx * path.at(u + 1, v)) +
-                                 fy * ((1 - fx) * path.at(u, v + 1) + fx * path.at(u + 1, v + 1));
-          share += path.weight * arrives;
-          weighted += path.weight * arrives / (1 + path.stretch);
+        double share = 0, weighted = 0, weights = 0;
+        // Texels count by how much of them is seen along the view axis, the last of the paths.
+        for (int corner = 0; corner < 4; ++corner) {
+          const int s = corner % 2, t = corner / 2;
+          const double seen = std::max(paths.back().at(i + s, j + t), 1e-3) * (s ? fx : 1 - fx) * (t ? fy : 1 - fy);
+          weights += seen;
+          for (const Path& path : paths) {
+            const double arrives = seen * path.weight * path.at(i + s + shift(path.x), j + t + shift(path.y));
+            share += arrives;
+            weighted += arrives / (1 + path.stretch);
+          }
         }
+        share /= weights;
+        weighted /= weights;
         const double tau = medium.sigma_t * d * ray.stretch();
         // Mean length of the paths of light over that to the eye, such that it is right for the most solid slabs.
         const double both = tau * (1 + (share / weighted - 1) / ray.stretch());
