@@ -65,7 +65,6 @@ void applyTransfer(const SceneOptions& options, const DefaultTransfer& defaultTr
 }
 
 void applyModel(const SceneOptions& options, Scene& scene) {
-  if (options.model) scene.model = parseModel(*options.model);
   OcclusionOptions& occlusion = scene.occlusion;
   if (options.theta) occlusion.aperture = *options.theta * kRadians;
   apply(options.footprint, occlusion.footprint);
@@ -80,13 +79,18 @@ void applyModel(const SceneOptions& options, Scene& scene) {
   if (options.background) scene.background = toVector(*options.background);
 }
 
-// Before what it stands for is given one by one.
-void applyQuality(const SceneOptions& options, Scene& scene) {
+// Before what it stands for is given one by one. A volume alone says nothing of its slices: then `normal` does, unless
+// the command line says anything of them.
+void applyQuality(const SceneOptions& options, bool fromScene, Scene& scene) {
   if (options.quality)
-    applyQuality(*options.quality == "draft"    ? Quality::draft
-                 : *options.quality == "normal" ? Quality::normal
-                                                : Quality::high,
-                 scene);
+    return applyQuality(*options.quality == "draft"    ? Quality::draft
+                        : *options.quality == "normal" ? Quality::normal
+                                                       : Quality::high,
+                        scene);
+  const bool byOrdinates = (scene.model == Model::cone || scene.model == Model::lights) && options.method != "dos";
+  const bool said =
+      options.spacing || options.segments || options.spacingUnit || options.directions || options.occlusionScale;
+  if (byOrdinates && !fromScene && !said) applyQuality(Quality::normal, scene);
 }
 
 void applySampling(const SceneOptions& options, Scene& scene) {
@@ -153,13 +157,13 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
           "sphere) or lights (the scene's light.sources); cone-ray and ambient only in the reference [emission]")
       ->check(CLI::IsMember({"emission", "cone", "cone-ray", "ambient", "lights"}))
       ->group(light);
-  command.add_option("--method", o.method, "of the models cone (dos or ordinates) and lights (ordinates) [dos]")
+  command.add_option("--method", o.method, "of the models cone (dos or ordinates) and lights (ordinates) [ordinates]")
       ->check(CLI::IsMember({"dos", "ordinates"}))
       ->group(light);
   command
       .add_option("--quality", o.quality,
                   "draft, normal or high: ordinates with spacing, segments and directions that go together; options "
-                  "that name one of them win")
+                  "that name one of them win [normal for a .vdb when no option does]")
       ->check(CLI::IsMember({"draft", "normal", "high"}))
       ->group(light);
   command
@@ -250,7 +254,8 @@ Scene makeScene(const SceneOptions& options, const DefaultTransfer& defaultTrans
   apply(options.grid, scene.volume.grid);
   applyTransfer(options, defaultTransfer, scene);
   applyCamera(options, scene);
-  applyQuality(options, scene);
+  if (options.model) scene.model = parseModel(*options.model);
+  applyQuality(options, options.input.extension() == ".json", scene);
   applyModel(options, scene);
   applySampling(options, scene);
   applyClipping(options, scene);

@@ -95,6 +95,7 @@ inline Scene plainScene(const TransferFunction& transfer, const Camera& camera, 
   scene.transfer = transfer;
   scene.camera = camera;
   scene.orbit.reset();
+  scene.method = Method::dos;  // what tests of `cone` that name no method are about
   scene.sampling.spacing = spacing;
   scene.sampling.spacingInVoxels = false;
   scene.sampling.saturation = 0;

@@ -95,7 +95,7 @@ struct Scene {
   Camera camera;
   std::optional<Orbit> orbit = Orbit{};  // when set, eye, lookAt, up and viewHeight follow from the volume
   Model model = Model::emission;
-  Method method = Method::dos;
+  Method method = Method::ordinates;
   glm::dvec3 ambient{1};                 // L_a, radiance from every direction
   std::optional<glm::dvec3> background;  // L_b; when set the picture is opaque (alpha 1)
   std::vector<LightSource> lights;       // for the model `lights`, which needs one or more
