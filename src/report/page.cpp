@@ -88,11 +88,11 @@ std::string speedSections(const StudyRecord& record, const StudyFolder& folder,
   for (const Model model : {Model::cone, Model::emission}) {
     const ComparableCases* group = baseGroup(groups, record.plan, model);
     if (!group) continue;
-    const std::string pareto = plotFigure(
-        folder, paretoPlot(record, model),
-        "Lines join cases that differ in their slices (N) alone, the same N on each; bars are the quartiles of "
-        "the time. No case lies below and left of the staircase. " +
-            floorText(record, model));
+    const std::string pareto = plotFigure(folder, paretoPlot(record, model),
+                                          "Lines join cases that differ in their slices (N) alone, the same N on each "
+                                          "of a method; bars are the quartiles of "
+                                          "the time. No case lies below and left of the staircase. " +
+                                              floorText(record, model));
     const std::string convergence =
         plotFigure(folder, convergencePlot(record, model),
                    model == Model::emission
@@ -181,9 +181,11 @@ std::string assembled(const StudyRecord& record, const StudyFolder& folder) {
     std::string id, title, html;
   };
   const Part parts[]{
+      {"comparison", "With and without windows", comparisonTables(record, groups)},
       {"base", "Around the base point", aroundBaseTable(record)},
       {"model", "Model error", modelErrorTable(record) + modelPictures(record, folder)},
       {"pictures", "Pictures", pictureSections(record, folder, groups)},
+      {"windows", "What windows cost", windowTable(record)},
       {"cases", "All cases", caseTable(record, groups)},
       {"machine", "How it was measured", machineSection(record)},
       {"commands", "To repeat it", commandList(record)},

@@ -24,6 +24,10 @@ std::string describeSegments(int segments);
 std::string frontTable(const StudyRecord& record, const ComparableCases& group);
 std::string aroundBaseTable(const StudyRecord& record);
 std::string modelErrorTable(const StudyRecord& record);
+/// Methods with windows beside those without.
+std::string comparisonTables(const StudyRecord& record, const std::vector<ComparableCases>& groups);
+/// What windows take in memory and in time.
+std::string windowTable(const StudyRecord& record);
 std::string caseTable(const StudyRecord& record, const std::vector<ComparableCases>& groups);
 std::string referenceTable(const StudyRecord& record);
 

@@ -149,6 +149,71 @@ std::string modelErrorTable(const StudyRecord& record) {
          printHtml(table);
 }
 
+std::string comparisonTables(const StudyRecord& record, const std::vector<ComparableCases>& groups) {
+  HtmlTable reached;
+  reached.head = heads({"theta", "without windows", "with windows", "time", "", "RMSE", "", "times as fast"}, 3);
+  for (const ComparableCases& group : groups) {
+    if (group.model != Model::cone || group.size != record.plan.baseSize) continue;
+    bool first = true;
+    for (const Comparison& one : fastestOfNoLargerError(group)) {
+      HtmlTable::Row row{{words(first ? jsonDegrees(group.theta) : ""), text(linked(one.without->what, record.plan)),
+                          one.with ? text(linked(one.with->what, record.plan)) : words("not reached"),
+                          timeCell(one.without->timeRatio)},
+                         first ? "new" : ""};
+      if (one.with)
+        row.cells.insert(row.cells.end(), {timeCell(one.with->timeRatio), number(one.without->error.rmse),
+                                           number(one.with->error.rmse), number(one.speedup())});
+      else
+        row.cells.insert(row.cells.end(), {{"-"}, number(one.without->error.rmse), {"-"}, {"-"}});
+      reached.rows.push_back(row);
+      first = false;
+    }
+  }
+  std::string html;
+  if (!reached.rows.empty())
+    html +=
+        "<p>Left the Pareto front of the methods without windows, right the fastest case with windows whose error "
+        "is no larger: the left one of a pair of numbers is of the left case. Cases off that front are slower "
+        "than one on it with no larger error.</p>\n" +
+        printHtml(reached);
+  HtmlTable few;
+  few.head = heads({"with windows", "without windows", "times as fast", "times the RMSE"}, 2);
+  for (const Comparison& one : fewBesideMany(record))
+    few.rows.push_back({{text(linked(one.with->what, record.plan)), text(linked(one.without->what, record.plan)),
+                         number(one.speedup()), number(one.errorRatio())}});
+  if (!few.rows.empty())
+    html += "<p>Few directions in few slices beside " + std::to_string(kManySlices) + " slices.</p>\n" + printHtml(few);
+  return html;
+}
+
+std::string windowTable(const StudyRecord& record) {
+  HtmlTable table;
+  table.sortable = true;
+  table.head = heads({"case", "time", "RMSE", "segments", "texel", "MiB", "updates, M", "fragments, M", "extinction, %",
+                      "windows, %", "eye, %"},
+                     1);
+  for (const StudyCase& what : record.plan.cases) {
+    const CaseResult* result = record.find(what);
+    if (!result || !studyMethod(what.method).windows) continue;
+    HtmlTable::Row row{{text(linked(what, record.plan)),
+                        timeCell(result->timeRatio),
+                        number(result->error.rmse),
+                        {std::to_string(result->segments)},
+                        number(result->windowTexel),
+                        number(static_cast<double>(result->windowBytes) / (1 << 20)),
+                        number(1e-6 * static_cast<double>(result->windowUpdates)),
+                        number(1e-6 * static_cast<double>(result->fragments))}};
+    for (const double share : passShares(result->passes)) row.cells.push_back(number(100 * share));
+    table.rows.push_back(row);
+  }
+  if (table.rows.empty()) return {};
+  return "<p>The edge of a texel of the windows in world units, what the windows and the slices that they light take "
+         "in memory, how many texels slices were taken through, in millions; fragments of bricks, for light and eye; "
+         "and how the time of the sweep divides over the passes: extinction of the slices, light through the windows, "
+         "and what the eye sees. Fragments and passes are those of a picture of its own, which is not timed.</p>\n" +
+         printHtml(table);
+}
+
 std::string caseTable(const StudyRecord& record, const std::vector<ComparableCases>& groups) {
   const std::set<const CaseResult*> front = frontCases(groups);
   const bool milliseconds = !record.machine.software;

@@ -23,6 +23,7 @@ struct PlotSeries {
   PlotStyle style = PlotStyle::line;
   std::vector<PlotPoint> points;  // in the order in which they are joined
   bool bars = false;              // draw low to high
+  int family = -1;                // lines of a family share a colour and differ in symbols; -1: a colour of its own
 };
 
 /// A horizontal line, dashed.

@@ -60,6 +60,7 @@ TEST_CASE("The page is well-formed, whatever names there are", "[report]") {
   CHECK_THAT(page, Contains("data:image/png;base64,iVBORw0KGgo"));
   CHECK_THAT(page, Contains("missing"));  // the pictures that are not there
   CHECK_THAT(page, !Contains("Unfinished"));
+  CHECK_THAT(page, Contains("id=\"comparison\"") && Contains("id=\"windows\""));
 }
 
 TEST_CASE("The page loads nothing from elsewhere", "[report]") {
