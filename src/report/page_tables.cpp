@@ -73,7 +73,8 @@ std::vector<Variation> variationsOf(const StudyCase& what, const StudyPlan& plan
   if (what.size != plan.baseSize) all.push_back({"size", std::to_string(what.size) + " pixels high"});
   if (occlusion && what.theta != plan.baseTheta)
     all.push_back({"theta", "theta " + jsonDegrees(what.theta) + " degrees"});
-  if (what.scale != base.scale) all.push_back({"scale", jsonNumber(what.scale) + " window texels per voxel edge"});
+  if (what.scale != base.scale)
+    all.push_back({"scale", jsonNumber(what.scale) + (what.scale == 1 ? " texel per voxel" : " texels per voxel")});
   return all;
 }
 
@@ -105,6 +106,19 @@ std::string frontTable(const StudyRecord& record, const ComparableCases& group) 
     table.rows.push_back(row);
   }
   return printHtml(table);
+}
+
+std::string earlierTable(const StudyRecord& record, Model model) {
+  if (!record.earlier) return {};
+  const std::string of =
+      "<code>" + escapeHtml(record.earlier->name) + "</code> (umbrick " + escapeHtml(record.earlier->version) + ")";
+  HtmlTable table;
+  table.head = heads({"earlier, cheapest first", "time", "RMSE"}, 1);
+  for (const EarlierCase& one : record.earlier->comparable(record, model))
+    table.rows.push_back({{words(one.id), number(one.timeRatio), number(one.rmse)}});
+  if (table.rows.empty()) return "<p class=\"quiet\">" + of + " has no case of this model, size and theta.</p>\n";
+  return "<p class=\"quiet\">The Pareto front of " + of +
+         ", grey in the plot. Its times are multiples of its own baseline.</p>\n" + printHtml(table);
 }
 
 std::string aroundBaseTable(const StudyRecord& record) {
@@ -151,20 +165,20 @@ std::string modelErrorTable(const StudyRecord& record) {
 
 std::string comparisonTables(const StudyRecord& record, const std::vector<ComparableCases>& groups) {
   HtmlTable reached;
-  reached.head = heads({"theta", "without windows", "with windows", "time", "", "RMSE", "", "times as fast"}, 3);
+  reached.head = heads({"speed-up", "dos", "time", "RMSE", "ordinates", "time", "RMSE"}, 0);
+  reached.head[1].text = reached.head[4].text = true;
   for (const ComparableCases& group : groups) {
     if (group.model != Model::cone || group.size != record.plan.baseSize) continue;
     bool first = true;
     for (const Comparison& one : fastestOfNoLargerError(group)) {
-      HtmlTable::Row row{{words(first ? jsonDegrees(group.theta) : ""), text(linked(one.without->what, record.plan)),
-                          one.with ? text(linked(one.with->what, record.plan)) : words("not reached"),
-                          timeCell(one.without->timeRatio)},
+      HtmlTable::Row row{{one.with ? number(one.speedup()) : Cell{"-"}, text(linked(one.without->what, record.plan)),
+                          timeCell(one.without->timeRatio), number(one.without->error.rmse)},
                          first ? "new" : ""};
       if (one.with)
-        row.cells.insert(row.cells.end(), {timeCell(one.with->timeRatio), number(one.without->error.rmse),
-                                           number(one.with->error.rmse), number(one.speedup())});
+        row.cells.insert(row.cells.end(), {text(linked(one.with->what, record.plan)), timeCell(one.with->timeRatio),
+                                           number(one.with->error.rmse)});
       else
-        row.cells.insert(row.cells.end(), {{"-"}, number(one.without->error.rmse), {"-"}, {"-"}});
+        row.cells.insert(row.cells.end(), {words("not reached"), {"-"}, {"-"}});
       reached.rows.push_back(row);
       first = false;
     }
@@ -172,26 +186,26 @@ std::string comparisonTables(const StudyRecord& record, const std::vector<Compar
   std::string html;
   if (!reached.rows.empty())
     html +=
-        "<p>Left the Pareto front of the methods without windows, right the fastest case with windows whose error "
-        "is no larger: the left one of a pair of numbers is of the left case. Cases off that front are slower "
-        "than one on it with no larger error.</p>\n" +
+        "<p>For every error that <code>dos</code> reaches, the fastest case of <code>ordinates</code> whose error is "
+        "no larger, at each theta. Left is the Pareto front of <code>dos</code>: its other cases are slower than one "
+        "of these with no larger error.</p>\n" +
         printHtml(reached);
   HtmlTable few;
-  few.head = heads({"with windows", "without windows", "times as fast", "times the RMSE"}, 2);
+  few.head = heads({"ordinates", "dos", "times as fast", "times the RMSE"}, 2);
   for (const Comparison& one : fewBesideMany(record))
     few.rows.push_back({{text(linked(one.with->what, record.plan)), text(linked(one.without->what, record.plan)),
                          number(one.speedup()), number(one.errorRatio())}});
   if (!few.rows.empty())
-    html += "<p>Few directions in few slices beside " + std::to_string(kManySlices) + " slices.</p>\n" + printHtml(few);
+    html += "<p>Few directions in few slices beside <code>dos</code> in " + std::to_string(kManySlices) +
+            " slices.</p>\n" + printHtml(few);
   return html;
 }
 
 std::string windowTable(const StudyRecord& record) {
   HtmlTable table;
   table.sortable = true;
-  table.head = heads({"case", "time", "RMSE", "segments", "texel", "MiB", "updates, M", "fragments, M", "extinction, %",
-                      "windows, %", "eye, %"},
-                     1);
+  table.head =
+      heads({"case", "time", "RMSE", "segments", "texel", "MiB", "updates, M", "fragments, M", "passes, %"}, 1);
   for (const StudyCase& what : record.plan.cases) {
     const CaseResult* result = record.find(what);
     if (!result || !studyMethod(what.method).windows) continue;
@@ -203,14 +217,18 @@ std::string windowTable(const StudyRecord& record) {
                         number(static_cast<double>(result->windowBytes) / (1 << 20)),
                         number(1e-6 * static_cast<double>(result->windowUpdates)),
                         number(1e-6 * static_cast<double>(result->fragments))}};
-    for (const double share : passShares(result->passes)) row.cells.push_back(number(100 * share));
+    std::string passes;
+    for (const double share : passShares(result->passes))
+      passes += (passes.empty() ? "" : " / ") + std::to_string(std::lround(100 * share));
+    row.cells.push_back({passes, jsonNumber(passShares(result->passes)[1]), false});
     table.rows.push_back(row);
   }
   if (table.rows.empty()) return {};
-  return "<p>The edge of a texel of the windows in world units, what the windows and the slices that they light take "
-         "in memory, how many texels slices were taken through, in millions; fragments of bricks, for light and eye; "
-         "and how the time of the sweep divides over the passes: extinction of the slices, light through the windows, "
-         "and what the eye sees. Fragments and passes are those of a picture of its own, which is not timed.</p>\n" +
+  return "<p>The edge of a texel of the windows in world units; what the windows and the slices that they light take "
+         "in "
+         "memory; how many texels slices were taken through, and fragments of bricks for light and eye, in millions; "
+         "and how the time of the sweep divides over extinction of the slices / light through the windows / what the "
+         "eye sees. Fragments and passes are those of a picture of its own, which is not timed.</p>\n" +
          printHtml(table);
 }
 

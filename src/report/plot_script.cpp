@@ -129,6 +129,10 @@ void appendSeries(std::vector<std::string>& parts, const Plot& plot, std::size_t
     parts.push_back(data + " using 1:2 with steps lw 7 lc rgb \"#d9d9d9\"" + title);
     return;
   }
+  if (series.style == PlotStyle::earlier) {
+    parts.push_back(data + " using 1:2 with linespoints pt 4 ps 0.8 lw 1.2 dt 3 lc rgb \"#777777\"" + title);
+    return;
+  }
   if (series.style == PlotStyle::points) {
     parts.push_back(data + " using 1:2 with points pt 7 ps 0.45 lc rgb \"#999999\"" + title);
     return;

@@ -13,9 +13,10 @@ struct PlotPoint {
 };
 
 enum class PlotStyle {
-  line,    // points, joined
-  points,  // small grey points
-  front,   // a grey staircase under everything else
+  line,     // points, joined
+  points,   // small grey points
+  earlier,  // grey, joined: what was before
+  front,    // a grey staircase under everything else
 };
 
 struct PlotSeries {

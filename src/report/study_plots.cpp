@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <set>
+#include <vector>
 
 #include "report/study_findings.h"
 
@@ -53,11 +54,11 @@ Plot paretoPlot(const StudyRecord& record, Model model) {
   const ComparableCases* group = baseGroup(groups, record.plan, model);
   if (!group) return plot;
   std::set<const CaseResult*> shown;
-  std::set<int> labelled;
+  std::set<std::vector<int>> labelled;
   for (const SliceSeries& series : sliceSeries(record, model)) {
     PlotSeries line{series.title, PlotStyle::line, {}, true, familyOf(series, record)};
-    // All lines of a method have the same numbers of slices: one of them says which.
-    const bool first = labelled.insert(line.family).second;
+    // One line says the numbers of slices for all that have the same.
+    const bool first = labelled.insert(record.plan.slices.at(series.method->name)).second;
     for (const CaseResult* result : series.cases) {
       line.points.push_back(timePoint(*result));
       if (first) line.points.back().label = "N=" + std::to_string(result->what.slices);
@@ -72,6 +73,12 @@ Plot paretoPlot(const StudyRecord& record, Model model) {
   PlotSeries front{"Pareto front", PlotStyle::front, {}, false};
   for (const CaseResult* result : group->front) front.points.push_back(timePoint(*result));
   plot.series.push_back(front);
+  if (record.earlier) {
+    PlotSeries before{"earlier Pareto front", PlotStyle::earlier, {}, false};
+    for (const EarlierCase& one : record.earlier->comparable(record, model))
+      before.points.push_back({one.timeRatio, one.rmse, 0, 0, {}});
+    plot.series.push_back(before);
+  }
   addFloor(plot, record, model);
   return plot;
 }
