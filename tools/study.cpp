@@ -25,7 +25,7 @@ constexpr long double kDegree = 3.14159265358979323846 / 180.0L;
 
 struct StudyCommand {
   std::shared_ptr<SceneOptions> scene;
-  std::filesystem::path folder;
+  std::filesystem::path folder, earlier;
   std::string backend = "auto";
   bool quick = false;
   std::vector<std::string> methods, bits;
@@ -92,10 +92,11 @@ int study(const StudyCommand& command) {
   StudyOutcome outcome;
   {
     ProgressBar bar("study");
-    outcome = runStudy(*context, loaded.grid, loaded.scene, settings, command.folder, [&](const StudyProgress& p) {
+    const auto progress = [&](const StudyProgress& p) {
       bar.show(p.share);
       return !stop.requested();
-    });
+    };
+    outcome = runStudy(*context, loaded.grid, loaded.scene, settings, command.folder, progress, command.earlier);
   }
   warnOfNonFinite(scene, outcome.nonFiniteVoxels);
   for (const std::filesystem::path& path : {outcome.page, outcome.table, outcome.record})
@@ -216,6 +217,9 @@ Command addStudy(CLI::App& app) {
   sub->get_option("--size")->description("its shape is that of the study's pictures [512x512]");
   sub->add_option("-o,--output", command->folder, "folder of the report: new, empty, or of the same study")
       ->required()
+      ->group("Output");
+  sub->add_option("--compare", command->earlier,
+                  "study.json of an earlier study of this scene on this machine: the page shows its Pareto fronts, too")
       ->group("Output");
   sub->add_flag("--quick", command->quick, "a small study, about two minutes on two cores for the bundled CT");
   addSweeps(*sub, *command);

@@ -88,11 +88,11 @@ std::string speedSections(const StudyRecord& record, const StudyFolder& folder,
   for (const Model model : {Model::cone, Model::emission}) {
     const ComparableCases* group = baseGroup(groups, record.plan, model);
     if (!group) continue;
-    const std::string pareto = plotFigure(
-        folder, paretoPlot(record, model),
-        "Lines join cases that differ in their slices (N) alone, the same N on each; bars are the quartiles of "
-        "the time. No case lies below and left of the staircase. " +
-            floorText(record, model));
+    const std::string pareto = plotFigure(folder, paretoPlot(record, model),
+                                          "Lines join cases that differ in their slices (N) alone, the same N on each "
+                                          "of a method; bars are the quartiles of "
+                                          "the time. No case lies below and left of the staircase. " +
+                                              floorText(record, model));
     const std::string convergence =
         plotFigure(folder, convergencePlot(record, model),
                    model == Model::emission
@@ -101,7 +101,7 @@ std::string speedSections(const StudyRecord& record, const StudyFolder& folder,
                        : "A method that converges to its model goes on falling. " + floorText(record, model));
     html += section(modelName(model), modelTitle(model),
                     "<h3>Error against time</h3>\n" + pareto + "<h3>Pareto front</h3>\n" + frontTable(record, *group) +
-                        "<h3>Convergence in the distance of slices</h3>\n" + convergence);
+                        earlierTable(record, model) + "<h3>Convergence in the distance of slices</h3>\n" + convergence);
     std::string details;
     for (const StudyMethod& method : studyMethods())
       if (method.model == model && record.plan.settings.details.contains(method.detail.name) &&
@@ -181,9 +181,11 @@ std::string assembled(const StudyRecord& record, const StudyFolder& folder) {
     std::string id, title, html;
   };
   const Part parts[]{
+      {"comparison", "Ordinates beside dos", comparisonTables(record, groups)},
       {"base", "Around the base point", aroundBaseTable(record)},
       {"model", "Model error", modelErrorTable(record) + modelPictures(record, folder)},
       {"pictures", "Pictures", pictureSections(record, folder, groups)},
+      {"windows", "What the windows cost", windowTable(record)},
       {"cases", "All cases", caseTable(record, groups)},
       {"machine", "How it was measured", machineSection(record)},
       {"commands", "To repeat it", commandList(record)},

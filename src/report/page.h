@@ -22,8 +22,14 @@ std::string describeCase(const StudyCase& what, const StudyPlan& plan);
 std::string describeSegments(int segments);
 
 std::string frontTable(const StudyRecord& record, const ComparableCases& group);
+/// The front of the earlier study beside.
+std::string earlierTable(const StudyRecord& record, Model model);
 std::string aroundBaseTable(const StudyRecord& record);
 std::string modelErrorTable(const StudyRecord& record);
+/// Methods with windows (ordinates) beside those without (dos).
+std::string comparisonTables(const StudyRecord& record, const std::vector<ComparableCases>& groups);
+/// What windows take in memory and in time.
+std::string windowTable(const StudyRecord& record);
 std::string caseTable(const StudyRecord& record, const std::vector<ComparableCases>& groups);
 std::string referenceTable(const StudyRecord& record);
 

@@ -73,7 +73,8 @@ std::vector<Variation> variationsOf(const StudyCase& what, const StudyPlan& plan
   if (what.size != plan.baseSize) all.push_back({"size", std::to_string(what.size) + " pixels high"});
   if (occlusion && what.theta != plan.baseTheta)
     all.push_back({"theta", "theta " + jsonDegrees(what.theta) + " degrees"});
-  if (what.scale != base.scale) all.push_back({"scale", jsonNumber(what.scale) + " window texels per voxel edge"});
+  if (what.scale != base.scale)
+    all.push_back({"scale", jsonNumber(what.scale) + (what.scale == 1 ? " texel per voxel" : " texels per voxel")});
   return all;
 }
 
@@ -105,6 +106,19 @@ std::string frontTable(const StudyRecord& record, const ComparableCases& group) 
     table.rows.push_back(row);
   }
   return printHtml(table);
+}
+
+std::string earlierTable(const StudyRecord& record, Model model) {
+  if (!record.earlier) return {};
+  const std::string of =
+      "<code>" + escapeHtml(record.earlier->name) + "</code> (umbrick " + escapeHtml(record.earlier->version) + ")";
+  HtmlTable table;
+  table.head = heads({"earlier, cheapest first", "time", "RMSE"}, 1);
+  for (const EarlierCase& one : record.earlier->comparable(record, model))
+    table.rows.push_back({{words(one.id), number(one.timeRatio), number(one.rmse)}});
+  if (table.rows.empty()) return "<p class=\"quiet\">" + of + " has no case of this model, size and theta.</p>\n";
+  return "<p class=\"quiet\">The Pareto front of " + of +
+         ", grey in the plot. Its times are multiples of its own baseline.</p>\n" + printHtml(table);
 }
 
 std::string aroundBaseTable(const StudyRecord& record) {
@@ -146,6 +160,75 @@ std::string modelErrorTable(const StudyRecord& record) {
   return "<p>What the model leaves out: the reference with light from the cone alone against the reference with light "
          "from the whole sphere (Fig. 2 of <a href=\"https://doi.org/10.1111/j.1467-8659.2009.01464.x\">Schott et al. "
          "2009</a>). No method can make this error smaller, and no method error contains it.</p>\n" +
+         printHtml(table);
+}
+
+std::string comparisonTables(const StudyRecord& record, const std::vector<ComparableCases>& groups) {
+  HtmlTable reached;
+  reached.head = heads({"speed-up", "dos", "time", "RMSE", "ordinates", "time", "RMSE"}, 0);
+  reached.head[1].text = reached.head[4].text = true;
+  for (const ComparableCases& group : groups) {
+    if (group.model != Model::cone || group.size != record.plan.baseSize) continue;
+    bool first = true;
+    for (const Comparison& one : fastestOfNoLargerError(group)) {
+      HtmlTable::Row row{{one.with ? number(one.speedup()) : Cell{"-"}, text(linked(one.without->what, record.plan)),
+                          timeCell(one.without->timeRatio), number(one.without->error.rmse)},
+                         first ? "new" : ""};
+      if (one.with)
+        row.cells.insert(row.cells.end(), {text(linked(one.with->what, record.plan)), timeCell(one.with->timeRatio),
+                                           number(one.with->error.rmse)});
+      else
+        row.cells.insert(row.cells.end(), {words("not reached"), {"-"}, {"-"}});
+      reached.rows.push_back(row);
+      first = false;
+    }
+  }
+  std::string html;
+  if (!reached.rows.empty())
+    html +=
+        "<p>For every error that <code>dos</code> reaches, the fastest case of <code>ordinates</code> whose error is "
+        "no larger, at each theta. Left is the Pareto front of <code>dos</code>: its other cases are slower than one "
+        "of these with no larger error.</p>\n" +
+        printHtml(reached);
+  HtmlTable few;
+  few.head = heads({"ordinates", "dos", "times as fast", "times the RMSE"}, 2);
+  for (const Comparison& one : fewBesideMany(record))
+    few.rows.push_back({{text(linked(one.with->what, record.plan)), text(linked(one.without->what, record.plan)),
+                         number(one.speedup()), number(one.errorRatio())}});
+  if (!few.rows.empty())
+    html += "<p>Few directions in few slices beside <code>dos</code> in " + std::to_string(kManySlices) +
+            " slices.</p>\n" + printHtml(few);
+  return html;
+}
+
+std::string windowTable(const StudyRecord& record) {
+  HtmlTable table;
+  table.sortable = true;
+  table.head =
+      heads({"case", "time", "RMSE", "segments", "texel", "MiB", "updates, M", "fragments, M", "passes, %"}, 1);
+  for (const StudyCase& what : record.plan.cases) {
+    const CaseResult* result = record.find(what);
+    if (!result || !studyMethod(what.method).windows) continue;
+    HtmlTable::Row row{{text(linked(what, record.plan)),
+                        timeCell(result->timeRatio),
+                        number(result->error.rmse),
+                        {std::to_string(result->segments)},
+                        number(result->windowTexel),
+                        number(static_cast<double>(result->windowBytes) / (1 << 20)),
+                        number(1e-6 * static_cast<double>(result->windowUpdates)),
+                        number(1e-6 * static_cast<double>(result->fragments))}};
+    std::string passes;
+    for (const double share : passShares(result->passes))
+      passes += (passes.empty() ? "" : " / ") + std::to_string(std::lround(100 * share));
+    row.cells.push_back({passes, jsonNumber(passShares(result->passes)[1]), false});
+    table.rows.push_back(row);
+  }
+  if (table.rows.empty()) return {};
+  return "<p>The edge of a texel of the windows in world units; what the windows and the slices that they light take "
+         "in "
+         "memory; how many texels slices were taken through, and fragments of bricks for light and eye, in millions; "
+         "and how the time of the sweep divides over extinction of the slices / light through the windows / what the "
+         "eye sees. Fragments and passes are those of a picture of its own, which is not timed.</p>\n" +
          printHtml(table);
 }
 

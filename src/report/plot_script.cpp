@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "core/json_writer.h"
@@ -97,8 +98,30 @@ std::string dataOf(const Plot& plot) {
   return text;
 }
 
+// A line's place in the lists of colours and symbols.
+struct LineLook {
+  std::size_t colour = 0, symbol = 0;
+};
+
+// Per series; those that are no lines have none of their own.
+std::vector<LineLook> linesOf(const Plot& plot) {
+  std::vector<LineLook> looks;
+  std::map<int, std::size_t> members;  // so far, by family
+  std::size_t alone = 0;
+  for (const PlotSeries& series : plot.series) {
+    if (series.style != PlotStyle::line)
+      looks.push_back({});
+    else if (series.family < 0)
+      looks.push_back({alone, alone});
+    else
+      looks.push_back({static_cast<std::size_t>(series.family), members[series.family]++});
+    if (series.style == PlotStyle::line && series.family < 0) ++alone;
+  }
+  return looks;
+}
+
 // What is drawn of one series: its own entry, then bars and labels without an entry in the key.
-void appendSeries(std::vector<std::string>& parts, const Plot& plot, std::size_t index, std::size_t& line) {
+void appendSeries(std::vector<std::string>& parts, const Plot& plot, std::size_t index, const LineLook& look) {
   const PlotSeries& series = plot.series[index];
   const std::string data = gnuplotString(plot.name + ".dat") + " index " + std::to_string(index);
   const std::string title = " title " + gnuplotString(series.title) + " noenhanced";
@@ -106,15 +129,18 @@ void appendSeries(std::vector<std::string>& parts, const Plot& plot, std::size_t
     parts.push_back(data + " using 1:2 with steps lw 7 lc rgb \"#d9d9d9\"" + title);
     return;
   }
+  if (series.style == PlotStyle::earlier) {
+    parts.push_back(data + " using 1:2 with linespoints pt 4 ps 0.8 lw 1.2 dt 3 lc rgb \"#777777\"" + title);
+    return;
+  }
   if (series.style == PlotStyle::points) {
     parts.push_back(data + " using 1:2 with points pt 7 ps 0.45 lc rgb \"#999999\"" + title);
     return;
   }
-  const std::string colour = " lc rgb \"" + std::string(kColours[line % std::size(kColours)]) + "\"";
-  const std::string symbol = " pt " + std::to_string(kSymbols[line % std::size(kSymbols)]);
+  const std::string colour = " lc rgb \"" + std::string(kColours[look.colour % std::size(kColours)]) + "\"";
+  const std::string symbol = " pt " + std::to_string(kSymbols[look.symbol % std::size(kSymbols)]);
   // A second round of colours is dashed.
-  const std::string dashes = line < std::size(kColours) ? "" : " dt 2";
-  ++line;
+  const std::string dashes = std::max(look.colour, look.symbol) < std::size(kColours) ? "" : " dt 2";
   if (series.bars) parts.push_back(data + " using 1:2:3:4 with xerrorbars pt 0 lw 1" + colour + " notitle");
   parts.push_back(data + " using 1:2 with linespoints lw 1.6 ps 0.8" + symbol + dashes + colour + title);
   const bool labels = std::any_of(series.points.begin(), series.points.end(),
@@ -133,11 +159,11 @@ std::string scriptOf(const Plot& plot) {
                      "spacing 1.25\n" +
                      axes(plot);
   std::vector<std::string> parts;
-  std::size_t line = 0;
+  const std::vector<LineLook> looks = linesOf(plot);
   // The staircase lies under the rest.
   for (const bool front : {true, false})
     for (std::size_t i = 0; i < plot.series.size(); ++i)
-      if ((plot.series[i].style == PlotStyle::front) == front) appendSeries(parts, plot, i, line);
+      if ((plot.series[i].style == PlotStyle::front) == front) appendSeries(parts, plot, i, looks[i]);
   for (const PlotLevel& level : plot.levels)
     parts.push_back(jsonNumber(level.y) + " with lines dt 2 lw 1.2 lc rgb \"#666666\" title " +
                     gnuplotString(level.title) + " noenhanced");

@@ -13,9 +13,10 @@ struct PlotPoint {
 };
 
 enum class PlotStyle {
-  line,    // points, joined
-  points,  // small grey points
-  front,   // a grey staircase under everything else
+  line,     // points, joined
+  points,   // small grey points
+  earlier,  // grey, joined: what was before
+  front,    // a grey staircase under everything else
 };
 
 struct PlotSeries {
@@ -23,6 +24,7 @@ struct PlotSeries {
   PlotStyle style = PlotStyle::line;
   std::vector<PlotPoint> points;  // in the order in which they are joined
   bool bars = false;              // draw low to high
+  int family = -1;                // lines of a family share a colour and differ in symbols; -1: a colour of its own
 };
 
 /// A horizontal line, dashed.

@@ -1,5 +1,6 @@
 #include "umbrick/report/study.h"
 
+#include "core/text_file.h"
 #include "report/case_scene.h"
 #include "report/gnuplot.h"
 #include "report/page.h"
@@ -13,7 +14,7 @@ namespace umbrick {
 
 StudyOutcome runStudy(const GlContext& context, const ScalarGrid& grid, const Scene& scene,
                       const StudySettings& settings, const std::filesystem::path& root,
-                      const std::function<bool(const StudyProgress&)>& progress) {
+                      const std::function<bool(const StudyProgress&)>& progress, const std::filesystem::path& earlier) {
   // Everything that can be refused is refused before anything is written.
   StudyRecord record;
   record.plan = planStudy(settings, scene.occlusion.aperture);
@@ -27,6 +28,7 @@ StudyOutcome runStudy(const GlContext& context, const ScalarGrid& grid, const Sc
   // Again, now that it is known how few slices can be drawn.
   const int least = leastSlices(grid, record.scene, record.geometry.extent);
   record.plan = planStudy(settings, scene.occlusion.aperture, least);
+  if (!earlier.empty()) record.earlier = readEarlierStudy(readTextFile(earlier), earlier.string(), record);
   const StudyFolder folder(root);
   folder.restore(record);
   if (!record.complete()) checkCases(context, grid, record);

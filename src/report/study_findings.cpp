@@ -5,10 +5,12 @@
 namespace umbrick {
 namespace {
 
-void findFront(ComparableCases& group) {
+std::vector<const CaseResult*> frontOf(const std::vector<const CaseResult*>& cases) {
   std::vector<CostAndError> points;
-  for (const CaseResult* result : group.all) points.push_back({result->timeRatio.median, result->error.rmse});
-  for (const std::size_t i : paretoFront(points)) group.front.push_back(group.all[i]);
+  for (const CaseResult* result : cases) points.push_back({result->timeRatio.median, result->error.rmse});
+  std::vector<const CaseResult*> front;
+  for (const std::size_t i : paretoFront(points)) front.push_back(cases[i]);
+  return front;
 }
 
 std::optional<double> observedOrder(const SliceSeries& series, double floor) {
@@ -36,7 +38,7 @@ std::vector<ComparableCases> comparableCases(const StudyRecord& record) {
       group = groups.insert(groups.end(), {reference.model, reference.size, reference.theta, {}, {}});
     group->all.push_back(result);
   }
-  for (ComparableCases& group : groups) findFront(group);
+  for (ComparableCases& group : groups) group.front = frontOf(group.all);
   return groups;
 }
 
@@ -83,6 +85,37 @@ std::vector<SliceSeries> sliceSeries(const StudyRecord& record, Model model) {
     }
   }
   return all;
+}
+
+std::vector<Comparison> fastestOfNoLargerError(const ComparableCases& group) {
+  std::vector<const CaseResult*> with, without;
+  for (const CaseResult* result : group.all)
+    (studyMethod(result->what.method).windows ? with : without).push_back(result);
+  std::vector<Comparison> all;
+  if (with.empty()) return all;
+  for (const CaseResult* slow : frontOf(without)) {
+    Comparison one{slow, nullptr};
+    for (const CaseResult* fast : with)
+      if (fast->error.rmse <= slow->error.rmse && (!one.with || fast->timeRatio.median < one.with->timeRatio.median))
+        one.with = fast;
+    all.push_back(one);
+  }
+  return all;
+}
+
+std::vector<Comparison> fewBesideMany(const StudyRecord& record) {
+  const std::vector<SliceSeries> all = sliceSeries(record, Model::cone);
+  std::vector<Comparison> comparisons;
+  for (const SliceSeries& few : all) {
+    if (!few.method->windows || few.detail != kFewDirections) continue;
+    for (const CaseResult* with : few.cases) {
+      if (with->what.slices < kFewSlices[0] || with->what.slices > kFewSlices[1]) continue;
+      for (const SliceSeries& many : all)
+        for (const CaseResult* without : many.cases)
+          if (!many.method->windows && without->what.slices == kManySlices) comparisons.push_back({without, with});
+    }
+  }
+  return comparisons;
 }
 
 double referenceError(const StudyRecord& record, const StudyReference& reference) {

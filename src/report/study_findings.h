@@ -40,6 +40,26 @@ struct SliceSeries {
 /// At the base of everything else.
 std::vector<SliceSeries> sliceSeries(const StudyRecord& record, Model model);
 
+/// A case with windows beside one without, of the same model, size and theta.
+struct Comparison {
+  const CaseResult* without = nullptr;
+  const CaseResult* with = nullptr;  // null: none
+
+  /// How many times as fast the one with windows is.
+  double speedup() const { return without->timeRatio.median / with->timeRatio.median; }
+  /// Its error as a multiple of the other's.
+  double errorRatio() const { return with->error.rmse / without->error.rmse; }
+};
+
+/// Per case of the Pareto front of the methods without windows, cheapest first, the fastest case with windows whose
+/// error is no larger. Empty when a group lacks one of the two kinds.
+std::vector<Comparison> fastestOfNoLargerError(const ComparableCases& group);
+
+/// Few directions and slices beside many slices, at the base of everything else: K = 8 in 64 to 128 slices beside all
+/// details of the methods without windows in 1024.
+std::vector<Comparison> fewBesideMany(const StudyRecord& record);
+inline constexpr int kFewDirections = 8, kFewSlices[2]{64, 128}, kManySlices = 1024;
+
 /// RMSE between the reference and its coarser self; 0: not measured.
 double referenceError(const StudyRecord& record, const StudyReference& reference);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <set>
+#include <vector>
 
 #include "report/study_findings.h"
 
@@ -31,6 +32,17 @@ std::string withOrder(const SliceSeries& series) {
   return series.title + text;
 }
 
+// A colour per method, the same in all plots.
+int familyOf(const SliceSeries& series, const StudyRecord& record) {
+  int family = 0;
+  for (const std::string& name : record.plan.settings.methods) {
+    const StudyMethod& method = studyMethod(name);
+    if (&method == series.method) break;
+    if (method.model == series.method->model) ++family;
+  }
+  return family;
+}
+
 }  // namespace
 
 Plot paretoPlot(const StudyRecord& record, Model model) {
@@ -42,23 +54,31 @@ Plot paretoPlot(const StudyRecord& record, Model model) {
   const ComparableCases* group = baseGroup(groups, record.plan, model);
   if (!group) return plot;
   std::set<const CaseResult*> shown;
+  std::set<std::vector<int>> labelled;
   for (const SliceSeries& series : sliceSeries(record, model)) {
-    PlotSeries line{series.title, PlotStyle::line, {}, true};
+    PlotSeries line{series.title, PlotStyle::line, {}, true, familyOf(series, record)};
+    // One line says the numbers of slices for all that have the same.
+    const bool first = labelled.insert(record.plan.slices.at(series.method->name)).second;
     for (const CaseResult* result : series.cases) {
       line.points.push_back(timePoint(*result));
-      // All lines have the same numbers of slices: one of them says which.
-      if (plot.series.empty()) line.points.back().label = "N=" + std::to_string(result->what.slices);
+      if (first) line.points.back().label = "N=" + std::to_string(result->what.slices);
       shown.insert(result);
     }
     plot.series.push_back(line);
   }
-  PlotSeries others{"other bits or segments", PlotStyle::points, {}, false};
+  PlotSeries others{"other bits, segments or scales", PlotStyle::points, {}, false};
   for (const CaseResult* result : group->all)
     if (!shown.contains(result)) others.points.push_back(timePoint(*result));
   plot.series.push_back(others);
   PlotSeries front{"Pareto front", PlotStyle::front, {}, false};
   for (const CaseResult* result : group->front) front.points.push_back(timePoint(*result));
   plot.series.push_back(front);
+  if (record.earlier) {
+    PlotSeries before{"earlier Pareto front", PlotStyle::earlier, {}, false};
+    for (const EarlierCase& one : record.earlier->comparable(record, model))
+      before.points.push_back({one.timeRatio, one.rmse, 0, 0, {}});
+    plot.series.push_back(before);
+  }
   addFloor(plot, record, model);
   return plot;
 }
@@ -69,7 +89,11 @@ Plot convergencePlot(const StudyRecord& record, Model model) {
   plot.xLabel = "d: distance of slices, world units";
   plot.yLabel = kErrorLabel;
   for (const SliceSeries& series : sliceSeries(record, model)) {
-    PlotSeries line{model == Model::emission ? withOrder(series) : series.title, PlotStyle::line, {}, false};
+    PlotSeries line{model == Model::emission ? withOrder(series) : series.title,
+                    PlotStyle::line,
+                    {},
+                    false,
+                    familyOf(series, record)};
     for (const CaseResult* result : series.cases)
       line.points.push_back({result->spacing, result->error.rmse, 0, 0, {}});
     plot.series.push_back(line);

@@ -8,6 +8,7 @@
 
 #include "core/json_reader.h"
 #include "core/json_writer.h"
+#include "report/json_difference.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -191,31 +192,6 @@ Machine readMachine(const JsonValue& value) {
 }
 
 // --- is it the same study? ---
-
-std::string shortened(std::string text) {
-  constexpr std::size_t kLongest = 60;
-  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
-}
-
-// "camera.fov is 27 there and 30 here"; empty: equal.
-std::string firstDifference(const std::string& path, const Json& there, const Json& here) {
-  if (there == here) return {};
-  if (there.is_object() && here.is_object()) {
-    std::vector<std::string> keys;
-    for (const Json* side : {&here, &there})
-      for (const auto& [key, value] : side->items())
-        if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
-    for (const std::string& key : keys) {
-      const std::string below = path.empty() ? key : path + "." + key;
-      const std::string difference = firstDifference(below, there.contains(key) ? there[key] : Json(nullptr),
-                                                     here.contains(key) ? here[key] : Json(nullptr));
-      if (!difference.empty()) return difference;
-    }
-    return {};
-  }
-  const auto text = [](const Json& value) { return value.is_null() ? "missing" : shortened(value.dump()); };
-  return path + " is " + text(there) + " there and " + text(here) + " here";
-}
 
 // The scene without the name of the volume's file, which may move.
 Json withoutFile(Json scene) {

@@ -3,11 +3,13 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "report/case_scene.h"
+#include "report/earlier_study.h"
 #include "report/error_measures.h"
 #include "report/machine.h"
 #include "report/statistics.h"
@@ -61,6 +63,7 @@ struct StudyRecord {
   std::vector<ReferenceResult> references;
   std::vector<ModelError> modelErrors;
   std::vector<CaseResult> cases;
+  std::optional<EarlierStudy> earlier;  // shown beside, no part of the study
 
   bool complete() const;
   const CaseResult* find(const StudyCase& what) const;

@@ -1,6 +1,7 @@
 // A study whose numbers are invented: for what is made of numbers.
 #pragma once
 #include <cmath>
+#include <vector>
 
 #include "report/case_scene.h"
 #include "report/study_record.h"
@@ -8,11 +9,11 @@
 namespace umbrick {
 
 /// Complete; errors fall with the slices as d^1 and times grow with slices and detail.
-inline StudyRecord inventedStudy() {
+inline StudyRecord inventedStudy(const std::vector<int>& slices = {8, 16, 32}) {
   constexpr double kDegree = 3.14159265358979323846 / 180;
   StudySettings settings;
   settings.methods = {"emission", "dos", "ordinates"};
-  settings.slices = {8, 16, 32};
+  settings.slices = slices;
   settings.details["footprint"] = {2, 3};
   settings.details["directions"] = {4, 8};
   settings.bits = {{16, 16}, {32, 32}};

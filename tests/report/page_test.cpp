@@ -60,6 +60,20 @@ TEST_CASE("The page is well-formed, whatever names there are", "[report]") {
   CHECK_THAT(page, Contains("data:image/png;base64,iVBORw0KGgo"));
   CHECK_THAT(page, Contains("missing"));  // the pictures that are not there
   CHECK_THAT(page, !Contains("Unfinished"));
+  CHECK_THAT(page, Contains("id=\"comparison\"") && Contains("id=\"windows\""));
+}
+
+TEST_CASE("The page shows an earlier study in the plots of time and in tables, and says where it has nothing",
+          "[report]") {
+  const TemporaryFolder folder;
+  StudyRecord record = inventedStudy();
+  record.earlier = readEarlierStudy(printRecord(record), "old & <grey>.json", record);
+  std::erase_if(record.earlier->front, [](const EarlierCase& one) { return one.model == Model::emission; });
+  const std::string page = pageOf(record, folder);
+  CHECK(xmlFault(page) == "");
+  CHECK_THAT(page, Contains("The Pareto front of <code>old &amp; &lt;grey&gt;.json</code>") &&
+                       Contains("earlier Pareto front") &&
+                       Contains("old &amp; &lt;grey&gt;.json</code> (umbrick 0.0) has no case"));
 }
 
 TEST_CASE("The page loads nothing from elsewhere", "[report]") {

@@ -49,6 +49,26 @@ TEST_CASE("Points that a logarithmic axis does not have are left out, and an emp
   CHECK_THAT(readBytes(folder.path() / "zeros.dat"), Contains("\n3 0.25 ") && !Contains("nan") && !Contains("\n1 0 "));
 }
 
+TEST_CASE("Lines of a family share their colour and differ in symbols, and families differ in colour", "[report]") {
+  const TemporaryFolder folder;
+  Plot plot;
+  plot.name = "families";
+  for (const int family : {0, 0, 1})
+    plot.series.push_back({"s", PlotStyle::line, {{1, 1, 0, 0, {}}, {2, 2, 0, 0, {}}}, false, family});
+  REQUIRE(drawPlot(folder.path(), plot));
+  const std::string script = readBytes(folder.path() / "families.gp");
+  std::vector<std::string> colours, symbols;
+  for (std::size_t at = 0; (at = script.find(" pt ", at)) != std::string::npos; ++at) {
+    symbols.push_back(script.substr(at + 4, script.find(' ', at + 4) - at - 4));
+    colours.push_back(script.substr(script.find("rgb", at), 13));
+  }
+  REQUIRE(colours.size() == 3);
+  CHECK(colours[0] == colours[1]);
+  CHECK(colours[0] != colours[2]);
+  CHECK(symbols[0] != symbols[1]);
+  CHECK(symbols[0] == symbols[2]);
+}
+
 TEST_CASE("A script that gnuplot cannot read is reported with what it says", "[report]") {
   const TemporaryFolder folder;
   writeBytes(folder.path() / "bad.gp", "set terminal svg\nset nonsense 3\n");

@@ -103,6 +103,7 @@ TEST_CASE("Studies that cannot be say so in one line and leave nothing behind", 
   check(kSmoke + "-o r --directions 1025", 1, "directions: is 1025, must be in [1, 1024]");
   check(kSmoke + "-o r --slices 1", 1, "slices: 1 are too few: ");
   check("study none.json -o r", 1, "none.json");
+  check(kSmoke + "-o r --compare none.json", 1, "none.json");
   fs::create_directory(folder.path() / "other");
   writeBytes(folder.path() / "other" / "letter.txt", "dear");
   check(kSmoke + "--quick -o other", 1, "other: holds files but no study.json");

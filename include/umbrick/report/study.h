@@ -41,13 +41,17 @@ struct StudyOutcome {
 ///
 /// @param scene     resolved; its model, method, background and what a plan sweeps do not matter
 /// @param progress  called often; false stops after the case at hand, and within a reference
-/// @throw InvalidArgument  see planStudy; an empty or invisible volume; slices so far apart that bricks are too narrow;
+/// @param earlier   study.json of an earlier study of the same scene on the same machine, whose Pareto fronts the page
+///                  shows beside; may be of an earlier version; empty: none
+/// @throw InvalidArgument  see planStudy; an earlier study of another volume, scene, baseline or machine; an empty or
+/// invisible volume; slices so far apart that bricks are too narrow;
 ///                         a folder that holds another study (names what differs) or anything else: untouched then
 /// @throw IoError  gnuplot is missing or fails, a file of the folder is damaged or cannot be written
 /// @throw GlError
 /// @pre `context` is current
 StudyOutcome runStudy(const GlContext& context, const ScalarGrid& grid, const Scene& scene,
                       const StudySettings& settings, const std::filesystem::path& folder,
-                      const std::function<bool(const StudyProgress&)>& progress = {});
+                      const std::function<bool(const StudyProgress&)>& progress = {},
+                      const std::filesystem::path& earlier = {});
 
 }  // namespace umbrick

@@ -1,0 +1,13 @@
+// Where two JSON values differ, for messages.
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace umbrick {
+
+/// "camera.fov is 27 there and 30 here": the first difference, in the order of `here`; empty: equal.
+/// @param path  of the values; empty at the root
+std::string firstDifference(const std::string& path, const nlohmann::ordered_json& there,
+                            const nlohmann::ordered_json& here);
+
+}  // namespace umbrick
