@@ -16,26 +16,25 @@ namespace umbrick {
 namespace {
 constexpr double kPi = 3.14159265358979323846;
 
+// Directions are those of the light's own frame: a light that moves with the camera keeps them, seen from there.
 class UniformCone : public Light {
  public:
-  UniformCone(const glm::dvec3& axis, double aperture, const glm::dvec3& radiance)
-      : Light(powerOf(radiance), 2 * kPi * (1 - std::cos(aperture))),
-        axis_(axis),
-        aperture_(aperture),
-        radiance_(radiance) {}
+  UniformCone(const ConeLight& cone, const glm::dmat3& toWorld)
+      : Light(powerOf(cone.radiance), 2 * kPi * (1 - std::cos(cone.aperture))), cone_(cone), toWorld_(toWorld) {}
 
   std::vector<LightDirection> directions(int count, double rotation) const override {
     std::vector<LightDirection> result;
-    for (const auto& [direction, weight] : coneDirections(axis_, aperture_, count, rotation))
-      result.push_back({direction, weight * radiance_});
+    for (const auto& [direction, weight] : coneDirections(cone_.axis, cone_.aperture, count, rotation))
+      result.push_back({glm::normalize(toWorld_ * direction), weight * cone_.radiance});
     return result;
   }
-  LightDirection sample(double u, double v) const override { return {sampleCone(axis_, aperture_, u, v), radiance_}; }
+  LightDirection sample(double u, double v) const override {
+    return {glm::normalize(toWorld_ * sampleCone(cone_.axis, cone_.aperture, u, v)), cone_.radiance};
+  }
 
  private:
-  glm::dvec3 axis_;
-  double aperture_;
-  glm::dvec3 radiance_;
+  ConeLight cone_;
+  glm::dmat3 toWorld_;
 };
 
 double sumOfPowers(const std::vector<LightDirection>& list) {
@@ -66,7 +65,7 @@ class ListOfDirections : public Light {
 };
 
 std::unique_ptr<Light> makeLight(const ConeLight& cone, const glm::dmat3& toWorld, const glm::dvec3&) {
-  return std::make_unique<UniformCone>(glm::normalize(toWorld * cone.axis), cone.aperture, cone.radiance);
+  return std::make_unique<UniformCone>(cone, toWorld);
 }
 
 std::unique_ptr<Light> makeLight(const ListedLight& light, const glm::dmat3& toWorld, const glm::dvec3&) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include "support/closed_forms.h"
 #include "support/complaint.h"
@@ -71,14 +73,34 @@ TEST_CASE("A cone around the view axis is the model cone, in lists and in sample
     same.occlusion.aperture = degrees * kPi / 180;
     CHECK(largestDifference(lightDirections(lights, 37, 0.3), lightDirections(same, 37, 0.3)) == 0);
     CHECK(largestDifference(lightSamples(lights, 50, 25, 7), lightSamples(same, 50, 25, 7)) == 0);
-    // The quadrature of optics as it is.
-    const auto plain = coneDirections(towardsViewer(same), same.occlusion.aperture, 37, 0.3);
+    // The quadrature of optics as it is, in the coordinates of the view.
+    const auto plain = coneDirections({0, 0, 1}, same.occlusion.aperture, 37, 0.3);
+    const CameraFrame frame = cameraFrame(same.camera);
+    const glm::dmat3 viewToWorld(frame.right, frame.up, -frame.forward);
     const auto list = lightDirections(same, 37, 0.3);
     REQUIRE(list.size() == plain.size());
     for (std::size_t i = 0; i < list.size(); ++i) {
-      CHECK(glm::length(list[i].direction - plain[i].direction) < 1e-15);  // the axis is normalised once more
+      CHECK(glm::length(list[i].direction - viewToWorld * plain[i].direction) < 1e-15);
       CHECK(list[i].radiance == glm::dvec3(plain[i].weight));
     }
+  }
+}
+
+// Else its shadows would turn around the view axis as the camera does, and jump where tangents change.
+TEST_CASE("A cone that moves with the camera keeps its directions, seen from there", "[scene]") {
+  Scene scene = sceneWith({cone({0.3, -0.1, 1}, 40, glm::dvec3(1)), cone({0, 0, 1}, 20, glm::dvec3(2))});
+  const auto seen = [&] {
+    const CameraFrame frame = cameraFrame(scene.camera);
+    const glm::dmat3 worldToView = glm::transpose(glm::dmat3(frame.right, frame.up, -frame.forward));
+    std::vector<LightDirection> list = lightDirections(scene, 30, 0.3);
+    for (const LightDirection& light : lightSamples(scene, 0, 20, 3)) list.push_back(light);
+    for (LightDirection& light : list) light.direction = worldToView * light.direction;
+    return list;
+  };
+  const std::vector<LightDirection> first = seen();
+  for (const glm::dvec3& eye : {glm::dvec3(-5, 2, 1), glm::dvec3(0.5, 1.1, -9), glm::dvec3(4, -7, -1.0001)}) {
+    scene.camera.eye = eye;
+    CHECK(largestDifference(seen(), first) < 2e-15);  // of matrices and their products
   }
 }
 
