@@ -26,6 +26,9 @@ constexpr int kMostSlices = 32;      // that are lit together
 constexpr int kMostDirections = 64;  // that one shader takes through a slice
 constexpr int kTile = 8;             // texels along the edge of a compute shader's tile
 constexpr double kSliceBytes = 64 << 20;
+// Rounds shifts to whole texels. Light at 45 degrees has halves on every slice, and slopes are known to 1e-16: halves
+// have to go one way, or slices jump as the camera moves.
+constexpr double kRound = 0.5 - 1e-6;
 
 class OrdinatesPass : public SlicePass {
  public:
@@ -133,8 +136,24 @@ class OrdinatesPass : public SlicePass {
       return;
     }
     const glm::dvec2 low = glm::floor(all.min) - 2.0, high = glm::ceil(all.max) + 2.0;
+    checkSize(frame, high - low);
     lattice_.first = glm::ivec2(low);
     lattice_.size = glm::ivec2(high - low);
+  }
+
+  void checkSize(const Frame& frame, const glm::dvec2& texels) const {
+    GLint edge = 0, layers = 0;
+    frame.gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &edge);
+    frame.gl.GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &layers);
+    const auto most = static_cast<std::size_t>(layers);
+    if (slopes_.size() > most)
+      throw InvalidArgument("directions: the light has " + std::to_string(slopes_.size()) +
+                            ", beyond the driver's limit of " + std::to_string(most));
+    // Of the windows, too, which are as large.
+    if (!(std::max(texels.x, texels.y) <= edge))
+      throw InvalidArgument("occlusion.scale: window texels of " + std::to_string(lattice_.texel) +
+                            " are too small, light needs more of them side by side than the driver's limit of " +
+                            std::to_string(edge));
   }
 
   // All visible bricks, on whatever slice.
@@ -376,7 +395,7 @@ class OrdinatesPass : public SlicePass {
     GlProgram& program = step_.current();
     std::vector<glm::vec4> paths;
     for (std::size_t k = first; k < first + count; ++k) {
-      const glm::dvec2 shift = glm::floor(extents_.depths[slice] / lattice_.texel * slopes_[k].slope + 0.5);
+      const glm::dvec2 shift = glm::floor(extents_.depths[slice] / lattice_.texel * slopes_[k].slope + kRound);
       const double stretch = slopes_[k].stretch;
       paths.emplace_back(glm::vec2(glm::dvec2(lattice_.first) - glm::dvec2(run.windows[k].first) + shift), stretch,
                          1 / (1 + stretch));
