@@ -50,8 +50,8 @@ TEST_CASE("Light by ordinates converges to that of the same directions", "[shade
   };
   for (const bool parallel : {true, false})
     for (const auto& [theta, directions, least] : {Case{1.0, 1, 1.5}, Case{1.0, 8, 1.3}, Case{1.4, 8, 1.0}}) {
-      Scene scene = smoothScene(Model::cone, 24);
-      if (parallel) scene.camera = orthographicCamera(scene.camera.eye, scene.camera.lookAt, 22, 24);
+      Scene scene = smoothScene(Model::cone, 16);
+      if (parallel) scene.camera = orthographicCamera(scene.camera.eye, scene.camera.lookAt, 22, 16);
       scene.method = Method::ordinates;
       scene.occlusion.aperture = theta;
       scene.occlusion.directions = directions;
