@@ -139,7 +139,7 @@ Command addCheck(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("check", "Measure on a volume that bricks and culling change nothing.");
   command->scene = addSceneOptions(*sub);
   addBackendOption(*sub, command->backend);
-  // What is compared is no option: both models, with and without bricks and culling.
+  // What is compared is no option: emission and cone, with and without bricks and culling.
   for (const char* option : {"--model", "--unbricked", "--no-culling"}) sub->remove_option(sub->get_option(option));
   sub->get_option("--size")->description("of the pictures, pixels [256x256]");
   sub->get_option("--tf")->description("transfer function: a preset or a JSON file [a grey ramp over the values]");

@@ -39,11 +39,11 @@ std::string mebibytes(std::uint64_t bytes) {
 struct ModelResults {
   InvariantResult edges, pool, textures, culling, saturated, seam, skipped, jumps, order;
 
-  explicit ModelResults(Model model) {
+  ModelResults(Model model, Method method) {
     const std::string m = ", " + modelName(model);
     const std::string picture = "largest difference of colour, V and depth";
     const std::string rounding = "rounding of texture coordinates and sums";
-    const std::string light = model == Model::cone ? ", light beyond 4 deviations" : "";
+    const std::string light = model == Model::cone && method == Method::dos ? ", light beyond 4 deviations" : "";
     edges = makeResult(1, "bricked equals unbricked" + m, picture, rounding + light);
     pool = makeResult(1, "a pool smaller than the volume" + m, picture, rounding + light);
     textures = makeResult(1, "several textures" + m, picture, rounding + light);
@@ -60,7 +60,13 @@ struct ModelResults {
 class Checker {
  public:
   Checker(const GlContext& context, const ScalarGrid& grid, const Scene& scene, const CheckOptions& options)
-      : context_(context), grid_(grid), scene_(scene), options_(options), toWorld_(grid.indexToWorld()) {
+      : context_(context),
+        grid_(grid),
+        scene_(scene),
+        options_(options),
+        toWorld_(grid.indexToWorld()),
+        emission_(Model::emission, scene.method),
+        cone_(Model::cone, scene.method) {
     scene_.background.reset();  // the same light behind both pictures
     views_ = options.views;
     if (views_.empty()) {
@@ -272,9 +278,9 @@ class Checker {
     scene.bricks.culling = true;
     compare(draw(bricks, scene), whole, reference, scene, 0, where, results.culling, &results.skipped);
 
-    // A saturated pixel lets through less than `saturation`; what occlusion leaves out at each look is below 1e-5.
+    // A saturated pixel lets through less than `saturation`; what dos leaves out at each look is below 1e-5.
     const double looks = 1 + static_cast<double>(whole.picture.stats.slices) / 24;
-    const double extra = saturation + (model == Model::cone ? 1e-5 * looks : 0);
+    const double extra = saturation + (model == Model::cone && scene.method == Method::dos ? 1e-5 * looks : 0);
     scene.sampling.saturation = saturation;
     const Drawn culled = draw(bricks, scene);
     scene.bricks.culling = false;
@@ -386,7 +392,7 @@ class Checker {
   double done_ = 0, steps_ = 1;
   std::string drawing_;
 
-  ModelResults emission_{Model::emission}, cone_{Model::cone};
+  ModelResults emission_, cone_;
   InvariantResult gaps_ = makeResult(2, "every pixel of a slice is shaded", "pixels inside bricks that none shades",
                                      "vertices are shared to the bit: none");
   InvariantResult doubleHits_ = makeResult(2, "no pixel of a slice is shaded twice",

@@ -35,7 +35,8 @@ PictureDifference difference(const Picture& a, const Picture& b, const Scene& sc
 }
 
 PictureLimit pictureLimit(const PictureDifference& shifted, const Scene& scene, std::int64_t slices) {
-  // Each slab adds a product and rounds twice, in each of two pictures; the occlusion buffer does the same.
+  // Each slab adds a product and rounds twice, in each of two pictures; the occlusion buffer or the windows do the
+  // same.
   const auto n = static_cast<double>(slices);
   double sums = 2 * n * lastPlace(scene.sampling.bits);
   if (scene.model == Model::cone) sums += 2 * n * lastPlace(scene.occlusion.bits);
@@ -43,8 +44,8 @@ PictureLimit pictureLimit(const PictureDifference& shifted, const Scene& scene, 
   // All samples were displaced by the most that rounding can do, and all one way; in the other picture it may be the
   // other.
   limit.rounding = {2 * shifted.colour + sums, 2 * shifted.visibility + sums, 2 * shifted.depth + 2 * sums};
-  // Beyond four deviations of a random walk lies 3.2e-5 of the light, on each of four sides.
-  if (scene.model == Model::cone) limit.light = 4 * 3.2e-5;
+  // Beyond four deviations of a random walk lies 3.2e-5 of the light, on each of four sides. Ordinates leave none out.
+  if (scene.model == Model::cone && scene.method == Method::dos) limit.light = 4 * 3.2e-5;
   return limit;
 }
 

@@ -18,7 +18,7 @@ PictureDifference difference(const Picture& a, const Picture& b, const Scene& sc
 /// Limits that pictures of equal samples keep.
 struct PictureLimit {
   PictureDifference rounding;  // of samples and of sums
-  double light = 0;            // cone: what the sweep leaves out of light that walks far
+  double light = 0;            // dos: what the sweep leaves out of light that walks far
 };
 
 /// @param shifted   difference that a displacement of all samples makes, by as much as rounding may move them

@@ -26,6 +26,9 @@ constexpr int kMostSlices = 32;      // that are lit together
 constexpr int kMostDirections = 64;  // that one shader takes through a slice
 constexpr int kTile = 8;             // texels along the edge of a compute shader's tile
 constexpr double kSliceBytes = 64 << 20;
+// Rounds shifts to whole texels. Light at 45 degrees has halves on every slice, and slopes are known to 1e-16: halves
+// have to go one way, or slices jump as the camera moves.
+constexpr double kRound = 0.5 - 1e-6;
 
 class OrdinatesPass : public SlicePass {
  public:
@@ -121,7 +124,7 @@ class OrdinatesPass : public SlicePass {
   // spread evenly (Roberts 2018, the sequence R2).
   void chooseRoundings(const glm::dvec2& rounding) {
     const glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
-    roundings_.assign(slopes_.size(), rounding);
+    roundings_.assign(slopes_.size(), glm::dvec2(kRound));
     if (rounding == glm::dvec2(0.5)) return;
     for (std::size_t k = 0; k < roundings_.size(); ++k)
       roundings_[k] = glm::fract(rounding + static_cast<double>(k) * step);
@@ -152,8 +155,24 @@ class OrdinatesPass : public SlicePass {
       return;
     }
     const glm::dvec2 low = glm::floor(all.min) - 2.0, high = glm::ceil(all.max) + 2.0;
+    checkSize(frame, high - low);
     lattice_.first = glm::ivec2(low);
     lattice_.size = glm::ivec2(high - low);
+  }
+
+  void checkSize(const Frame& frame, const glm::dvec2& texels) const {
+    GLint edge = 0, layers = 0;
+    frame.gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &edge);
+    frame.gl.GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &layers);
+    const auto most = static_cast<std::size_t>(layers);
+    if (slopes_.size() > most)
+      throw InvalidArgument("directions: the light has " + std::to_string(slopes_.size()) +
+                            ", beyond the driver's limit of " + std::to_string(most));
+    // Of the windows, too, which are as large.
+    if (!(std::max(texels.x, texels.y) <= edge))
+      throw InvalidArgument("occlusion.scale: window texels of " + std::to_string(lattice_.texel) +
+                            " are too small, light needs more of them side by side than the driver's limit of " +
+                            std::to_string(edge));
   }
 
   // All visible bricks, on whatever slice.

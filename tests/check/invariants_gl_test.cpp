@@ -155,6 +155,34 @@ TEST_CASE("All invariants hold where the background is visible", "[check]") {
   checkAllHold(*context, grid, sceneFor(grid, fog), options);
 }
 
+// Slices only multiply what is on the lattice of the light, which hangs on the view and not on bricks: the limits have
+// no room for light that is left out.
+TEST_CASE("All invariants hold for light by ordinates", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  for (const ScalarGrid& grid :
+       {makeDense({30, 26, 34}, {1, -40, -3}), withTransform(makeSparse({-40, 0, 9}, 5, 5, 56), crookedTransform())}) {
+    Scene scene = sceneFor(grid, softMedium(), 48, 40);
+    scene.method = Method::ordinates;
+    scene.occlusion.directions = 6;
+    scene.occlusion.aperture = 1.2;
+    scene.bricks.interior = 8;
+    CheckOptions options;
+    options.edges = {8, 32};
+    options.probedSlices = 4;
+    const std::vector<CheckView> views = checkViews(grid, scene);
+    options.views = {views[1], views[2], views.back()};
+    const auto results = checkInvariants(*context, grid, scene, options);
+    INFO(print(results));
+    for (const InvariantResult& result : results) {
+      CHECK(result.passed);
+      CHECK(result.limitFrom.find("deviations") == std::string::npos);
+    }
+    CHECK(find(results, "a pool smaller than the volume, cone").samples > 0);
+    CHECK(find(results, "several textures, cone").samples > 0);
+  }
+}
+
 // A slab from 1 to 1 gets the mean of both sides of a step at 1, so that it can be seen, though the function is 0
 // there.
 TEST_CASE("Culling keeps bricks whose lowest value is at a falling step", "[check]") {
@@ -210,6 +238,27 @@ TEST_CASE("A layer of wrong apron voxels is found in samples and pictures", "[ch
   CHECK_FALSE(find(results, "interpolated values equal BoxSampler's").passed);
   CHECK_FALSE(find(results, "bricked equals unbricked, emission").passed);
   CHECK_FALSE(find(results, "bricked equals unbricked, cone").passed);
+}
+
+TEST_CASE("A brick that is missing is found, by its shadow of ordinates as well", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = makeDense({30, 30, 30}, {3, -7, 1});
+  Scene scene = sceneFor(grid, softMedium());
+  scene.method = Method::ordinates;
+  scene.bricks.interior = 8;
+  CheckOptions options;
+  options.edges = {8};
+  options.views = {checkViews(grid, scene)[1]};
+  options.cut = [](const ScalarGrid& volume, const BrickOptions& how) {
+    auto bricks = std::make_unique<FaultyBricks>(brickGrid(volume, how));
+    bricks->bricks.erase(bricks->bricks.begin() + static_cast<std::ptrdiff_t>(middleBrick(*bricks)));
+    return bricks;
+  };
+  const auto results = checkInvariants(*context, grid, scene, options);
+  INFO(print(results));
+  CHECK_FALSE(find(results, "bricked equals unbricked, cone").passed);
+  CHECK_FALSE(find(results, "V across bricks, cone").passed);
 }
 
 TEST_CASE("A brick that is missing is found", "[check]") {

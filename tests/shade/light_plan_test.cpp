@@ -48,7 +48,7 @@ std::vector<LightSlope> randomSlopes(TestRandom& random) {
 
 // As the renderer rounds it.
 Whole shiftOf(const LightExtents& extents, const LightSlope& light, std::size_t slice) {
-  return Whole(glm::floor(extents.depths[slice] / extents.texel * light.slope + 0.5));
+  return Whole(glm::floor(extents.depths[slice] / extents.texel * light.slope + 0.5 - 1e-6));
 }
 
 // Texels (i, j) that cover [i, i + 1) x [j, j + 1) and have their centre in the rectangle.

@@ -50,8 +50,8 @@ TEST_CASE("Light by ordinates converges to that of the same directions", "[shade
   };
   for (const bool parallel : {true, false})
     for (const auto& [theta, directions, least] : {Case{1.0, 1, 1.5}, Case{1.0, 8, 1.3}, Case{1.4, 8, 1.0}}) {
-      Scene scene = smoothScene(Model::cone, 24);
-      if (parallel) scene.camera = orthographicCamera(scene.camera.eye, scene.camera.lookAt, 22, 24);
+      Scene scene = smoothScene(Model::cone, 16);
+      if (parallel) scene.camera = orthographicCamera(scene.camera.eye, scene.camera.lookAt, 22, 16);
       scene.method = Method::ordinates;
       scene.occlusion.aperture = theta;
       scene.occlusion.directions = directions;
@@ -106,8 +106,10 @@ TEST_CASE("Light by ordinates converges to the cone where dos does not", "[shade
     INFO("perspective " << perspective << ", dos " << dos << "; K = 4, 8, 16, to the same directions " << method[0]
                         << ' ' << method[1] << ' ' << method[2] << ", to the cone " << whole[0] << ' ' << whole[1]
                         << ' ' << whole[2] << ", of exact ones " << few[0] << ' ' << few[1] << ' ' << few[2]);
-    // What slices and windows get wrong does not depend on how many directions there are.
-    CHECK(std::max({method[0], method[1], method[2]}) < 1.35 * std::min({method[0], method[1], method[2]}));
+    // What slices and windows get wrong does not fall with the number of directions: it is another error. That of the
+    // single four ones is a matter of chance.
+    CHECK(method[2] == Approx(method[1]).epsilon(0.15));
+    CHECK(method[0] == Approx(method[1]).epsilon(0.35));
     CHECK(whole[1] < 0.85 * whole[0]);
     CHECK(whole[2] < 0.75 * whole[1]);
     CHECK(whole[1] < 0.35 * dos);

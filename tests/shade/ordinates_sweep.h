@@ -44,7 +44,7 @@ inline std::vector<std::array<double, 5>> sweepOrdinates(const FieldBricks& volu
   std::vector<std::array<double, 5>> eye(static_cast<std::size_t>(camera.width * camera.height));
   for (int slice = 0; slice < slices; ++slice) {
     const double depth = (slice + 0.5) * d;
-    const auto shift = [&](double perDepth) { return static_cast<int>(std::floor(depth * perDepth + 0.5)); };
+    const auto shift = [&](double perDepth) { return static_cast<int>(std::floor(depth * perDepth + 0.5 - 1e-6)); };
     for (int y = 0; y < camera.height; ++y)
       for (int x = 0; x < camera.width; ++x) {
         const ViewRay ray = viewRay(camera, x + 0.5, y + 0.5);

@@ -57,7 +57,7 @@ struct CheckOptions {
 };
 
 /// Measures all invariants. The scene gives medium, sampling, occlusion, clipping, brick edge, texel format and budget;
-/// both models are rendered, without background radiance.
+/// emission and cone are rendered, cone by its method, without background radiance.
 /// @param resolved  see resolveScene
 /// @throw InvalidArgument  as SliceRenderer, checkViews and brickGrid
 /// @throw GlError, IoError
