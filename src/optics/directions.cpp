@@ -45,6 +45,12 @@ std::vector<int> ringCounts(const std::vector<double>& sines, int count) {
   }
   return counts;
 }
+
+void checkCone(double aperture, int count) {
+  if (!(aperture >= 0 && aperture <= kPi))
+    throw InvalidArgument("aperture: expected [0, pi] rad, found " + std::to_string(aperture));
+  if (count < 1) throw InvalidArgument("directions: expected at least 1, found " + std::to_string(count));
+}
 }  // namespace
 
 std::vector<QuadratureNode> gaussLegendre(int count) {
@@ -71,9 +77,7 @@ std::vector<QuadratureNode> gaussLegendre(int count) {
 }
 
 std::vector<WeightedDirection> coneDirections(const glm::dvec3& axis, double aperture, int count, double rotation) {
-  if (!(aperture >= 0 && aperture <= kPi))
-    throw InvalidArgument("aperture: expected [0, pi] rad, found " + std::to_string(aperture));
-  if (count < 1) throw InvalidArgument("directions: expected at least 1, found " + std::to_string(count));
+  checkCone(aperture, count);
   const glm::dvec3 pole = unit(axis);
   if (aperture == 0 || count == 1) return {{pole, 1}};
   const auto sides = tangents(pole);
@@ -93,6 +97,19 @@ std::vector<WeightedDirection> coneDirections(const glm::dvec3& axis, double ape
       const double phi = rotation + kGoldenAngle * static_cast<double>(ring) + 2 * kPi * i / counts[ring];
       directions.push_back({around(pole, sides, cosines[ring], phi), nodes[ring].weight / counts[ring]});
     }
+  return directions;
+}
+
+std::vector<WeightedDirection> spiralDirections(const glm::dvec3& axis, double aperture, int count, double rotation) {
+  checkCone(aperture, count);
+  const glm::dvec3 pole = unit(axis);
+  if (aperture == 0 || count == 1) return {{pole, 1}};
+  const auto sides = tangents(pole);
+  const double height = 2 * std::sin(0.5 * aperture) * std::sin(0.5 * aperture);  // 1 - cos, without cancellation
+  std::vector<WeightedDirection> directions;
+  for (int i = 0; i < count; ++i)
+    directions.push_back(
+        {around(pole, sides, 1 - height * (i + 0.5) / count, rotation + kGoldenAngle * i), 1.0 / count});
   return directions;
 }
 

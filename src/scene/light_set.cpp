@@ -24,7 +24,9 @@ class UniformCone : public Light {
 
   std::vector<LightDirection> directions(int count, double rotation) const override {
     std::vector<LightDirection> result;
-    for (const auto& [direction, weight] : coneDirections(cone_.axis, cone_.aperture, count, rotation))
+    const bool few = count <= 64;  // beyond, exact rings win where light is smooth
+    for (const auto& [direction, weight] : few ? spiralDirections(cone_.axis, cone_.aperture, count, rotation)
+                                               : coneDirections(cone_.axis, cone_.aperture, count, rotation))
       result.push_back({glm::normalize(toWorld_ * direction), weight * cone_.radiance});
     return result;
   }

@@ -27,18 +27,22 @@ TEST_CASE("Directions of a cone lie in it, share it and balance around its axis"
   for (const double aperture : {0.1, 1.0, 1.5, kPi / 2, kPi})
     for (const int count : {1, 3, 4, 8, 32, 500}) {
       const glm::dvec3 axis = glm::normalize(glm::dvec3(0.3, -0.7, 0.2));
-      double sum = 0, along = 0;
-      const auto directions = coneDirections(axis, aperture, count, 0.4);
-      CHECK(std::abs(static_cast<int>(directions.size()) - count) <= 1 + count / 10);
-      for (const auto& [direction, weight] : directions) {
-        CHECK(glm::length(direction) == Approx(1).epsilon(1e-14));
-        CHECK(glm::dot(direction, axis) >= std::cos(aperture) - 1e-14);
-        sum += weight;
-        along += weight * glm::dot(direction, axis);
+      for (const bool spiral : {false, true}) {
+        double sum = 0, along = 0;
+        const auto directions =
+            spiral ? spiralDirections(axis, aperture, count, 0.4) : coneDirections(axis, aperture, count, 0.4);
+        CHECK(std::abs(static_cast<int>(directions.size()) - count) <= (spiral ? 0 : 1 + count / 10));
+        for (const auto& [direction, weight] : directions) {
+          CHECK(glm::length(direction) == Approx(1).epsilon(1e-14));
+          CHECK(glm::dot(direction, axis) >= std::cos(aperture) - 1e-14);
+          sum += weight;
+          along += weight * glm::dot(direction, axis);
+        }
+        CHECK(sum == Approx(1).epsilon(1e-13));
+        // The mean cosine over the solid angle is (1 + cos aperture) / 2: any number of rings is exact for it, and so
+        // is a spiral, whose cosines are the middles of equal steps.
+        if (count > 1) CHECK(along == Approx((1 + std::cos(aperture)) / 2).margin(1e-13));
       }
-      CHECK(sum == Approx(1).epsilon(1e-13));
-      // The mean cosine over the solid angle is (1 + cos aperture) / 2: any number of rings is exact for it.
-      if (count > 1) CHECK(along == Approx((1 + std::cos(aperture)) / 2).margin(1e-13));
     }
 }
 

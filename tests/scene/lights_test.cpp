@@ -74,14 +74,17 @@ TEST_CASE("A cone around the view axis is the model cone, in lists and in sample
     CHECK(largestDifference(lightDirections(lights, 37, 0.3), lightDirections(same, 37, 0.3)) == 0);
     CHECK(largestDifference(lightSamples(lights, 50, 25, 7), lightSamples(same, 50, 25, 7)) == 0);
     // The quadrature of optics as it is, in the coordinates of the view.
-    const auto plain = coneDirections({0, 0, 1}, same.occlusion.aperture, 37, 0.3);
     const CameraFrame frame = cameraFrame(same.camera);
     const glm::dmat3 viewToWorld(frame.right, frame.up, -frame.forward);
-    const auto list = lightDirections(same, 37, 0.3);
-    REQUIRE(list.size() == plain.size());
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      CHECK(glm::length(list[i].direction - viewToWorld * plain[i].direction) < 1e-15);
-      CHECK(list[i].radiance == glm::dvec3(plain[i].weight));
+    for (const int count : {37, 137}) {
+      const auto plain = count <= 64 ? spiralDirections({0, 0, 1}, same.occlusion.aperture, count, 0.3)
+                                     : coneDirections({0, 0, 1}, same.occlusion.aperture, count, 0.3);
+      const auto list = lightDirections(same, count, 0.3);
+      REQUIRE(list.size() == plain.size());
+      for (std::size_t i = 0; i < list.size(); ++i) {
+        CHECK(glm::length(list[i].direction - viewToWorld * plain[i].direction) < 1e-15);
+        CHECK(list[i].radiance == glm::dvec3(plain[i].weight));
+      }
     }
   }
 }

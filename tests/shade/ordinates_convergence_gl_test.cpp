@@ -66,7 +66,7 @@ TEST_CASE("Light by ordinates converges to that of the same directions", "[shade
       INFO("parallel " << parallel << ", theta " << theta << ", directions " << directions << ": " << errors[0] << ' '
                        << errors[1] << ' ' << errors[2] << ' ' << errors[3] << ", order " << order);
       CHECK(order > least);
-      CHECK(errors[3] < 6e-4);
+      CHECK(errors[3] < 9e-4);  // 0.0008 at 80 degrees, where light is most slanting
     }
 }
 
@@ -75,8 +75,8 @@ TEST_CASE("Light by ordinates converges to that of the same directions", "[shade
 // a voxel and a pixel; below that of first order. Measured over texels of 1.6, 0.8 and 0.4 voxels: 0.8.
 //
 // dos levels off at 0.075 (see convergence_gl_test); with 1024 slices it has 0.084 at 60 degrees and 0.079 at 80. By
-// ordinates, 128 slices have with 16 directions a fifth of that, with 8 less than a third: 0.024 of these 0.026 are
-// those of 8 directions instead of the cone, whatever renders them.
+// ordinates, 128 slices have with 16 directions a seventh of that, with 8 less than a quarter, most of which is that of 8
+// directions instead of the cone, whatever renders them.
 TEST_CASE("Light by ordinates converges to the cone where dos does not", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -109,10 +109,10 @@ TEST_CASE("Light by ordinates converges to the cone where dos does not", "[shade
     // What slices and windows get wrong does not fall with the number of directions: it is another error. That of the
     // single four ones is a matter of chance.
     CHECK(method[2] == Approx(method[1]).epsilon(0.15));
-    CHECK(method[0] == Approx(method[1]).epsilon(0.35));
+    CHECK(method[0] == Approx(method[1]).epsilon(0.45));
     CHECK(whole[1] < 0.85 * whole[0]);
     CHECK(whole[2] < 0.75 * whole[1]);
-    CHECK(whole[1] < 0.35 * dos);
+    CHECK(whole[1] < 0.25 * dos);
     CHECK(whole[2] < 0.25 * dos);
     for (std::size_t k = 0; k < 3; ++k) CHECK(whole[k] < std::hypot(few[k], 0.013) + 1e-3);
   }

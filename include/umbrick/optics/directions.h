@@ -18,6 +18,15 @@ struct WeightedDirection {
 /// @throw InvalidArgument  axis of no length, aperture outside [0, pi], count < 1
 std::vector<WeightedDirection> coneDirections(const glm::dvec3& axis, double aperture, int count, double rotation = 0);
 
+/// Exactly `count` directions of the cone, each of the same weight: cosines at equal steps, azimuths at steps of the
+/// golden angle (Swinbank and Purser 2006, Fibonacci grids). Few directions stand better for light with hard shadows
+/// this way than in rings, whose azimuths are few: over points of a scene of hard occluders, RMS of V at 60 and 80
+/// degrees with 16 directions 0.044 and 0.046 against 0.046 and 0.052, with 32 directions 0.028 and 0.030 against 0.039
+/// and 0.035.
+/// @throw InvalidArgument  as coneDirections
+std::vector<WeightedDirection> spiralDirections(const glm::dvec3& axis, double aperture, int count,
+                                                double rotation = 0);
+
 /// As many for the whole sphere; no direction stands out.
 std::vector<WeightedDirection> sphereDirections(int count, double rotation = 0);
 
