@@ -144,6 +144,7 @@ TEST_CASE("Errors fall with the slices, and the model's error is apart from the 
   const auto context = testContext();
   if (!context) return;
   SmallStudy study;
+  study.settings.directions = 24;  // references, and coarser ones of half as many, are close to each other
   study.settings.slices = {4, 64};
   runStudy(*context, study.grid, study.resolved(), study.settings, study.report());
   const Json record = study.record();
