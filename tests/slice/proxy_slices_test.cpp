@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
@@ -171,6 +172,64 @@ TEST_CASE("Slices through a camera inside the volume start at the eye", "[slice]
   const ProxySlices slices = cutSlices(view, std::vector{glm::ivec3(0)}, glm::ivec3(8), {}, 0.25);
   CHECK(slices.first == 0);
   CHECK(slices.count() == 14);  // depth 0 to 3.5
+}
+
+// Slabs around the slices follow each other without gap: those whose middle the volume has are all there is to draw.
+TEST_CASE("A phase moves every slice by its share of the spacing and leaves none out", "[slice]") {
+  const std::vector<glm::ivec3> origins{{0, 0, 0}, {0, 8, 0}};
+  const Box bounds{glm::dvec3(-0.5), {7.5, 15.5, 7.5}};
+  for (const auto& [name, camera] : cameras(bounds)) {
+    const IndexView view = indexView(camera, glm::dmat4(1));
+    double nearest = 1e30, farthest = 0;
+    for (unsigned c = 0; c < 8; ++c) {
+      const glm::dvec3 corner = glm::mix(bounds.min, bounds.max, glm::dvec3(c & 1, c >> 1 & 1, c >> 2 & 1));
+      nearest = std::min(nearest, view.toView(corner).z);
+      farthest = std::max(farthest, view.toView(corner).z);
+    }
+    nearest = std::max(nearest, 0.0);
+    for (const double d : {0.3, 1.0, 2.7})
+      for (const double phase : {0.001, 0.25, 0.5, 0.83, 0.999}) {
+        INFO(name << ", spacing " << d << ", phase " << phase << ", depths " << nearest << " to " << farthest);
+        const ProxySlices slices = cutSlices(view, origins, glm::ivec3(8), {}, d, phase);
+        REQUIRE(slices.count() > 0);
+        CHECK(slices.phase == phase);
+        for (std::int64_t i = 0; i < slices.count(); ++i)
+          CHECK(slices.depth(i) == Approx((static_cast<double>(slices.first + i) + phase) * d).epsilon(1e-14));
+        CHECK(slices.first >= 0);
+        // In front of the first and behind the last there is no other one in the volume.
+        const double rounding = 1e-9;  // of corners' depths, some 1e-15 of 50
+        CHECK(slices.depth(0) > nearest - rounding);
+        CHECK((slices.first == 0 || slices.depth(0) - d <= nearest + rounding));
+        CHECK(slices.depth(slices.count() - 1) <= farthest + rounding);
+        CHECK(slices.depth(slices.count() - 1) + d > farthest - rounding);
+      }
+  }
+}
+
+TEST_CASE("Slices of a phase are those of an eye that stands so much farther back", "[slice]") {
+  Camera camera;
+  camera.projection = Projection::orthographic;
+  camera.eye = {4, -10, 4};
+  camera.lookAt = {4, 0, 4};
+  camera.up = {0, 0, 1};
+  camera.viewHeight = 20;
+  const std::vector<glm::ivec3> origins{{0, 0, 0}};
+  const ProxySlices slices = cutSlices(indexView(camera, glm::dmat4(1)), origins, glm::ivec3(8), {}, 0.5, 0.25);
+  camera.eye.y -= 0.125;
+  const ProxySlices moved = cutSlices(indexView(camera, glm::dmat4(1)), origins, glm::ivec3(8), {}, 0.5, 0.5);
+  CHECK(moved.first == slices.first);
+  CHECK(moved.start == slices.start);
+  CHECK(moved.vertices == slices.vertices);
+}
+
+TEST_CASE("A phase that makes no sense is refused", "[slice]") {
+  const IndexView view = indexView(Camera{}, glm::dmat4(1));
+  const std::vector origins{glm::ivec3(-4)};
+  for (const double phase : {0.0, 1.0, -0.5, 1.5, std::nan("")}) {
+    INFO(phase);
+    CHECK_THROWS_WITH(cutSlices(view, origins, glm::ivec3(8), {}, 0.5, phase),
+                      Catch::Contains("slices: phase is") && Catch::Contains("must be in (0, 1)"));
+  }
 }
 
 TEST_CASE("A spacing that makes no sense is refused", "[slice]") {
