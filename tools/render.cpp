@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -85,16 +86,18 @@ nlohmann::ordered_json printPasses(const ProgressivePicture& picture, std::uint6
   return json;
 }
 
-void writePicture(const PictureOutput& output, const Picture& picture, const Scene& scene, const GlContext& context) {
+void writePicture(const PictureOutput& output, const Picture& picture, const Scene& scene, const GlContext& context,
+                  const std::string& progressive = {}) {
   std::vector<ImageLayer> layers{{"", picture.colour}};
   if (output.layers) {
     layers.push_back({"V", picture.visibility});
     layers.push_back({"Z", picture.depth});
   }
-  writeOutputs(output, layers,
-               {{"umbrick.scene", printScene(scene)},
-                {"umbrick.renderer", context.description()},
-                {"umbrick.version", UMBRICK_VERSION}});
+  std::map<std::string, std::string> metadata{{"umbrick.scene", printScene(scene)},
+                                              {"umbrick.renderer", context.description()},
+                                              {"umbrick.version", UMBRICK_VERSION}};
+  if (!progressive.empty()) metadata["umbrick.progressive"] = progressive;
+  writeOutputs(output, layers, metadata);
 }
 
 std::string describe(const ProgressivePicture& picture) {
@@ -125,7 +128,8 @@ ProgressivePicture renderPasses(const RenderCommand& command, const GlContext& c
       context, *loaded.bricks, loaded.scene, progressive, options, [&](const ProgressivePicture& picture) {
         framesMs.push_back(pass.elapsedMs());
         if (first || written.elapsedMs() > kWriteEveryMs) {
-          writePicture(*command.output, picture.picture, picture.scene, context);
+          writePicture(*command.output, picture.picture, picture.scene, context,
+                       printPasses(picture, command.seed).dump());
           written = Stopwatch();
           first = false;
         }
@@ -148,6 +152,10 @@ int render(const RenderCommand& command) {
   checkOutputs(output);
   const Scene scene = makeScene(*command.scene);
   const bool progressive = command.passes || command.maxSeconds || command.targetError;
+  if (progressive && command.frames > 1) throw UsageError("--frames and --progressive exclude each other");
+  if (progressive && (scene.model == Model::emission || scene.method == Method::dos))
+    throw UsageError(
+        "--progressive, --max-seconds and --target-error need the model cone or lights and the method ordinates");
   LoadedScene loaded = loadScene(scene, progressive);
   const auto context = createGlContext(parseBackend(command.backend));
   RenderOptions options;
@@ -170,7 +178,8 @@ int render(const RenderCommand& command) {
     }
   }
   const Stopwatch write;
-  writePicture(output, picture, loaded.scene, *context);
+  writePicture(output, picture, loaded.scene, *context,
+               passes ? printPasses(*passes, command.seed).dump() : std::string());
   printOutputs(output);
   if (!output.stats.empty()) {
     auto stats = printStats(loaded, picture, framesMs, *context, write.elapsedMs(), command.timePasses);

@@ -1,5 +1,6 @@
 #include "scene_options.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -79,18 +80,24 @@ void applyModel(const SceneOptions& options, Scene& scene) {
   if (options.background) scene.background = toVector(*options.background);
 }
 
-// Before what it stands for is given one by one. A volume alone says nothing of its slices: then `normal` does, unless
-// the command line says anything of them.
+// Before what it stands for is given one by one. A volume alone says nothing of its slices: then `normal` does.
 void applyQuality(const SceneOptions& options, bool fromScene, Scene& scene) {
+  const bool lit = scene.model == Model::cone || scene.model == Model::lights;
+  const bool dos = options.method ? *options.method == "dos" : scene.method == Method::dos;
+  if (options.quality && (!lit || (options.method && dos)))
+    throw UsageError("--quality: is for the models cone and lights by the method ordinates");
   if (options.quality)
-    return applyQuality(*options.quality == "draft"    ? Quality::draft
-                        : *options.quality == "normal" ? Quality::normal
-                                                       : Quality::high,
-                        scene);
-  const bool byOrdinates = (scene.model == Model::cone || scene.model == Model::lights) && options.method != "dos";
-  const bool said =
-      options.spacing || options.segments || options.spacingUnit || options.directions || options.occlusionScale;
-  if (byOrdinates && !fromScene && !said) applyQuality(Quality::normal, scene);
+    applyQuality(*options.quality == "draft"    ? Quality::draft
+                 : *options.quality == "normal" ? Quality::normal
+                                                : Quality::high,
+                 scene);
+  else if (lit && !dos && !fromScene)
+    applyQuality(Quality::normal, scene);
+  else
+    return;
+  // Other slabs have segments as long as these, unless told.
+  if (options.spacing && options.spacingUnit != "world")
+    scene.sampling.segments = std::clamp(static_cast<int>(std::ceil(*options.spacing / 0.625)), 1, 8);
 }
 
 void applySampling(const SceneOptions& options, Scene& scene) {
@@ -163,7 +170,7 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
   command
       .add_option("--quality", o.quality,
                   "draft, normal or high: ordinates with spacing, segments and directions that go together; options "
-                  "that name one of them win [normal for a .vdb when no option does]")
+                  "that name one of them win [of a .vdb: normal]")
       ->check(CLI::IsMember({"draft", "normal", "high"}))
       ->group(light);
   command
@@ -184,7 +191,7 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
   command.add_option("--passes", o.passes, "2: two passes per slice, 1: multiple render targets [1]")->group(light);
   command
       .add_option("--occlusion-bits", o.occlusionBits,
-                  "of the occlusion buffer: 32 (float) or 16 (fixed point, see --eye-bits) [32]")
+                  "of the occlusion buffer or the windows: 32 (float) or 16 (fixed point, see --eye-bits) [32]")
       ->group(light);
   command.add_flag("--no-perspective-correction", o.noPerspectiveCorrection, "footprint as in a parallel view")
       ->group(light);
@@ -198,14 +205,18 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
       ->group(light);
 
   const std::string sampling = "Sampling";
-  command.add_option("--spacing", o.spacing, "distance of slices [0.5]")->group(sampling);
+  command.add_option("--spacing", o.spacing, "distance of slices [0.5; cone and lights of a .vdb: as --quality says]")
+      ->group(sampling);
   command.add_option("--spacing-unit", o.spacingUnit, "voxel (its shortest edge) or world [voxel]")
       ->check(CLI::IsMember({"voxel", "world"}))
       ->group(sampling);
   command.add_option("--quadrature", o.quadrature, "of a slab: preintegrated or midpoint [preintegrated]")
       ->check(CLI::IsMember({"preintegrated", "midpoint"}))
       ->group(sampling);
-  command.add_option("--segments", o.segments, "of a slab, integrated one by one along the ray, 1 to 8 [1]")
+  command
+      .add_option(
+          "--segments", o.segments,
+          "of a slab, integrated one by one along the ray, 1 to 8 [1; with --quality: no longer than 0.6 voxels]")
       ->group(sampling);
   command
       .add_option("--table-size", o.tableSize,

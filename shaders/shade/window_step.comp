@@ -16,6 +16,7 @@ layout(binding = 2, r32f) coherent uniform image2DArray weights;
 const float kLeastWeight = 1e-3;  // where nothing is seen of all four texels, all count alike
 layout(std430, binding = 0) readonly buffer Tiles { uint tiles[]; };  // x + 65536 y
 uniform int first_tile;              // of the slice
+uniform int tile_count;
 uniform int layer;                   // of the slice
 uniform vec4 path[kDirections];      // xy: window's minus lattice's texel; z: 1/cos(angle to the view axis); w: 1 / (1 + z)
 uniform vec4 radiance[kDirections];  // rgb; a: share of the light
@@ -23,7 +24,9 @@ uniform int direction_count;
 uniform int add;                     // 1: to what other directions have brought
 
 void main() {
-  uint tile = tiles[first_tile + int(gl_WorkGroupID.x)];
+  int group = int(gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
+  if (group >= tile_count) return;
+  uint tile = tiles[first_tile + group];
   ivec2 x = ivec2(tile & 0xffffu, tile >> 16) * 8 + ivec2(gl_LocalInvocationID.xy);
   if (any(greaterThanEqual(x, textureSize(extinction, 0).xy))) return;
   float tau = texelFetch(extinction, ivec3(x, layer), 0).r;

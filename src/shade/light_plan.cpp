@@ -61,7 +61,8 @@ LightWindow LightPlanner::window(std::size_t direction, std::int64_t first, std:
   const Rectangle live = readFrom_[at(direction, first)].within(touchedUntil_[at(direction, last)]);
   if (live.empty()) return {};
   const glm::vec<2, std::int64_t> low(glm::floor(live.min)), high(glm::ceil(live.max));
-  return {low, glm::ivec2(high - low)};
+  // Those of runs across a wide gap may be larger than numbers: too large for a run anyway.
+  return {low, glm::ivec2(glm::min(high - low, glm::vec<2, std::int64_t>(1 << 30)))};
 }
 
 std::vector<LightRun> LightPlanner::runs(std::int64_t first, std::int64_t last, int longest, double most) const {

@@ -132,9 +132,8 @@ class OrdinatesPass : public SlicePass {
 
   void chooseLattice(const Frame& frame) {
     const ProxySlices& slices = frame.slices;
-    const double pixel =
-        2 * frame.view.halfExtent.y / frame.camera.height *
-        (frame.view.projection == Projection::perspective ? glm::length(frame.camera.lookAt - frame.camera.eye) : 1.0);
+    const bool perspective = frame.view.projection == Projection::perspective;
+    const double pixel = 2 * frame.view.halfExtent.y / frame.camera.height * (perspective ? frame.nearestDepth : 1.0);
     const double scale = frame.scene.occlusion.scale;
     // Paths are off by up to a texel across and half a slab along: neither alone is worth refining. Detail below a
     // voxel or a pixel is not worth it either.
@@ -265,15 +264,12 @@ class OrdinatesPass : public SlicePass {
       }
     });
     firstTile_.assign(1, 0);
-    std::vector<GLuint> all;
+    tileList_.clear();
     for (const std::vector<GLuint>& slice : tiles) {
-      all.insert(all.end(), slice.begin(), slice.end());
-      firstTile_.push_back(static_cast<int>(all.size()));
+      tileList_.insert(tileList_.end(), slice.begin(), slice.end());
+      firstTile_.push_back(tileList_.size());
     }
-    if (all.empty()) all.push_back(0);
     if (!tiles_) tiles_ = GlBuffer(frame.gl);
-    frame.gl.NamedBufferData(tiles_.name(), static_cast<GLsizeiptr>(all.size() * sizeof(GLuint)), all.data(),
-                             GL_STREAM_DRAW);
   }
 
   std::span<const LightRun> runsOf(std::int64_t first, std::int64_t last) const {
@@ -297,7 +293,7 @@ class OrdinatesPass : public SlicePass {
     if (!lightPolygons_) lightPolygons_.emplace(gl);
     const Sizes sizes{lattice_.size, windowSize_, static_cast<int>(slopes_.size()), slicesTogether_, coloured_};
     if (sizes_ == sizes) return;
-    sizes_ = sizes;
+    sizes_ = {};  // until all are made
     windowBits_ = frame.scene.occlusion.bits;
     const auto array = [&](GLenum kind, const glm::ivec2& size, int layers, GLenum filter) {
       return makeTextureArray(gl, kind, size.x, size.y, layers, filter);
@@ -307,6 +303,7 @@ class OrdinatesPass : public SlicePass {
     weights_ = array(GL_R32F, lattice_.size, slicesTogether_, GL_LINEAR);
     visibility_ = array(visibilityFormat(), lattice_.size, slicesTogether_, GL_LINEAR);
     windows_ = array(windowFormat(frame), windowSize_, static_cast<int>(slopes_.size()), GL_NEAREST);
+    sizes_ = sizes;
   }
 
   GLenum visibilityFormat() const { return coloured_ ? GL_RGBA32F : GL_RG32F; }
@@ -341,6 +338,11 @@ class OrdinatesPass : public SlicePass {
     gl.BindImageTexture(0, windows_.name(), 0, GL_TRUE, 0, GL_READ_WRITE, windowFormat(frame));
     gl.BindImageTexture(2, weights_.name(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_R32F);
     gl.BindImageTexture(1, visibility_.name(), 0, GL_TRUE, 0, GL_READ_WRITE, visibilityFormat());
+    const auto tiles = std::span(tileList_).subspan(firstTile_[static_cast<std::size_t>(run.slices.front())],
+                                                    firstTile_[static_cast<std::size_t>(run.slices.back()) + 1] -
+                                                        firstTile_[static_cast<std::size_t>(run.slices.front())]);
+    if (tiles.empty()) return;
+    gl.NamedBufferData(tiles_.name(), static_cast<GLsizeiptr>(tiles.size_bytes()), tiles.data(), GL_STREAM_DRAW);
     gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, tiles_.name());
     for (std::size_t first = 0; first < slopes_.size(); first += group_) {
       const std::size_t count = std::min(group_, slopes_.size() - first);
@@ -413,7 +415,7 @@ class OrdinatesPass : public SlicePass {
   // Through slice m of the run.
   void step(const GlFunctions& gl, const LightRun& run, std::size_t m, std::size_t first, std::size_t count) {
     const auto slice = static_cast<std::size_t>(run.slices[m]);
-    const int tiles = firstTile_[slice + 1] - firstTile_[slice];
+    const auto tiles = static_cast<int>(firstTile_[slice + 1] - firstTile_[slice]);
     if (tiles == 0) return;
     GlProgram& program = step_.current();
     std::vector<glm::vec4> paths;
@@ -424,10 +426,14 @@ class OrdinatesPass : public SlicePass {
                          1 / (1 + stretch));
     }
     program.set("path", paths);
-    program.set("first_tile", firstTile_[slice]);
+    program.set("first_tile",
+                static_cast<int>(firstTile_[slice] - firstTile_[static_cast<std::size_t>(run.slices.front())]));
     program.set("layer", static_cast<int>(m));
     program.use();
-    gl.DispatchCompute(static_cast<GLuint>(tiles), 1, 1);
+    // Every driver takes so many along an axis.
+    const int columns = std::min(tiles, 32768);
+    program.set("tile_count", tiles);
+    gl.DispatchCompute(static_cast<GLuint>(columns), static_cast<GLuint>((tiles + columns - 1) / columns), 1);
     gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   }
 
@@ -468,8 +474,9 @@ class OrdinatesPass : public SlicePass {
   GlTexture extinction_, visibility_, weights_, windows_;
   GlFramebuffer extinctionTarget_;
   GlBuffer tiles_;
-  std::vector<int> firstTile_;     // by slice, and one more
-  std::vector<LightWindow> open_;  // as the run before has left them
+  std::vector<GLuint> tileList_;        // of all slices
+  std::vector<std::size_t> firstTile_;  // by slice, and one more
+  std::vector<LightWindow> open_;       // as the run before has left them
 };
 
 }  // namespace

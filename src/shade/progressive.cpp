@@ -109,6 +109,9 @@ void check(const Scene& scene, const ProgressiveOptions& options) {
                           modelName(scene.model) + " and " + methodName(scene.method));
   if (options.passes < 1)
     throw InvalidArgument("progressive: passes is " + std::to_string(options.passes) + ", must be 1 or more");
+  if (options.targetError > 0 && options.passes < kStreams)
+    throw InvalidArgument("progressive: passes is " + std::to_string(options.passes) +
+                          ", a target error needs at least " + std::to_string(kStreams));
   if (!(options.maxSeconds >= 0) || !(options.targetError >= 0))
     throw InvalidArgument("progressive: seconds and target error are " + std::to_string(options.maxSeconds) + " and " +
                           std::to_string(options.targetError) + ", must be 0 or more");
@@ -130,7 +133,7 @@ Scene coarserScene(const Scene& scene) {
   Scene coarse = scene;
   coarse.sampling.spacing *= 2;
   coarse.sampling.segments = std::min(8, 2 * scene.sampling.segments);
-  coarse.occlusion.scale = scene.occlusion.scale / 2;
+  coarse.occlusion.scale = scene.occlusion.scale / 2;  // an automatic one is made explicit by renderProgressive
   return coarse;
 }
 
@@ -149,11 +152,13 @@ class PassSeries {
  public:
   PassSeries(const GlContext& context, const Bricks& volume, const Scene& scene, std::uint64_t seed,
              const RenderOptions& render)
-      : scene_(scene), fine_(context, volume, scene, render) {
-    const Scene coarse = coarserScene(scene);
-    if (fits(volume, coarse)) coarse_.emplace(context, volume, coarse, render);
+      : context_(context), volume_(volume), scene_(scene), render_(render), fine_(context, volume, scene, render) {
     for (int i = 0; i < kStreams; ++i) streams_.emplace_back(seed, static_cast<std::uint64_t>(i));
   }
+
+  const Scene& scene() const { return scene_; }
+  /// False when slabs twice as thick reach beyond the bricks.
+  bool knowsSystematic() const { return fits(volume_, coarserScene(scene_)); }
 
   // One more; the picture is the mean so far.
   void pass(Picture& picture, ErrorEstimate& error) {
@@ -162,6 +167,11 @@ class PassSeries {
     picture = fine_.render(scene_.camera, sample);
     means_[stream].add(picture);
     all_.add(picture);
+    if (passes_ == 0) {
+      // An automatic texel is that of the first picture from now on, so that twice and half of it are what they say.
+      scene_.occlusion.scale = shortestVoxelEdge(volume_.indexToWorld) / picture.stats.windowTexel;
+      if (knowsSystematic()) coarse_.emplace(context_, volume_, coarserScene(scene_), render_);
+    }
     // The same light: what differs are slabs and texels.
     if (coarse_) coarseMean_.add(coarse_->render(scene_.camera, sample));
     if (++passes_ >= kStreams) error.statistical = standardError();
@@ -185,7 +195,10 @@ class PassSeries {
     });
   }
 
+  const GlContext& context_;
+  const Bricks& volume_;
   Scene scene_;
+  RenderOptions render_;
   SliceRenderer fine_;
   std::optional<SliceRenderer> coarse_;
   std::vector<Stream> streams_;
@@ -202,29 +215,34 @@ ProgressivePicture renderProgressive(const GlContext& context, const Bricks& vol
   check(scene, options);
   const Stopwatch watch;
   const double finest = shortestVoxelEdge(volume.indexToWorld) / 8;
-  Scene current = scene;
-  auto series = std::make_unique<PassSeries>(context, volume, current, options.seed, render);
-  ProgressivePicture result;
-  result.error = {kInfinity, kInfinity};
+  auto series = std::make_unique<PassSeries>(context, volume, scene, options.seed, render);
+  ProgressivePicture best, current;
+  best.error = current.error = {kInfinity, kInfinity};
   for (int pass = 0; pass < options.passes; ++pass) {
-    series->pass(result.picture, result.error);
-    ++result.passes;
-    result.scene = current;
-    result.seconds = watch.elapsedMs() / 1e3;
-    result.reachedTarget = options.targetError > 0 && result.error.total() <= options.targetError;
-    if (onPass && !onPass(result)) break;
-    if (result.reachedTarget || (options.maxSeconds > 0 && result.seconds >= options.maxSeconds)) break;
-    // Half of the squared error is for either kind.
-    if (options.refine && std::isfinite(result.error.systematic) &&
-        result.error.systematic > options.targetError / std::sqrt(2.0) && current.sampling.spacing / 2 >= finest) {
-      current = finerScene(current);
-      series.reset();
-      series = std::make_unique<PassSeries>(context, volume, current, options.seed, render);
-      result.passes = 0;
-      result.error = {kInfinity, kInfinity};
+    series->pass(current.picture, current.error);
+    ++current.passes;
+    current.scene = series->scene();
+    current.seconds = watch.elapsedMs() / 1e3;
+    current.reachedTarget = options.targetError > 0 && current.error.total() <= options.targetError;
+    // A refined scene takes over once it is known to be better.
+    const bool sameScene = best.passes == 0 || best.scene.sampling.spacing == current.scene.sampling.spacing;
+    if (sameScene || current.error.total() < best.error.total()) best = current;
+    best.seconds = current.seconds;
+    if (onPass && !onPass(best)) break;
+    if (best.reachedTarget || (options.maxSeconds > 0 && best.seconds >= options.maxSeconds)) break;
+    if (options.targetError == 0 || current.passes < kStreams) continue;
+    // Half of the squared error is for either kind. What does not average out is not worth waiting for.
+    const bool inTheWay = !(current.error.systematic <= options.targetError / std::sqrt(2.0));
+    const bool canRefine = options.refine && current.scene.sampling.spacing / 2 >= finest;
+    if (inTheWay && canRefine && pass + 1 < options.passes) {
+      series = std::make_unique<PassSeries>(context, volume, finerScene(current.scene), options.seed, render);
+      current.passes = 0;
+      current.error = {kInfinity, kInfinity};
+    } else if (!(current.error.systematic < options.targetError)) {
+      break;  // and nothing is left to make it smaller
     }
   }
-  return result;
+  return best;
 }
 
 }  // namespace umbrick

@@ -224,6 +224,14 @@ class SliceRenderer::Implementation {
     return planes;
   }
 
+  double nearestDepth(const IndexView& view) const {
+    const glm::dvec3 low(volume_.domain.min), extent(volume_.domain.extent());
+    double nearest = std::numeric_limits<double>::infinity();
+    for (unsigned c = 0; c < 8; ++c)
+      nearest = std::min(nearest, view.toView(low + extent * glm::dvec3(c & 1, c >> 1 & 1, c >> 2 & 1)).z);
+    return std::max(nearest, scene_.sampling.spacing);
+  }
+
   void prepareFrame(const Camera& camera, const RenderSample& sample) {
     const IndexView view = indexView(camera, volume_.indexToWorld);
     checkReach(view);
@@ -235,7 +243,8 @@ class SliceRenderer::Implementation {
       slices = cutSlices(view, origins_, volume_.layout.interior, planes, spacing, sample.phase);
     frame_.emplace(Frame{gl_, scene_, camera, view, std::move(planes), std::move(slices), *atlas_, *transfer_,
                          *targets_, *polygons_, FragmentCounter(gl_, options_.countFragments), options_.reverseBricks,
-                         shortestVoxelEdge(volume_.indexToWorld), PassClock(gl_, options_.timePasses), sample});
+                         shortestVoxelEdge(volume_.indexToWorld), nearestDepth(view),
+                         PassClock(gl_, options_.timePasses), sample});
     pass_->plan(*frame_);
     std::vector<const ProxySlices*> sweeps{&frame_->slices};
     if (pass_->occluders()) sweeps.push_back(pass_->occluders());

@@ -17,8 +17,9 @@ struct ErrorEstimate {
   /// From the spread of kStreams means; infinite before there are as many.
   double statistical = 0;
   /// What does not average out: of thickness of slabs and texels of windows. Pictures with both twice as large are off
-  /// by about twice as much (first order, see the convergence tests): the difference to them. Infinite before it is
-  /// known, or when slabs twice as thick reach beyond the bricks' apron.
+  /// by about twice as much (first order, see the convergence tests): the difference to them. An estimate: where texels
+  /// are much larger than slabs the true one has been seen to be twice that. Infinite before it is known, or when
+  /// slabs twice as thick reach beyond the bricks' apron.
   double systematic = 0;
   double total() const;  // root of the sum of squares
 };
@@ -37,7 +38,7 @@ struct ProgressivePicture {
   int passes = 0;
   double seconds = 0;
   ErrorEstimate error;
-  Scene scene;  // that the passes are of: the one given, or a finer one
+  Scene scene;  // that the passes are of: the one given, or a finer one; its windows' scale is explicit
   bool reachedTarget = false;
 };
 

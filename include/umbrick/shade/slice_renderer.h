@@ -75,7 +75,13 @@ struct Picture {
 ///   C += (1 - A) (sigma_s / sigma_t) alpha O L_a        emission: O = 1
 ///   A += (1 - A) alpha
 ///   O  = exp(-sigma_t d) * mean of O over the cone's footprint on the slice before   (Algorithm 3; 2 as in the paper)
-/// and in the end C + (1 - A) L_b. O is read straight before a point along the slice normal.
+/// and in the end C + (1 - A) L_b. O is read straight before a point along the slice normal. That is emission and dos.
+/// By ordinates, with directions k of radiance L_k, lengths per depth c_k of their paths, and of the path to the eye r:
+///   C += (1 - A) (sigma_s / sigma_t) (1 - exp(-tau (1 + a))) / (1 + a) L_a sum_k L_k T_k      tau = sigma_t d r
+///   T_k = exp(-c_k tau_j / r) over all slabs j in front, along the path of k, met in whole texels of the lattice of
+///   light
+/// with a = c / r for the one c that would scatter the same from a solid slab: sum_k L_k T_k / (1 + c_k) = sum_k L_k
+/// T_k / (1 + c). Between texels, sums are interpolated with the transmittance along the view axis as their weight.
 /// Sources: Max 1995, doi:10.1109/2945.468400; Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
 class SliceRenderer {
  public:
