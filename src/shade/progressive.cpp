@@ -6,9 +6,7 @@
 #include <glm/common.hpp>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <string>
-
 #include <vector>
 
 #include "umbrick/core/error.h"
@@ -140,7 +138,6 @@ Scene finerScene(const Scene& scene) {
   Scene fine = scene;
   fine.sampling.spacing /= 2;
   fine.sampling.segments = std::max(1, scene.sampling.segments / 2);
-  fine.occlusion.scale = scene.occlusion.scale * 2;
   return fine;
 }
 
@@ -149,9 +146,13 @@ class PassSeries {
  public:
   PassSeries(const GlContext& context, const Bricks& volume, const Scene& scene, std::uint64_t seed,
              const RenderOptions& render)
-      : scene_(scene), fine_(context, volume, scene, render) {
-    const Scene coarse = coarserScene(scene);
-    if (fits(volume, coarse)) coarse_.emplace(context, volume, coarse, render);
+      : scene_(scene), fine_(context, volume, scene, render), voxelEdge_(shortestVoxelEdge(volume.indexToWorld)) {
+    Scene coarse = coarserScene(scene);
+    if (fits(volume, coarse))
+      makeCoarse_ = [&context, &volume, coarse, render](double scale) mutable {
+        coarse.occlusion.scale = scale;
+        return std::make_unique<SliceRenderer>(context, volume, coarse, render);
+      };
     for (int i = 0; i < kStreams; ++i) streams_.emplace_back(seed, static_cast<std::uint64_t>(i));
   }
 
@@ -162,6 +163,9 @@ class PassSeries {
     picture = fine_.render(scene_.camera, sample);
     means_[stream].add(picture);
     all_.add(picture);
+    // Where the renderer chooses texels it may choose the same ones for thicker slabs: twice as large as it did.
+    scale_ = picture.stats.windowTexel > 0 ? voxelEdge_ / picture.stats.windowTexel : scene_.occlusion.scale;
+    if (makeCoarse_ && !coarse_ && passes_ == 0) coarse_ = makeCoarse_(scale_ / 2);
     // The same light: what differs are slabs and texels.
     if (coarse_) coarseMean_.add(coarse_->render(scene_.camera, sample));
     if (++passes_ >= kStreams) error.statistical = standardError();
@@ -173,6 +177,13 @@ class PassSeries {
       coarse_.reset();
     }
     all_.store(picture);
+  }
+
+  // Slabs and texels half as large as those of the passes so far.
+  Scene finer() const {
+    Scene fine = finerScene(scene_);
+    fine.occlusion.scale = 2 * scale_;
+    return fine;
   }
 
  private:
@@ -187,7 +198,9 @@ class PassSeries {
 
   Scene scene_;
   SliceRenderer fine_;
-  std::optional<SliceRenderer> coarse_;
+  double voxelEdge_, scale_ = 0;  // window texels per voxel edge
+  std::function<std::unique_ptr<SliceRenderer>(double)> makeCoarse_;
+  std::unique_ptr<SliceRenderer> coarse_;
   std::vector<Stream> streams_;
   std::array<Accumulator, kStreams> means_;
   Accumulator all_, coarseMean_;
@@ -214,10 +227,12 @@ ProgressivePicture renderProgressive(const GlContext& context, const Bricks& vol
     result.reachedTarget = options.targetError > 0 && result.error.total() <= options.targetError;
     if (onPass && !onPass(result)) break;
     if (result.reachedTarget || (options.maxSeconds > 0 && result.seconds >= options.maxSeconds)) break;
-    // Half of the squared error is for either kind.
-    if (options.refine && std::isfinite(result.error.systematic) &&
+    // Half of the squared error is for either kind. Finer passes that are too few to know their error would be worth
+    // less than the picture that there is.
+    const bool left = options.passes - 1 - pass >= kStreams;
+    if (options.refine && left && std::isfinite(result.error.systematic) &&
         result.error.systematic > options.targetError / std::sqrt(2.0) && current.sampling.spacing / 2 >= finest) {
-      current = finerScene(current);
+      current = series->finer();
       series.reset();
       series = std::make_unique<PassSeries>(context, volume, current, options.seed, render);
       result.passes = 0;
