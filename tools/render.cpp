@@ -21,6 +21,7 @@
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/shade/progressive.h"
 #include "umbrick/shade/slice_renderer.h"
+#include "validators.h"
 
 namespace umbrick::tools {
 namespace {
@@ -216,7 +217,10 @@ Command addRender(CLI::App& app) {
                   "in its way; exit status 1 when it is not reached")
       ->check(CLI::PositiveNumber)
       ->group(progressive);
-  sub->add_option("--seed", command->seed, "of the passes")->capture_default_str()->group(progressive);
+  sub->add_option("--seed", command->seed, "of the passes")
+      ->check(nonNegativeNumber())
+      ->capture_default_str()
+      ->group(progressive);
   sub->add_flag("--time-passes", command->timePasses, "also time each kind of pass, for --stats; slower");
   sub->get_option("--time-passes")->group("Output");
   return {sub, [command] { return render(*command); }};

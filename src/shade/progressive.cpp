@@ -6,9 +6,7 @@
 #include <glm/common.hpp>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <string>
-
 #include <vector>
 
 #include "umbrick/core/error.h"
@@ -143,7 +141,6 @@ Scene finerScene(const Scene& scene) {
   Scene fine = scene;
   fine.sampling.spacing /= 2;
   fine.sampling.segments = std::max(1, scene.sampling.segments / 2);
-  fine.occlusion.scale = scene.occlusion.scale * 2;
   return fine;
 }
 
@@ -185,6 +182,13 @@ class PassSeries {
     all_.store(picture);
   }
 
+  // Slabs and texels half as large as those of the passes so far.
+  Scene finer() const {
+    Scene fine = finerScene(scene_);
+    fine.occlusion.scale = 2 * scale_;
+    return fine;
+  }
+
  private:
   double standardError() const {
     return rootMean(all_.values(), [&](std::size_t i) {
@@ -200,7 +204,9 @@ class PassSeries {
   Scene scene_;
   RenderOptions render_;
   SliceRenderer fine_;
-  std::optional<SliceRenderer> coarse_;
+  double voxelEdge_, scale_ = 0;  // window texels per voxel edge
+  std::function<std::unique_ptr<SliceRenderer>(double)> makeCoarse_;
+  std::unique_ptr<SliceRenderer> coarse_;
   std::vector<Stream> streams_;
   std::array<Accumulator, kStreams> means_;
   Accumulator all_, coarseMean_;

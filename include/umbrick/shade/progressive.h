@@ -29,7 +29,7 @@ struct ProgressiveOptions {
   double maxSeconds = 0;   // no pass begins after so many; 0: any time
   double targetError = 0;  // stop when the estimated total error is no more than this; 0: never
   bool refine = false;     // begin again with slabs and texels half as large where the systematic error alone is in
-                           // the way of the target, down to an eighth of a voxel
+                           // the way of the target, down to an eighth of a voxel, and kStreams passes are left
   std::uint64_t seed = 1;  // other seeds, other pictures of the same expectation
 };
 
@@ -58,7 +58,8 @@ ProgressivePicture renderProgressive(const GlContext& context, const Bricks& vol
                                      const ProgressiveOptions& options, const RenderOptions& render = {},
                                      const std::function<bool(const ProgressivePicture&)>& onPass = {});
 
-/// The scene with slabs and window texels twice as large, by which the systematic error is estimated.
+/// The scene with slabs and window texels twice as large, by which the systematic error is estimated; texels that the
+/// renderer chooses (scale 0) are doubled when it has chosen.
 Scene coarserScene(const Scene& scene);
 
 }  // namespace umbrick

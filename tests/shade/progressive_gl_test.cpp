@@ -1,0 +1,426 @@
+// Pictures of many passes: what they converge to, how fast, and whether they know how far off they are.
+#include "umbrick/shade/progressive.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <optional>
+
+#include "shade/grid_picture.h"
+#include "support/complaint.h"
+#include "support/courtyard.h"
+#include "support/observed_order.h"
+#include "umbrick/reference/reference.h"
+
+using namespace umbrick;
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const RenderOptions kLayers{.visibilityAndDepth = true};
+
+// The courtyard in few pixels, slabs and directions.
+Scene smallScene(int slices = 16, int directions = 3) {
+  Scene scene = courtyardScene(60, slices);
+  scene.camera.width = scene.camera.height = 24;
+  scene.method = Method::ordinates;
+  scene.occlusion.directions = directions;
+  return scene;
+}
+
+// A layer of depth 40.3 to 56.2, far wider than the picture, under light from one direction: nothing in it depends on
+// directions, and slabs are exact (see ordinates_gl_test).
+Scene layerScene(bool perspective, double eyeDepth = 40.3) {
+  const double z = 50 + eyeDepth;
+  Scene scene = plainScene(TransferFunction({{0, {{1, 0.5, 0.25}, 0}}, {1, {{1, 0.5, 0.25}, 0.11}}}),
+                           perspective ? perspectiveCamera({16, 16, z}, {16, 16, 0}, 0.7, 16)
+                                       : orthographicCamera({16, 16, z}, {16, 16, 0}, 30, 16),
+                           1.7);
+  scene.camera.up = {0, 1, 0};
+  scene.method = Method::ordinates;
+  scene.model = Model::lights;
+  scene.lights = {{LightFrame::view, ListedLight{{{{0.5, -0.3, 0.7}, 1, glm::dvec3(1)}}}}};
+  scene.clipPlanes = {{0, 0, 1, -34.1}, {0, 0, -1, 50}};
+  return scene;
+}
+
+FieldBricks layerVolume(const Scene& scene) {
+  return fieldFor(scene, [](const glm::ivec3&) { return 1.0; }, {glm::ivec3(-64, -64, 0), glm::ivec3(95, 95, 63)});
+}
+
+// Bricks that slabs twice as thick fit as well.
+std::unique_ptr<Bricks> bricksForPasses(const ScalarGrid& grid, const Scene& scene) {
+  return bricksFor(grid, coarserScene(scene));
+}
+
+// Of R, G, B, as the estimates are.
+double rmsOfRgb(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    if (i % 4 != 3) sum += std::pow(static_cast<double>(a.pixels[i]) - static_cast<double>(b.pixels[i]), 2);
+  return std::sqrt(sum / (0.75 * static_cast<double>(a.pixels.size())));
+}
+
+double rootMeanSquare(const std::vector<double>& numbers) {
+  double sum = 0;
+  for (const double number : numbers) sum += number * number;
+  return std::sqrt(sum / static_cast<double>(numbers.size()));
+}
+
+}  // namespace
+
+TEST_CASE("A homogeneous layer looks the same whatever the sample", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  for (const bool perspective : {false, true}) {
+    const Scene scene = layerScene(perspective);
+    const FieldBricks volume = layerVolume(scene);
+    SliceRenderer renderer(*context, volume, scene, kLayers);
+    const Picture plain = renderer.render();
+    const double depth = renderer.sliceDepths().front();
+    CHECK(plain.colour.at(8, 8)[0] > 0.3f);
+    for (const double phase : {0.001, 0.2, 0.5, 0.71, 0.999})
+      for (const glm::dvec2& shift : {glm::dvec2(0), glm::dvec2(0.3, 0.8)})
+        for (const glm::dvec2& rounding : {glm::dvec2(0.5), glm::dvec2(0, 0.9)}) {
+          const Picture picture = renderer.render(
+              scene.camera, {.lights = {}, .phase = phase, .latticeShift = shift, .rounding = rounding});
+          INFO("perspective " << perspective << ", phase " << phase << ", shift " << shift.x << ", rounding "
+                              << rounding.x);
+          // The slices do lie elsewhere.
+          const double steps = (renderer.sliceDepths().front() - depth) / scene.sampling.spacing - (phase - 0.5);
+          CHECK(steps == Approx(std::round(steps)).margin(1e-9));
+          // Some roundings a slab, and planes placed to 1e-6 of one, as the closed form of ordinates_gl_test has them,
+          // for either picture.
+          const double slabs = 16 / scene.sampling.spacing + 2;
+          const double tolerance = 2 * (slabs * 10 * kFloatRounding + 4e-6 * 0.11 * scene.sampling.spacing);
+          CHECK(maxDifference(picture.colour, plain.colour) < tolerance);
+          CHECK(maxDifference(picture.visibility, plain.visibility) < tolerance);
+        }
+  }
+}
+
+TEST_CASE("A phase is ignored where the eye is inside", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const Scene scene = layerScene(true, -5);  // 5 deep in the layer
+  const FieldBricks volume = layerVolume(scene);
+  SliceRenderer renderer(*context, volume, scene);
+  const Picture plain = renderer.render();
+  const std::vector<double> depths = renderer.sliceDepths();
+  CHECK(depths.front() == 0.5 * scene.sampling.spacing);
+  for (const double phase : {0.1, 0.9}) {
+    CHECK((renderer.render(scene.camera, {.lights = {}, .phase = phase}).colour.pixels == plain.colour.pixels));
+    CHECK(renderer.sliceDepths() == depths);
+  }
+}
+
+TEST_CASE("The picture after n passes is the mean of n pictures", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = courtyard();
+  Scene scene = smallScene();
+  const auto volume = bricksForPasses(grid, scene);
+  // A pass of its own is what the next mean has more of.
+  std::vector<Image> means;
+  const ProgressivePicture all =
+      renderProgressive(*context, *volume, scene, {.passes = 6}, kLayers, [&](const ProgressivePicture& picture) {
+        means.push_back(picture.picture.colour);
+        CHECK(picture.passes == static_cast<int>(means.size()));
+        CHECK(std::isfinite(picture.error.statistical) == (means.size() >= kStreams));
+        CHECK(std::isfinite(picture.error.systematic) == (means.size() >= kStreams));
+        return true;
+      });
+  CHECK(all.passes == 6);
+  REQUIRE(means.size() == 6);
+  CHECK((means.back().pixels == all.picture.colour.pixels));
+  CHECK(all.scene == scene);
+  CHECK_FALSE(all.reachedTarget);
+  double least = 1, most = 0, change = 0;
+  for (std::size_t i = 0; i < means[0].pixels.size(); ++i)
+    for (std::size_t n = 1; n < means.size(); ++n) {
+      const double one =
+          (n + 1) * static_cast<double>(means[n].pixels[i]) - n * static_cast<double>(means[n - 1].pixels[i]);
+      least = std::min(least, one);
+      most = std::max(most, one);
+      change = std::max(change, std::abs(one - means[0].pixels[i]));
+    }
+  // Each of them is one: in [0, 1] but for 11 roundings; and not the same as the first.
+  CHECK(least > -11 * kFloatRounding);
+  CHECK(most < 1 + 11 * kFloatRounding);
+  CHECK(change > 0.1);
+}
+
+TEST_CASE("Layers are averaged as the picture is", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = courtyard();
+  Scene scene = smallScene();
+  const auto volume = bricksForPasses(grid, scene);
+  const Picture picture = renderProgressive(*context, *volume, scene, {.passes = 8}, kLayers).picture;
+  REQUIRE(picture.visibility.pixels.size() == picture.colour.pixels.size() / 4);
+  REQUIRE(picture.depth.pixels.size() == picture.colour.pixels.size() / 4);
+  // V does not depend on the pass more than the picture does: with one albedo it is the picture.
+  scene.transfer = TransferFunction({{0, {glm::dvec3(0.5), 0}}, {1, {glm::dvec3(0.5), 3}}});
+  const Picture grey = renderProgressive(*context, *volume, scene, {.passes = 8}, kLayers).picture;
+  double worst = 0;
+  for (std::size_t i = 0; i < grey.visibility.pixels.size(); ++i)
+    worst = std::max(worst, std::abs(grey.visibility.pixels[i] - 2.0 * grey.colour.pixels[4 * i]));
+  // sigma_s / sigma_t comes from a table of single precision, 16 slabs of which are blended.
+  CHECK(worst < 16 * 4 * kFloatRounding);
+  // Depth is a mean weighted by opacity: on average over opaque pixels that of a single picture to within half a slab.
+  const Picture single = renderPicture(*context, *volume, scene, kLayers);
+  double apart = 0, opaque = 0;
+  for (std::size_t i = 0; i < single.depth.pixels.size(); ++i)
+    if (single.colour.pixels[4 * i + 3] > 0.999f && grey.colour.pixels[4 * i + 3] > 0.999f) {
+      apart += std::abs(static_cast<double>(grey.depth.pixels[i]) - single.depth.pixels[i]);
+      ++opaque;
+    }
+  REQUIRE(opaque > 100);
+  CHECK(apart > 0);
+  CHECK(apart / opaque < 0.5 * scene.sampling.spacing);
+  // What nothing is in has no depth.
+  scene.clipPlanes = {{0, 0, 1, -1000}};
+  const Picture empty = renderProgressive(*context, *volume, scene, {.passes = 4}, kLayers).picture;
+  for (const float depth : empty.depth.pixels) CHECK(depth == std::numeric_limits<float>::infinity());
+  for (const float alpha : empty.colour.pixels) CHECK(alpha == 0);
+}
+
+TEST_CASE("The same seed gives the same picture to the bit, another seed another one", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = courtyard();
+  const Scene scene = smallScene();
+  const auto volume = bricksForPasses(grid, scene);
+  const auto picture = [&](std::uint64_t seed) {
+    return renderProgressive(*context, *volume, scene, {.passes = 5, .seed = seed}, kLayers);
+  };
+  const ProgressivePicture a = picture(3), b = picture(3), c = picture(4);
+  CHECK((a.picture.colour.pixels == b.picture.colour.pixels));
+  CHECK((a.picture.visibility.pixels == b.picture.visibility.pixels));
+  CHECK((a.picture.depth.pixels == b.picture.depth.pixels));
+  CHECK(a.error.statistical == b.error.statistical);
+  CHECK(a.error.systematic == b.error.systematic);
+  CHECK(rmsOfRgb(a.picture.colour, c.picture.colour) > 0.1 * a.error.statistical);
+}
+
+// Four streams leave 3 degrees of freedom to a pixel, and pixels share directions: a picture's estimate has perhaps
+// ten, and is off by a quarter in one of three pictures, hardly ever by a factor of two. Of 12 pictures it is known to
+// a third of that; measured: 0.92 to 0.97 of what is found. The error falls with the power 0.7 of the passes.
+TEST_CASE("The standard error is that of the mean, which falls faster than with the root of the passes",
+          "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = courtyard();
+  const Scene scene = smallScene();
+  const auto volume = bricksForPasses(grid, scene);
+  const Image limit = renderProgressive(*context, *volume, scene, {.passes = 256, .seed = 99}).picture.colour;
+  std::vector<double> passes{4, 8, 16}, distances;
+  std::vector<std::vector<double>> estimated(3), apart(3);
+  for (std::uint64_t seed = 1; seed <= 8; ++seed)
+    renderProgressive(*context, *volume, scene, {.passes = 16, .seed = seed}, {},
+                      [&](const ProgressivePicture& picture) {
+                        for (std::size_t n = 0; n < 3; ++n)
+                          if (picture.passes == passes[n]) {
+                            estimated[n].push_back(picture.error.statistical);
+                            apart[n].push_back(rmsOfRgb(picture.picture.colour, limit));
+                          }
+                        return true;
+                      });
+  for (std::size_t n = 0; n < 3; ++n) {
+    distances.push_back(rootMeanSquare(apart[n]));
+    INFO(passes[n] << " passes: estimated " << rootMeanSquare(estimated[n]) << ", found " << distances[n]);
+    CHECK(rootMeanSquare(estimated[n]) == Approx(distances[n]).epsilon(0.25));
+    for (std::size_t i = 0; i < apart[n].size(); ++i) {
+      INFO("seed " << i + 1 << ": estimated " << estimated[n][i] << ", found " << apart[n][i]);
+      CHECK(apart[n][i] < 2 * estimated[n][i]);
+      CHECK(apart[n][i] > 0.5 * estimated[n][i]);
+    }
+  }
+  const double order = observedOrder(passes, distances);
+  INFO("order " << order);
+  CHECK(order < -0.5);
+}
+
+// The systematic error is known to the order that it falls with: the difference to slabs and texels twice as large is
+// the error itself at order one, half of it at order 0.6 (see ordinates_convergence_gl_test), more above; nor are the
+// two kinds of error independent. Found: 0.69 to 1.14 of what is estimated (0.52 with 16 slices, 3 voxels thick).
+TEST_CASE("The estimated error is that to the reference, within a factor of two", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = courtyard();
+  ReferenceOptions options;
+  options.tolerance = 2e-3;
+  options.directions = 128;
+  const Image exact = renderReference(grid, smallScene(), options).colour;
+  for (const int slices : {32, 128}) {
+    const Scene scene = smallScene(slices, 4);
+    const auto volume = bricksForPasses(grid, scene);
+    for (const int passes : {4, 32}) {
+      const ProgressivePicture picture = renderProgressive(*context, *volume, scene, {.passes = passes});
+      const double distance = rmsOfRgb(picture.picture.colour, exact);
+      INFO(slices << " slices, " << passes << " passes: estimated " << picture.error.statistical << " and "
+                  << picture.error.systematic << ", " << picture.error.total() << "; found " << distance);
+      CHECK(picture.error.total() == Approx(std::hypot(picture.error.statistical, picture.error.systematic)));
+      CHECK(distance < 2 * picture.error.total());
+      CHECK(distance > 0.5 * picture.error.total());
+    }
+  }
+}
+
+TEST_CASE("Passes end where the target is reached, at the time limit, or when told", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = courtyard();
+  const Scene scene = smallScene(64);
+  const auto volume = bricksForPasses(grid, scene);
+  const ProgressivePicture four = renderProgressive(*context, *volume, scene, {.passes = 4});
+  // A target between the error after four passes and what no number of passes gets below.
+  const double target = std::hypot(four.error.systematic, 0.6 * four.error.statistical);
+  const ProgressivePicture reached =
+      renderProgressive(*context, *volume, scene, {.passes = 200, .targetError = target});
+  CHECK(reached.reachedTarget);
+  CHECK(reached.error.total() <= target);
+  CHECK(reached.passes > 4);
+  CHECK(reached.passes < 40);
+  CHECK(reached.scene == scene);
+  // As if so many had been asked for.
+  const ProgressivePicture asked = renderProgressive(*context, *volume, scene, {.passes = reached.passes});
+  CHECK((asked.picture.colour.pixels == reached.picture.colour.pixels));
+  CHECK_FALSE(asked.reachedTarget);
+  const ProgressivePicture missed =
+      renderProgressive(*context, *volume, scene, {.passes = 10, .targetError = 0.5 * four.error.systematic});
+  CHECK_FALSE(missed.reachedTarget);
+  CHECK(missed.passes == 10);
+  CHECK(missed.scene == scene);  // nobody said that it may be refined
+
+  CHECK(renderProgressive(*context, *volume, scene, {.passes = 100, .maxSeconds = 1e-9}).passes == 1);
+  int calls = 0;
+  const ProgressivePicture told = renderProgressive(*context, *volume, scene, {.passes = 100}, {},
+                                                    [&](const ProgressivePicture&) { return ++calls < 3; });
+  CHECK(calls == 3);
+  CHECK(told.passes == 3);
+  CHECK(told.error.statistical == kInfinity);
+}
+
+TEST_CASE("Slabs and texels are halved where they are in the way of the target", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = courtyard();
+  const Scene scene = smallScene(24, 8);
+  const auto volume = bricksForPasses(grid, scene);
+  const ProgressivePicture coarse = renderProgressive(*context, *volume, scene, {.passes = 4});
+  ProgressiveOptions options{.passes = 60, .targetError = 0.9 * coarse.error.total(), .refine = true};
+  std::vector<double> spacings;
+  const ProgressivePicture fine =
+      renderProgressive(*context, *volume, scene, options, {}, [&](const ProgressivePicture& picture) {
+        if (spacings.empty() || picture.scene.sampling.spacing < spacings.back()) {
+          CHECK(picture.passes == 1);  // begun again
+          CHECK(picture.error.total() == kInfinity);
+          spacings.push_back(picture.scene.sampling.spacing);
+        }
+        return true;
+      });
+  REQUIRE(spacings.size() >= 2);
+  for (std::size_t i = 0; i < spacings.size(); ++i)
+    CHECK(spacings[i] == Approx(scene.sampling.spacing / std::pow(2, i)));
+  CHECK(fine.reachedTarget);
+  CHECK(fine.error.total() <= options.targetError);
+  CHECK(fine.scene.sampling.spacing == spacings.back());
+  // The picture is one of the scene that it says.
+  const ProgressivePicture again = renderProgressive(*context, *volume, fine.scene, {.passes = fine.passes});
+  CHECK((again.picture.colour.pixels == fine.picture.colour.pixels));
+  CHECK(again.error.systematic < coarse.error.systematic);
+
+  // Not at the expense of what there is: with no passes left that would tell the error of finer ones.
+  for (const int passes : {4, 5, 7}) {
+    options.passes = passes;
+    const ProgressivePicture last = renderProgressive(*context, *volume, scene, options);
+    INFO("of " << passes << " passes");
+    CHECK(last.passes == passes);
+    CHECK(last.scene == scene);
+    CHECK(std::isfinite(last.error.total()));
+  }
+  // No finer than an eighth of a voxel.
+  options.passes = 9;
+  options.targetError = 1e-9;
+  Scene finest = scene;
+  finest.clipPlanes = {{0, 0, -1, 3}};  // fewer slices
+  finest.sampling.spacing = 0.125;
+  CHECK(renderProgressive(*context, *volume, finest, options).scene == finest);
+}
+
+TEST_CASE("Without bricks for thicker slabs the systematic error is not known", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = courtyard();
+  const Scene scene = smallScene();  // slabs of 3.25 voxels
+  const auto narrow = bricksFor(grid, scene);
+  const ProgressivePicture picture =
+      renderProgressive(*context, *narrow, scene, {.passes = 6, .targetError = 1, .refine = true});
+  CHECK(picture.passes == 6);
+  CHECK(std::isfinite(picture.error.statistical));
+  CHECK(picture.error.systematic == kInfinity);
+  CHECK_FALSE(picture.reachedTarget);
+  const auto wide = bricksForPasses(grid, scene);
+  // Texture coordinates in other bricks are rounded otherwise, by up to 3e-6 voxels; the optical depth of a slab, 3.25
+  // of sigma_t 3, changes by up to 16 a voxel: 5e-5, of the one or two slabs that make a pixel opaque.
+  CHECK(maxDifference(renderProgressive(*context, *wide, scene, {.passes = 6}).picture.colour, picture.picture.colour) <
+        1e-4);
+}
+
+// Nothing to average but slices and texels: the light itself is the same in every pass.
+TEST_CASE("Listed directions come whole in every pass", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const Scene layer = layerScene(false);
+  const FieldBricks volume = layerVolume(coarserScene(layer));
+  const ProgressivePicture passes = renderProgressive(*context, volume, layer, {.passes = 8});
+  // As the test of samples says: all passes are one picture, to which slabs twice as thick make no difference.
+  const double slabs = 16 / layer.sampling.spacing + 2;
+  const double tolerance = 2 * (slabs * 10 * kFloatRounding + 4e-6 * 0.11 * 2 * layer.sampling.spacing);
+  CHECK(maxDifference(passes.picture.colour, renderPicture(*context, volume, layer).colour) < tolerance);
+  CHECK(passes.error.statistical < tolerance);
+  CHECK(passes.error.systematic < tolerance);
+
+  const ScalarGrid grid = courtyard();
+  Scene scene = smallScene(64);
+  scene.model = Model::lights;
+  scene.lights = {
+      {LightFrame::view, ListedLight{{{{0.5, 0.2, 0.8}, 0.5, {1, 0.5, 0}}, {{0, 0, 1}, 0.5, {0, 0.5, 1}}}}}};
+  const auto bricks = bricksForPasses(grid, scene);
+  ReferenceOptions options;
+  options.tolerance = 1e-3;
+  const Image exact = renderReference(grid, scene, options).colour;
+  const ProgressivePicture lit = renderProgressive(*context, *bricks, scene, {.passes = 16});
+  const double mean = rmsOfRgb(lit.picture.colour, exact);
+  INFO("estimated " << lit.error.statistical << " and " << lit.error.systematic << ", found " << mean);
+  // Texels of a pixel, 1.8 voxels, twice as wide as slabs are thick: what they blur is in the estimate, too.
+  CHECK(mean < 2 * lit.error.total());
+  CHECK(mean > 0.5 * lit.error.total());
+}
+
+TEST_CASE("Passes that make no sense are refused", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = courtyard();
+  const Scene scene = smallScene();
+  const auto volume = bricksForPasses(grid, scene);
+  const auto refused = [&](const Scene& changed, const ProgressiveOptions& options) {
+    return complaint<InvalidArgument>([&] { renderProgressive(*context, *volume, changed, options); });
+  };
+  Scene emission = scene, dos = scene, ambient = scene;
+  emission.model = Model::emission;
+  dos.method = Method::dos;
+  ambient.model = Model::ambient;
+  const std::string needs = "progressive: needs the model cone or lights and the method ordinates, found ";
+  CHECK(refused(emission, {}) == needs + "emission and ordinates");
+  CHECK(refused(dos, {}) == needs + "cone and dos");
+  CHECK(refused(ambient, {}) == needs + "ambient and ordinates");
+  CHECK(refused(scene, {.passes = 0}) == "progressive: passes is 0, must be 1 or more");
+  CHECK(refused(scene, {.passes = -3}) == "progressive: passes is -3, must be 1 or more");
+  using Catch::Contains;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {-1.0, nan}) {
+    CHECK_THAT(refused(scene, {.maxSeconds = bad}), Contains("seconds") && Contains("must be 0 or more"));
+    CHECK_THAT(refused(scene, {.targetError = bad}), Contains("target error") && Contains("must be 0 or more"));
+  }
+}

@@ -1,0 +1,186 @@
+// umbrick render, pass by pass and by quality, as a user would run it.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/gl_fixture.h"
+#include "support/test_grids.h"
+#include "tools/program.h"
+#include "umbrick/grid/build_grid.h"
+#include "umbrick/image/exr.h"
+
+using namespace umbrick;
+using Catch::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string kVolume = "render ball.vdb --tf ball.json --size 24x20 ";
+const std::string kCone = kVolume + "--model cone --directions 4 ";
+
+// A folder with a small volume and a transfer function for it.
+struct Workplace {
+  TemporaryFolder folder;
+  Workplace() {
+    const openvdb::FloatGrid::Ptr grid = makeSparse(glm::ivec3(0), 2, 6, 48).grid->deepCopy();
+    grid->setName("density");
+    writeGrids(folder.path() / "ball.vdb", {grid});
+    writeBytes(folder.path() / "ball.json",
+               R"({"points": [{"value": 0.05, "albedo": [1, 0.6, 0.2], "sigma_t": 0},
+                              {"value": 1, "albedo": [0.9, 0.8, 0.7], "sigma_t": 2}]})");
+  }
+  ProgramResult run(const std::string& arguments) const { return runProgram(folder, arguments); }
+  ExrFile exr(const std::string& name) const { return readExr(folder.path() / name); }
+  Json json(const std::string& name) const { return Json::parse(readBytes(folder.path() / name)); }
+  // What the header of a picture made so says.
+  Json sceneOf(const std::string& arguments) const {
+    const ProgramResult result = run(arguments + " -o scene.exr");
+    INFO(arguments << ": " << result.err);
+    REQUIRE(result.status == 0);
+    return Json::parse(exr("scene.exr").metadata.at("umbrick.scene"));
+  }
+};
+
+// Spacing, its unit, segments, directions, scale and method.
+Json sampling(const Json& scene) {
+  const Json &s = scene.at("sampling"), &o = scene.at("occlusion");
+  return {s.at("spacing"), s.at("unit"), s.at("segments"), o.at("directions"), o.at("scale"), scene.at("method")};
+}
+
+}  // namespace
+
+TEST_CASE("Passes are averaged, and the estimate is told and kept with the statistics", "[tools]") {
+  if (!testContext()) return;
+  const Workplace at;
+  const ProgramResult made =
+      at.run(kCone + "--progressive 6 --seed 7 --layers --exr-pixel float -o a.exr --stats a.stats.json");
+  INFO(made.err);
+  REQUIRE(made.status == 0);
+  CHECK(made.out == "a.exr\n");
+  CHECK_THAT(made.err, Contains("passes 1, standard error not known yet"));
+  CHECK_THAT(made.err, Contains("passes 6, standard error 0.0"));
+  const ExrFile a = at.exr("a.exr");
+  REQUIRE(a.layers.size() == 3);
+  CHECK(*std::max_element(a.layers[0].image.pixels.begin(), a.layers[0].image.pixels.end()) > 0.2f);
+  const Json stats = at.json("a.stats.json"), passes = stats["progressive"];
+  CHECK(passes["passes"] == 6);
+  CHECK(passes["seed"] == 7);
+  CHECK(passes["reached_target"] == false);
+  CHECK(passes["seconds"] > 0);
+  const double statistical = passes["standard_error"], systematic = passes["systematic_error"];
+  CHECK(statistical > 0);
+  CHECK(systematic > 0);
+  CHECK(passes["error"].get<double>() == Approx(std::hypot(statistical, systematic)));
+  CHECK(stats["frames_ms"].size() == 6);
+
+  // By its seed the picture is made again from its header; another seed makes another one.
+  writeBytes(at.folder.path() / "again.json", a.metadata.at("umbrick.scene"));
+  const std::string again = "render again.json --layers --exr-pixel float --progressive 6 ";
+  REQUIRE(at.run(again + "--seed 7 -o b.exr").status == 0);
+  REQUIRE(at.run(again + "--seed 8 -o c.exr").status == 0);
+  const ExrFile b = at.exr("b.exr"), c = at.exr("c.exr");
+  for (std::size_t i = 0; i < a.layers.size(); ++i) CHECK((a.layers[i].image.pixels == b.layers[i].image.pixels));
+  CHECK((a.layers[0].image.pixels != c.layers[0].image.pixels));
+
+  // Errors that are not known yet are no numbers.
+  const ProgramResult few = at.run(kCone + "--progressive 2 -o d.exr --stats d.stats.json");
+  CHECK(few.status == 0);
+  CHECK(at.json("d.stats.json")["progressive"]["error"].is_null());
+  // A single picture has no such thing.
+  REQUIRE(at.run(kCone + "-o e.exr --stats e.stats.json").status == 0);
+  CHECK_FALSE(at.json("e.stats.json").contains("progressive"));
+}
+
+TEST_CASE("A target is reached by finer slabs, or the picture is kept and the status says so", "[tools]") {
+  if (!testContext()) return;
+  const Workplace at;
+  const ProgramResult reached = at.run(kCone + "--progressive 400 --target-error 0.02 -o a.exr --stats a.stats.json");
+  INFO(reached.err);
+  CHECK(reached.status == 0);
+  CHECK(reached.err.find("is not reached") == std::string::npos);
+  const Json stats = at.json("a.stats.json");
+  CHECK(stats["progressive"]["reached_target"] == true);
+  CHECK(stats["progressive"]["error"] <= 0.02);
+  CHECK(stats["progressive"]["passes"] < 400);
+  // Header and statistics tell of the slabs that the picture has.
+  const Json scene = Json::parse(at.exr("a.exr").metadata.at("umbrick.scene"));
+  CHECK(scene["sampling"]["spacing"] == stats["scene"]["sampling"]["spacing"]);
+  CHECK(stats["spacing_world"] == stats["scene"]["sampling"]["spacing"]);
+
+  const ProgramResult missed = at.run(kCone + "--progressive 5 --target-error 1e-6 -o b.exr --stats b.stats.json");
+  CHECK(missed.status == 1);
+  CHECK(missed.out == "b.exr\n");
+  CHECK_THAT(missed.err, Contains("the error asked for, 1e-06, is not reached\n"));
+  CHECK(at.exr("b.exr").layers[0].image.width == 24);
+  CHECK(at.json("b.stats.json")["progressive"]["reached_target"] == false);
+
+  const ProgramResult brief = at.run(kCone + "--max-seconds 1e-6 -o c.exr --stats c.stats.json");
+  CHECK(brief.status == 0);
+  CHECK(at.json("c.stats.json")["progressive"]["passes"] == 1);
+}
+
+TEST_CASE("Passes over what has no directions are one line and leave no file", "[tools]") {
+  if (!testContext()) return;
+  const Workplace at;
+  const std::size_t before = filesIn(at.folder);
+  const auto check = [&](const std::string& arguments, int status, const std::string& message) {
+    CAPTURE(arguments);
+    const ProgramResult result = at.run(kVolume + arguments + " -o a.exr --stats s.json");
+    CHECK(result.status == status);
+    CHECK_THAT(result.err, Contains(message));
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+    CHECK(result.out.empty());
+    CHECK(filesIn(at.folder) == before);
+  };
+  const std::string needs = "progressive: needs the model cone or lights and the method ordinates, found ";
+  check("--model emission --progressive 4", 1, needs + "emission and ordinates");
+  check("--progressive 4", 1, needs + "emission and ordinates");
+  check("--model cone --method dos --progressive 4", 1, needs + "cone and dos");
+  check("--model cone --method dos --target-error 0.1", 1, needs + "cone and dos");
+  check("--model emission --max-seconds 1", 1, needs + "emission and ordinates");
+  check("--model cone --progressive 0", 2, "--progressive");
+  check("--model cone --progressive -1", 2, "--progressive");
+  check("--model cone --progressive 1.5", 2, "--progressive");
+  check("--model cone --max-seconds 0", 2, "--max-seconds");
+  check("--model cone --max-seconds -2", 2, "--max-seconds");
+  check("--model cone --target-error -0.1", 2, "--target-error");
+  check("--model cone --target-error nan", 1, "target error are 0.000000 and nan, must be 0 or more");
+  check("--model cone --progressive 4 --seed -1", 2, "--seed");
+  check("--model cone --quality best", 2, "--quality");
+}
+
+TEST_CASE("A quality sets what goes together, and single options win over it", "[tools]") {
+  if (!testContext()) return;
+  const Workplace at;
+  // Spacing is in world units in a header: the voxels are of unit size.
+  const Json draft{5.0, "world", 4, 6, 0.0, "ordinates"}, normal{2.5, "world", 4, 16, 0.0, "ordinates"},
+      high{1.25, "world", 2, 32, 0.0, "ordinates"};
+  const std::string cone = kVolume + "--model cone ";
+  CHECK(sampling(at.sceneOf(cone + "--quality draft")) == draft);
+  CHECK(sampling(at.sceneOf(cone + "--quality normal")) == normal);
+  CHECK(sampling(at.sceneOf(cone + "--quality high")) == high);
+  CHECK(sampling(at.sceneOf(cone)) == normal);
+
+  const Json mixed = at.sceneOf(cone + "--quality draft --directions 9 --segments 1 --occlusion-scale 0.5");
+  CHECK(sampling(mixed) == Json{5.0, "world", 1, 9, 0.5, "ordinates"});
+  CHECK(sampling(at.sceneOf(cone + "--spacing 3 --quality high"))[0] == 3.0);
+  CHECK(sampling(at.sceneOf(cone + "--quality high --method dos"))[5] == "dos");
+  // Whoever says anything of slices or light says all of it.
+  CHECK(sampling(at.sceneOf(cone + "--directions 9")) == Json{0.5, "world", 1, 9, 0.0, "ordinates"});
+  CHECK(sampling(at.sceneOf(cone + "--spacing 2")) == Json{2.0, "world", 1, 16, 0.0, "ordinates"});
+  CHECK(sampling(at.sceneOf(cone + "--method dos"))[0] == 0.5);
+  CHECK(sampling(at.sceneOf(kVolume))[0] == 0.5);
+
+  // A scene file is taken at its word, which a quality may overrule.
+  writeBytes(at.folder.path() / "scene.json",
+             R"({"volume": {"file": "ball.vdb"}, "transfer": "ball.json", "camera": {"size": [24, 20]},
+                 "model": "cone", "sampling": {"spacing": 1.5}, "occlusion": {"directions": 7, "scale": 0.8}})");
+  CHECK(sampling(at.sceneOf("render scene.json")) == Json{1.5, "world", 1, 7, 0.8, "ordinates"});
+  CHECK(sampling(at.sceneOf("render scene.json --quality normal")) == normal);
+  CHECK(sampling(at.sceneOf("render scene.json --quality normal --directions 3"))[3] == 3);
+  writeBytes(at.folder.path() / "silent.json",
+             R"({"volume": {"file": "ball.vdb"}, "transfer": "ball.json", "camera": {"size": [24, 20]},
+                 "model": "cone"})");
+  CHECK(sampling(at.sceneOf("render silent.json"))[0] == 0.5);
+}
