@@ -68,7 +68,7 @@ double rootMean(std::size_t values, const Value& squared) {
   double sum = 0;
   for (std::size_t i = 0; i < values; ++i)
     if (i % 4 != 3) sum += squared(i);
-  return std::sqrt(sum / (0.75 * static_cast<double>(values)));
+  return std::sqrt(std::max(0.0, sum) / (0.75 * static_cast<double>(values)));
 }
 
 // The samples of one stream.
@@ -170,23 +170,20 @@ class PassSeries {
       if (knowsSystematic()) coarse_.emplace(context_, volume_, coarserScene(scene_), render_);
     }
     // The same light: what differs are slabs and texels.
-    if (coarse_) coarseMean_.add(coarse_->render(scene_.camera, sample));
+    if (coarse_) coarseMeans_[stream].add(coarse_->render(scene_.camera, sample));
     if (++passes_ >= kStreams) error.statistical = standardError();
     if (coarse_ && passes_ == kStreams) {
+      // What the difference has by chance, by the streams' spread, does not count.
       error.systematic = rootMean(all_.values(), [&](std::size_t i) {
-        const double difference = coarseMean_.colour(i) - all_.colour(i);
-        return difference * difference;
+        const auto difference = [&](std::size_t k) { return coarseMeans_[k].colour(i) - means_[k].colour(i); };
+        double mean = 0, square = 0;
+        for (std::size_t k = 0; k < kStreams; ++k) mean += difference(k) / kStreams;
+        for (std::size_t k = 0; k < kStreams; ++k) square += (difference(k) - mean) * (difference(k) - mean);
+        return mean * mean - square / (kStreams - 1) / kStreams;
       });
       coarse_.reset();
     }
     all_.store(picture);
-  }
-
-  // Slabs and texels half as large as those of the passes so far.
-  Scene finer() const {
-    Scene fine = finerScene(scene_);
-    fine.occlusion.scale = 2 * scale_;
-    return fine;
   }
 
  private:
@@ -204,12 +201,10 @@ class PassSeries {
   Scene scene_;
   RenderOptions render_;
   SliceRenderer fine_;
-  double voxelEdge_, scale_ = 0;  // window texels per voxel edge
-  std::function<std::unique_ptr<SliceRenderer>(double)> makeCoarse_;
-  std::unique_ptr<SliceRenderer> coarse_;
+  std::optional<SliceRenderer> coarse_;
   std::vector<Stream> streams_;
-  std::array<Accumulator, kStreams> means_;
-  Accumulator all_, coarseMean_;
+  std::array<Accumulator, kStreams> means_, coarseMeans_;
+  Accumulator all_;
   int passes_ = 0;
 };
 
@@ -223,28 +218,35 @@ ProgressivePicture renderProgressive(const GlContext& context, const Bricks& vol
   const double finest = shortestVoxelEdge(volume.indexToWorld) / 8;
   auto series = std::make_unique<PassSeries>(context, volume, scene, options.seed, render);
   ProgressivePicture best, current;
+  bool refined = false;
+  double systematicBefore = kInfinity;  // of the coarser scene
   best.error = current.error = {kInfinity, kInfinity};
   for (int pass = 0; pass < options.passes; ++pass) {
     series->pass(current.picture, current.error);
     ++current.passes;
-    current.scene = series->scene();
+    current.scene = refined ? series->scene() : scene;
     current.seconds = watch.elapsedMs() / 1e3;
     current.reachedTarget = options.targetError > 0 && current.error.total() <= options.targetError;
     // A refined scene takes over once it is known to be better.
     const bool sameScene = best.passes == 0 || best.scene.sampling.spacing == current.scene.sampling.spacing;
-    if (sameScene || current.error.total() < best.error.total()) best = current;
+    const bool better = current.error.total() < best.error.total() ||
+                        (current.passes >= best.passes && current.error.systematic < best.error.systematic);
+    if (sameScene || better) best = current;
     best.seconds = current.seconds;
     if (onPass && !onPass(best)) break;
     if (best.reachedTarget || (options.maxSeconds > 0 && best.seconds >= options.maxSeconds)) break;
     if (options.targetError == 0 || current.passes < kStreams) continue;
     // Half of the squared error is for either kind. What does not average out is not worth waiting for.
     const bool inTheWay = !(current.error.systematic <= options.targetError / std::sqrt(2.0));
-    const bool canRefine = options.refine && current.scene.sampling.spacing / 2 >= finest;
-    if (inTheWay && canRefine && pass + 1 < options.passes) {
-      series = std::make_unique<PassSeries>(context, volume, finerScene(current.scene), options.seed, render);
+    const bool canRefine =
+        options.refine && current.scene.sampling.spacing / 2 >= finest && current.error.systematic <= systematicBefore;
+    if (inTheWay && canRefine && pass + kStreams < options.passes) {
+      series = std::make_unique<PassSeries>(context, volume, finerScene(series->scene()), options.seed, render);
+      systematicBefore = current.error.systematic;
+      refined = true;
       current.passes = 0;
       current.error = {kInfinity, kInfinity};
-    } else if (!(current.error.systematic < options.targetError)) {
+    } else if (options.refine && !canRefine && !(current.error.systematic < options.targetError)) {
       break;  // and nothing is left to make it smaller
     }
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
@@ -224,12 +225,15 @@ class SliceRenderer::Implementation {
     return planes;
   }
 
+  // By the sphere around the domain: the same while the camera turns, or goes around it.
   double nearestDepth(const IndexView& view) const {
     const glm::dvec3 low(volume_.domain.min), extent(volume_.domain.extent());
-    double nearest = std::numeric_limits<double>::infinity();
+    const glm::dvec3 centre = view.toView(low + 0.5 * extent);
+    double radius = 0;
     for (unsigned c = 0; c < 8; ++c)
-      nearest = std::min(nearest, view.toView(low + extent * glm::dvec3(c & 1, c >> 1 & 1, c >> 2 & 1)).z);
-    return std::max(nearest, scene_.sampling.spacing);
+      radius = std::max(radius,
+                        glm::distance(centre, view.toView(low + extent * glm::dvec3(c & 1, c >> 1 & 1, c >> 2 & 1))));
+    return std::max(glm::length(centre) - radius, scene_.sampling.spacing);
   }
 
   void prepareFrame(const Camera& camera, const RenderSample& sample) {

@@ -70,7 +70,7 @@ TEST_CASE("Passes are averaged, and the estimate is told and kept with the stati
   CHECK(passes["seconds"] > 0);
   const double statistical = passes["standard_error"], systematic = passes["systematic_error"];
   CHECK(statistical > 0);
-  CHECK(systematic > 0);
+  CHECK(systematic >= 0);  // 0 where chance alone could be the difference
   CHECK(passes["error"].get<double>() == Approx(std::hypot(statistical, systematic)));
   CHECK(stats["frames_ms"].size() == 6);
 
@@ -133,12 +133,16 @@ TEST_CASE("Passes over what has no directions are one line and leave no file", "
     CHECK(result.out.empty());
     CHECK(filesIn(at.folder) == before);
   };
-  const std::string needs = "progressive: needs the model cone or lights and the method ordinates, found ";
-  check("--model emission --progressive 4", 1, needs + "emission and ordinates");
-  check("--progressive 4", 1, needs + "emission and ordinates");
-  check("--model cone --method dos --progressive 4", 1, needs + "cone and dos");
-  check("--model cone --method dos --target-error 0.1", 1, needs + "cone and dos");
-  check("--model emission --max-seconds 1", 1, needs + "emission and ordinates");
+  const std::string needs = "need the model cone or lights and the method ordinates";
+  check("--model emission --progressive 4", 2, needs);
+  check("--progressive 4", 2, needs);
+  check("--model cone --method dos --progressive 4", 2, needs);
+  check("--model cone --method dos --target-error 0.1", 2, needs);
+  check("--model emission --max-seconds 1", 2, needs);
+  check("--model cone --progressive 4 --frames 2", 2, "--frames and --progressive exclude each other");
+  check("--model cone --progressive 3 --target-error 0.1", 1, "passes is 3, a target error needs at least 4");
+  check("--model cone --method dos --quality high", 2, "--quality");
+  check("--quality high", 2, "--quality");
   check("--model cone --progressive 0", 2, "--progressive");
   check("--model cone --progressive -1", 2, "--progressive");
   check("--model cone --progressive 1.5", 2, "--progressive");
@@ -165,10 +169,9 @@ TEST_CASE("A quality sets what goes together, and single options win over it", "
   const Json mixed = at.sceneOf(cone + "--quality draft --directions 9 --segments 1 --occlusion-scale 0.5");
   CHECK(sampling(mixed) == Json{5.0, "world", 1, 9, 0.5, "ordinates"});
   CHECK(sampling(at.sceneOf(cone + "--spacing 3 --quality high"))[0] == 3.0);
-  CHECK(sampling(at.sceneOf(cone + "--quality high --method dos"))[5] == "dos");
-  // Whoever says anything of slices or light says all of it.
-  CHECK(sampling(at.sceneOf(cone + "--directions 9")) == Json{0.5, "world", 1, 9, 0.0, "ordinates"});
-  CHECK(sampling(at.sceneOf(cone + "--spacing 2")) == Json{2.0, "world", 1, 16, 0.0, "ordinates"});
+  // Segments follow the spacing.
+  CHECK(sampling(at.sceneOf(cone + "--directions 9")) == Json{2.5, "world", 4, 9, 0.0, "ordinates"});
+  CHECK(sampling(at.sceneOf(cone + "--spacing 1")) == Json{1.0, "world", 2, 16, 0.0, "ordinates"});
   CHECK(sampling(at.sceneOf(cone + "--method dos"))[0] == 0.5);
   CHECK(sampling(at.sceneOf(kVolume))[0] == 0.5);
 

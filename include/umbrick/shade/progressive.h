@@ -38,7 +38,7 @@ struct ProgressivePicture {
   int passes = 0;
   double seconds = 0;
   ErrorEstimate error;
-  Scene scene;  // that the passes are of: the one given, or a finer one; its windows' scale is explicit
+  Scene scene;  // that the passes are of: the one given, or a finer one, whose windows have an explicit scale
   bool reachedTarget = false;
 };
 
