@@ -19,10 +19,10 @@ struct LightDirection {
 /// About `count` directions for the light of a resolved scene whose model is cone or lights, the same for the same
 /// arguments: for a cone spiralDirections, from 65 directions on coneDirections; for an environment map its median cut
 /// (Debevec 2005, "A Median Cut Algorithm for Light Probe Sampling"), which keeps all of its light. Lights of one
-/// direction and explicit lists come as they are, whatever `count` is; the other sources share what is left as their power
-/// times the square root of their solid angle, each at least one: of directions placed at random that makes the variance
-/// of the sum least (Neyman 1934). Power is the mean of R, G and B where nothing is in the way. A map is walked in every
-/// call: 70 ms of one core for 2048 x 1024 pixels, 30 ms in lightSamples.
+/// direction and explicit lists come as they are, whatever `count` is; the other sources share what is left as their
+/// power times the square root of their solid angle, each at least one: of directions placed at random that makes the
+/// variance of the sum least (Neyman 1934). Power is the mean of R, G and B where nothing is in the way. A map is
+/// walked in every call: 70 ms of one core for 2048 x 1024 pixels, 30 ms in lightSamples.
 /// @param rotation  rad; other sets of the same light, whose mean is a finer one
 /// @throw InvalidArgument  emission, coneRay, ambient; count < 1; an orbit; a light that does not fit the viewer's
 ///                         hemisphere (names it)
