@@ -75,8 +75,8 @@ TEST_CASE("Light by ordinates converges to that of the same directions", "[shade
 // a voxel and a pixel; below that of first order. Measured over texels of 1.6, 0.8 and 0.4 voxels: 0.8.
 //
 // dos levels off at 0.075 (see convergence_gl_test); with 1024 slices it has 0.084 at 60 degrees and 0.079 at 80. By
-// ordinates, 128 slices have with 16 directions a seventh of that, with 8 less than a quarter, most of which is that of 8
-// directions instead of the cone, whatever renders them.
+// ordinates, 128 slices have with 16 directions a seventh of that, with 8 less than a quarter, most of which is that of
+// 8 directions instead of the cone, whatever renders them.
 TEST_CASE("Light by ordinates converges to the cone where dos does not", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
