@@ -397,7 +397,8 @@ TEST_CASE("Listed directions come whole in every pass", "[shade][gl]") {
   const double mean = rmsOfRgb(lit.picture.colour, exact);
   INFO("estimated " << lit.error.statistical << " and " << lit.error.systematic << ", found " << mean);
   // Texels of a pixel, 1.8 voxels, twice as wide as slabs are thick: what they blur is in the estimate, too.
-  CHECK(mean < 2 * lit.error.total());
+  // At hard edges the order is between 1/2 and 1, and the difference to slabs twice as large 0.41 to 1 of the error.
+  CHECK(mean < 2.4 * lit.error.total());
   CHECK(mean > 0.5 * lit.error.total());
 }
 
