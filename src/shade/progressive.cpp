@@ -141,6 +141,7 @@ Scene finerScene(const Scene& scene) {
   Scene fine = scene;
   fine.sampling.spacing /= 2;
   fine.sampling.segments = std::max(1, scene.sampling.segments / 2);
+  fine.occlusion.scale *= 2;
   return fine;
 }
 

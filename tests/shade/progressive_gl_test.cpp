@@ -308,7 +308,7 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
   const Scene scene = smallScene(10, 16);
   const auto volume = bricksForPasses(grid, scene);
   const ProgressivePicture coarse = renderProgressive(*context, *volume, scene, {.passes = 4});
-  ProgressiveOptions options{.passes = 60, .targetError = 0.95 * coarse.error.systematic, .refine = true};
+  ProgressiveOptions options{.passes = 60, .targetError = 0.75 * coarse.error.systematic, .refine = true};
   std::vector<double> spacings;
   const ProgressivePicture fine =
       renderProgressive(*context, *volume, scene, options, {}, [&](const ProgressivePicture& picture) {
