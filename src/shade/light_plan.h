@@ -56,7 +56,7 @@ struct LightRun {
 
 /// Rectangles of slices in texels, relative to the view axis.
 struct LightExtents {
-  double spacing = 1, texel = 1;
+  double texel = 1;                  // edge, world units
   std::vector<double> depths;        // of all slices, ascending
   std::vector<Rectangle> seen;       // by slice: where bricks are visible to the eye
   std::vector<Rectangle> occluding;  // by slice: where bricks may occlude

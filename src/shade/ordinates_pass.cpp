@@ -17,6 +17,7 @@
 #include "shade/eye_sweep.h"
 #include "shade/light_plan.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/random.h"
 #include "umbrick/scene/lights.h"
 
 namespace umbrick {
@@ -82,7 +83,7 @@ class OrdinatesPass : public SlicePass {
     stats.directions = static_cast<int>(slopes_.size()) - 1;
     stats.windowTexel = lattice_.texel;
     stats.windowBytes = texels(windowSize_) * slopes_.size() * static_cast<std::uint64_t>(windowBits_) / 8 +
-                        texels(lattice_.size) * static_cast<std::uint64_t>(slicesTogether_) * (coloured_ ? 24 : 16);
+                        texels(lattice_.size) * static_cast<std::uint64_t>(slicesTogether_ * latticeBytes());
     stats.bufferBytes += stats.windowBytes;
     stats.windowUpdates = static_cast<std::uint64_t>(firstTile_.back()) * kTile * kTile * slopes_.size();
   }
@@ -123,11 +124,10 @@ class OrdinatesPass : public SlicePass {
   // What is added to the shift of a direction before it is cut to whole texels: one half for all, or for each its own,
   // spread evenly (Roberts 2018, the sequence R2).
   void chooseRoundings(const glm::dvec2& rounding) {
-    const glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
     roundings_.assign(slopes_.size(), glm::dvec2(kRound));
     if (rounding == glm::dvec2(0.5)) return;
     for (std::size_t k = 0; k < roundings_.size(); ++k)
-      roundings_[k] = glm::fract(rounding + static_cast<double>(k) * step);
+      roundings_[k] = glm::fract(rounding + static_cast<double>(k) * kR2Step);
   }
 
   void chooseLattice(const Frame& frame) {
@@ -139,7 +139,6 @@ class OrdinatesPass : public SlicePass {
     // voxel or a pixel is not worth it either.
     lattice_.texel = scale > 0 ? frame.voxelEdge / scale : std::max({slices.spacing, frame.voxelEdge, pixel});
     extents_ = {};
-    extents_.spacing = slices.spacing;
     extents_.texel = lattice_.texel;
     for (std::int64_t i = 0; i < slices.count(); ++i) extents_.depths.push_back(slices.depth(i));
     lattice_.shift = frame.sample.latticeShift;
@@ -222,7 +221,7 @@ class OrdinatesPass : public SlicePass {
       for (const LightRun& run : planner_->runs(sweep.first, sweep.last, 1, 0))
         for (const LightWindow& window : run.windows)
           area = std::max(area, static_cast<double>(window.size.x) * window.size.y);
-    const double perSlice = (coloured_ ? 24.0 : 16.0) * lattice_.size.x * lattice_.size.y;
+    const double perSlice = static_cast<double>(latticeBytes()) * lattice_.size.x * lattice_.size.y;
     slicesTogether_ = static_cast<int>(std::clamp(kSliceBytes / perSlice, 1.0, static_cast<double>(kMostSlices)));
     for (const SweepRun& sweep : sweeps)
       for (LightRun& run : planner_->runs(sweep.first, sweep.last, slicesTogether_, 1.5 * area)) {
@@ -272,20 +271,17 @@ class OrdinatesPass : public SlicePass {
     if (!tiles_) tiles_ = GlBuffer(frame.gl);
   }
 
-  std::span<const LightRun> runsOf(std::int64_t first, std::int64_t last) const {
-    const auto begin = std::lower_bound(runs_.begin(), runs_.end(), first,
-                                        [](const LightRun& run, std::int64_t i) { return run.slices.front() < i; });
-    const auto end = std::lower_bound(begin, runs_.end(), last,
-                                      [](const LightRun& run, std::int64_t i) { return run.slices.front() < i; });
-    return {begin, end};
+  // The part of a list in order of slices that lies in [first, last).
+  template <class List, class SliceOf>
+  static auto within(const List& list, std::int64_t first, std::int64_t last, const SliceOf& sliceOf) {
+    const auto begin = std::ranges::lower_bound(list, first, {}, sliceOf);
+    return std::span(begin, std::ranges::lower_bound(begin, list.end(), last, {}, sliceOf));
   }
-
+  std::span<const LightRun> runsOf(std::int64_t first, std::int64_t last) const {
+    return within(runs_, first, last, [](const LightRun& run) { return run.slices.front(); });
+  }
   static std::span<const SliceDraw> drawsOf(const std::vector<SliceDraw>& draws, const LightRun& run) {
-    const auto begin = std::lower_bound(draws.begin(), draws.end(), run.slices.front(),
-                                        [](const SliceDraw& draw, std::int64_t i) { return draw.slice < i; });
-    const auto end = std::lower_bound(begin, draws.end(), run.slices.back() + 1,
-                                      [](const SliceDraw& draw, std::int64_t i) { return draw.slice < i; });
-    return {begin, end};
+    return within(draws, run.slices.front(), run.slices.back() + 1, &SliceDraw::slice);
   }
 
   void makeTextures(const Frame& frame) {
@@ -306,6 +302,8 @@ class OrdinatesPass : public SlicePass {
     sizes_ = sizes;
   }
 
+  // Of a texel of one slice: extinction, weight and visibility.
+  int latticeBytes() const { return coloured_ ? 24 : 16; }
   GLenum visibilityFormat() const { return coloured_ ? GL_RGBA32F : GL_RG32F; }
   static GLenum windowFormat(const Frame& frame) { return frame.scene.occlusion.bits == 16 ? GL_R16 : GL_R32F; }
 

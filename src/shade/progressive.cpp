@@ -18,9 +18,7 @@
 namespace umbrick {
 namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Powers of the plastic number's inverse, the steps of R2, and of the golden ratio.
-const glm::dvec2 kStep2(0.7548776662466927, 0.5698402909980532);
-constexpr double kStep1 = 0.6180339887498949;
+constexpr double kGoldenStep = 0.6180339887498949;  // of one number, as kR2Step is of two
 
 /// Sum of pictures.
 class Accumulator {
@@ -43,7 +41,6 @@ class Accumulator {
     }
     ++count_;
   }
-  int count() const { return count_; }
   double colour(std::size_t i) const { return colour_[i] / count_; }
   std::size_t values() const { return colour_.size(); }
   /// Replaces the pixels of a picture of the same size by the means.
@@ -71,15 +68,30 @@ double rootMean(std::size_t values, const Value& squared) {
   return std::sqrt(std::max(0.0, sum) / (0.75 * static_cast<double>(values)));
 }
 
+// Of one number per stream: the mean, and the variance of that mean.
+struct StreamMoments {
+  double mean = 0, variance = 0;
+};
+template <class Value>
+StreamMoments momentsOf(const Value& value) {
+  StreamMoments moments;
+  double square = 0;
+  for (std::size_t k = 0; k < kStreams; ++k) moments.mean += value(k) / kStreams;
+  for (std::size_t k = 0; k < kStreams; ++k) square += (value(k) - moments.mean) * (value(k) - moments.mean);
+  moments.variance = square / (kStreams - 1) / kStreams;
+  return moments;
+}
+
 // The samples of one stream.
 class Stream {
  public:
-  Stream(std::uint64_t seed, std::uint64_t number) : random_(seed, number) {
-    seed_ = static_cast<std::uint64_t>(random_.uniform() * 0x1p53);
-    phase_ = random_.uniform();
+  Stream(std::uint64_t seed, std::uint64_t number) {
+    Random random(seed, number);
+    seed_ = static_cast<std::uint64_t>(random.uniform() * 0x1p53);
+    phase_ = random.uniform();
     for (int axis = 0; axis < 2; ++axis) {
-      shift_[axis] = random_.uniform();
-      rounding_[axis] = random_.uniform();
+      shift_[axis] = random.uniform();
+      rounding_[axis] = random.uniform();
     }
   }
   RenderSample sample(const Scene& scene, int pass) const {
@@ -88,14 +100,13 @@ class Stream {
     sample.lights =
         lightSamples(scene, static_cast<std::uint64_t>(pass) * static_cast<std::uint64_t>(count), count, seed_);
     // A phase is in the open interval: at 0 a slice would lie in the eye.
-    sample.phase = std::clamp(glm::fract(phase_ + pass * kStep1), 1e-3, 1 - 1e-3);
-    sample.latticeShift = glm::fract(shift_ + static_cast<double>(pass) * kStep2);
-    sample.rounding = glm::fract(rounding_ + static_cast<double>(pass) * kStep2);
+    sample.phase = std::clamp(glm::fract(phase_ + pass * kGoldenStep), 1e-3, 1 - 1e-3);
+    sample.latticeShift = glm::fract(shift_ + static_cast<double>(pass) * kR2Step);
+    sample.rounding = glm::fract(rounding_ + static_cast<double>(pass) * kR2Step);
     return sample;
   }
 
  private:
-  Random random_;
   std::uint64_t seed_ = 0;
   double phase_ = 0;
   glm::dvec2 shift_{0}, rounding_{0};
@@ -155,8 +166,6 @@ class PassSeries {
   }
 
   const Scene& scene() const { return scene_; }
-  /// False when slabs twice as thick reach beyond the bricks.
-  bool knowsSystematic() const { return fits(volume_, coarserScene(scene_)); }
 
   // One more; the picture is the mean so far.
   void pass(Picture& picture, ErrorEstimate& error) {
@@ -168,7 +177,8 @@ class PassSeries {
     if (passes_ == 0) {
       // An automatic texel is that of the first picture from now on, so that twice and half of it are what they say.
       scene_.occlusion.scale = shortestVoxelEdge(volume_.indexToWorld) / picture.stats.windowTexel;
-      if (knowsSystematic()) coarse_.emplace(context_, volume_, coarserScene(scene_), render_);
+      const Scene coarse = coarserScene(scene_);
+      if (fits(volume_, coarse)) coarse_.emplace(context_, volume_, coarse, render_);
     }
     // The same light: what differs are slabs and texels.
     if (coarse_) coarseMeans_[stream].add(coarse_->render(scene_.camera, sample));
@@ -176,11 +186,9 @@ class PassSeries {
     if (coarse_ && passes_ == kStreams) {
       // What the difference has by chance, by the streams' spread, does not count.
       error.systematic = rootMean(all_.values(), [&](std::size_t i) {
-        const auto difference = [&](std::size_t k) { return coarseMeans_[k].colour(i) - means_[k].colour(i); };
-        double mean = 0, square = 0;
-        for (std::size_t k = 0; k < kStreams; ++k) mean += difference(k) / kStreams;
-        for (std::size_t k = 0; k < kStreams; ++k) square += (difference(k) - mean) * (difference(k) - mean);
-        return mean * mean - square / (kStreams - 1) / kStreams;
+        const StreamMoments difference =
+            momentsOf([&](std::size_t k) { return coarseMeans_[k].colour(i) - means_[k].colour(i); });
+        return difference.mean * difference.mean - difference.variance;
       });
       coarse_.reset();
     }
@@ -190,10 +198,7 @@ class PassSeries {
  private:
   double standardError() const {
     return rootMean(all_.values(), [&](std::size_t i) {
-      double mean = 0, square = 0;
-      for (const Accumulator& stream : means_) mean += stream.colour(i) / kStreams;
-      for (const Accumulator& stream : means_) square += (stream.colour(i) - mean) * (stream.colour(i) - mean);
-      return square / (kStreams - 1) / kStreams;
+      return momentsOf([&](std::size_t k) { return means_[k].colour(i); }).variance;
     });
   }
 

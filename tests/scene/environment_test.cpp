@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <memory>
 
+#include "scene/lights_scene.h"
 #include "support/closed_forms.h"
 #include "support/complaint.h"
 #include "support/files.h"
@@ -39,18 +40,6 @@ LightSource onePixel(int width, int height, int atX, int atY, const glm::dvec3& 
 }
 
 EnvironmentLight& mapOf(LightSource& source) { return std::get<EnvironmentLight>(source.light); }
-
-Scene sceneWith(const LightSource& light) {
-  Scene scene;
-  scene.orbit.reset();
-  scene.camera.eye = {3, -2, 5};
-  scene.camera.lookAt = {0.5, 1, -1};
-  scene.camera.up = {0.2, 1, 0.1};
-  scene.model = Model::lights;
-  scene.lights = {light};
-  return scene;
-}
-glm::dvec3 towardsViewer(const Scene& scene) { return -cameraFrame(scene.camera).forward; }
 
 glm::dvec3 applied(const std::vector<LightDirection>& directions, const std::function<double(const glm::dvec3&)>& f) {
   glm::dvec3 sum(0);
@@ -100,7 +89,7 @@ double relative(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a
 TEST_CASE("A map is seen from its centre: up, front and to the right of it", "[scene]") {
   // Small pixels of a map of 64 x 32 around places that are known; in the view the middle is towards the viewer.
   const auto towards = [](const LightSource& source) {
-    const Scene scene = sceneWith(source);
+    const Scene scene = sceneWith({source});
     const auto list = lightDirections(scene, 1);
     REQUIRE(list.size() == 1);
     const CameraFrame frame = cameraFrame(scene.camera);
@@ -155,7 +144,7 @@ TEST_CASE("Of a constant map the front half is the hemisphere, however it is tur
     mapOf(source).up = up;
     mapOf(source).front = {0.3, 0.2, 0.9};
     mapOf(source).scale = 3;
-    const Scene scene = sceneWith(source);
+    const Scene scene = sceneWith({source});
     const glm::dvec3 n = towardsViewer(scene);
     // Half of the sphere, by the midpoints of strips that the viewer's plane cuts.
     CHECK(relative(total(lightDirections(scene, 2000)), 1.5 * glm::dvec3(2, 1, 0.5)) < 2e-4);
@@ -180,7 +169,7 @@ TEST_CASE("Of a constant map the front half is the hemisphere, however it is tur
 TEST_CASE("The median cut keeps all of the light", "[scene]") {
   LightSource source = environment(96, 48, varied, LightFrame::world);
   mapOf(source).up = {0.2, 0.9, -0.4};
-  const Scene scene = sceneWith(source);
+  const Scene scene = sceneWith({source});
   const glm::dvec3 exact = bruteForce(
       scene, [](const glm::dvec3&) { return 1.0; }, 16);
   const glm::dvec3 one = total(lightDirections(scene, 1));
@@ -202,7 +191,7 @@ TEST_CASE("The median cut keeps all of the light", "[scene]") {
 
 TEST_CASE("The median cut converges, and its rotations average to a better one", "[scene]") {
   LightSource source = environment(96, 48, varied, LightFrame::world);
-  const Scene scene = sceneWith(source);
+  const Scene scene = sceneWith({source});
   const glm::dvec3 axis = towardsViewer(scene);
   const auto f = [&](const glm::dvec3& w) { return std::exp(-1 / std::max(1e-9, glm::dot(w, axis))); };
   const glm::dvec3 exact = bruteForce(scene, f, 8);
@@ -232,7 +221,7 @@ TEST_CASE("The median cut converges, and its rotations average to a better one",
 TEST_CASE("Samples of a map have its mean over seeds, and converge faster than random ones", "[scene]") {
   LightSource source = environment(32, 16, varied, LightFrame::world);
   mapOf(source).up = {0.2, 0.9, -0.4};
-  const Scene scene = sceneWith(source);
+  const Scene scene = sceneWith({source});
   // Not symmetric around the view, and large at its edge, where pixels are cut.
   const glm::dvec3 axis = glm::normalize(towardsViewer(scene) + glm::dvec3(0.5, -0.3, 0.4));
   const auto f = [&](const glm::dvec3& w) { return 1 + glm::dot(w, axis) * glm::dot(w, axis); };
@@ -272,7 +261,7 @@ TEST_CASE("Samples of a map have its mean over seeds, and converge faster than r
 
 // A sun of one pixel is a sharp light of its radiance times its solid angle / (4 pi), in lists and in samples.
 TEST_CASE("A single bright pixel is one direction in lists and stays inside itself in samples", "[scene]") {
-  const Scene scene = sceneWith(onePixel(720, 360, 400, 250, {8e4, 7e4, 5e4}));
+  const Scene scene = sceneWith({onePixel(720, 360, 400, 250, {8e4, 7e4, 5e4})});
   const double s0 = std::sin(kPi * (250 / 360.0 - 0.5)), s1 = std::sin(kPi * (251 / 360.0 - 0.5));
   const glm::dvec3 expected = glm::dvec3(8e4, 7e4, 5e4) * ((s1 - s0) * 2 * kPi / 720 / (4 * kPi));
   const auto list = lightDirections(scene, 64);
@@ -285,7 +274,7 @@ TEST_CASE("A single bright pixel is one direction in lists and stays inside itse
 }
 
 TEST_CASE("A map that is dark in front lights nothing", "[scene]") {
-  const Scene scene = sceneWith(onePixel(8, 4, 0, 2, glm::dvec3(1)));
+  const Scene scene = sceneWith({onePixel(8, 4, 0, 2, glm::dvec3(1))});
   for (const auto& list : {lightDirections(scene, 16), lightSamples(scene, 0, 16, 1)}) {
     REQUIRE(list.size() == 1);
     CHECK(total(list) == glm::dvec3(0));
@@ -349,10 +338,10 @@ TEST_CASE("Maps that cannot be used are named with what is wrong", "[scene]") {
              Contains("light.sources[0].scale: is -1, must be 0 or more"));
   CHECK_THAT(refused(R"("file": "good.exr", "theta": 1)"), Contains("light.sources[0].theta: unknown field"));
   // From code.
-  Scene scene = sceneWith({LightFrame::view, EnvironmentLight{}});
+  Scene scene = sceneWith({LightSource{LightFrame::view, EnvironmentLight{}}});
   CHECK_THAT(complaint<InvalidArgument>([&] { validateScene(scene); }),
              Contains("light.sources[0].file: is not loaded"));
   LightSource source{LightFrame::view, EnvironmentLight{}};
   mapOf(source).image = std::make_shared<const Image>(negative);
-  CHECK_THAT(complaint<InvalidArgument>([&] { lightDirections(sceneWith(source), 4); }), Contains("pixel 1, 1"));
+  CHECK_THAT(complaint<InvalidArgument>([&] { lightDirections(sceneWith({source}), 4); }), Contains("pixel 1, 1"));
 }

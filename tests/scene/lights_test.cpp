@@ -7,6 +7,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "scene/lights_scene.h"
 #include "support/closed_forms.h"
 #include "support/complaint.h"
 #include "umbrick/core/error.h"
@@ -16,20 +17,6 @@ using namespace umbrick;
 using Catch::Contains;
 
 namespace {
-
-// A camera that looks along no axis.
-Scene sceneWith(const std::vector<LightSource>& lights) {
-  Scene scene;
-  scene.orbit.reset();
-  scene.camera.eye = {3, -2, 5};
-  scene.camera.lookAt = {0.5, 1, -1};
-  scene.camera.up = {0.2, 1, 0.1};
-  scene.model = Model::lights;
-  scene.lights = lights;
-  return scene;
-}
-
-glm::dvec3 towardsViewer(const Scene& scene) { return -cameraFrame(scene.camera).forward; }
 
 LightSource cone(const glm::dvec3& axis, double degrees, const glm::dvec3& radiance) {
   return {LightFrame::view, ConeLight{axis, degrees * kPi / 180, radiance}};

@@ -23,12 +23,12 @@ Rectangle randomRectangle(TestRandom& random, double extent, double most) {
 
 LightExtents randomExtents(TestRandom& random) {
   LightExtents extents;
-  extents.spacing = random.uniform(0.1, 3);
+  const double spacing = random.uniform(0.1, 3);
   extents.texel = random.uniform(0.2, 2);
   const int count = 1 + random.below(40);
   const int first = random.below(100);
   for (int i = 0; i < count; ++i) {
-    extents.depths.push_back((first + i + 0.5) * extents.spacing);
+    extents.depths.push_back((first + i + 0.5) * spacing);
     const bool gap = random.uniform() < 0.2;
     extents.occluding.push_back(gap || random.uniform() < 0.1 ? Rectangle{} : randomRectangle(random, 8, 9));
     extents.seen.push_back(gap || random.uniform() < 0.3 ? Rectangle{} : randomRectangle(random, 8, 9));
@@ -236,11 +236,11 @@ TEST_CASE("A window is no wider than what is on the slices, however steep the li
   TestRandom random(14);
   for (const double towards : {0.9, 0.1, 1e-3, 1e-6, 1e-9, 1e-300}) {
     LightExtents extents;
-    extents.spacing = 0.5;
+    const double spacing = 0.5;
     extents.texel = 1;
     Rectangle all;
     for (int i = 0; i < 200; ++i) {
-      extents.depths.push_back((i + 1000.5) * extents.spacing);
+      extents.depths.push_back((i + 1000.5) * spacing);
       extents.occluding.push_back(randomRectangle(random, 30, 60));
       extents.seen.push_back(extents.occluding.back());
       all.include(extents.seen.back());
@@ -250,7 +250,7 @@ TEST_CASE("A window is no wider than what is on the slices, however steep the li
     for (const int longest : {1, 5})
       for (const LightRun& run : planner.runs(0, 200, longest, 1e12)) {
         const glm::dvec2 moved =
-            glm::abs(slope.slope) * extents.spacing * static_cast<double>(run.slices.back() - run.slices.front());
+            glm::abs(slope.slope) * spacing * static_cast<double>(run.slices.back() - run.slices.front());
         INFO("towards the viewer " << towards << ", slices " << run.slices.front() << " to " << run.slices.back());
         // Two texels of border on each side, and rounding up to whole ones.
         const glm::dvec2 most = all.max - all.min + moved + 6.0;

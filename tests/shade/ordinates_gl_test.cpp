@@ -4,6 +4,7 @@
 #include <string>
 
 #include "shade/grid_picture.h"
+#include "shade/ordinates_scene.h"
 #include "shade/ordinates_sweep.h"
 #include "support/closed_forms.h"
 
@@ -27,14 +28,8 @@ TransferFunction ramp(const glm::dvec3& albedo, double sigma_t) {
   return TransferFunction({{0, {albedo, 0}}, {1, {albedo, sigma_t}}});
 }
 
-Scene ordinatesScene(const TransferFunction& transfer, const Camera& camera, double spacing, double theta = 1,
-                     int directions = 16) {
-  Scene scene = plainScene(transfer, camera, spacing);
-  scene.model = Model::cone;
-  scene.method = Method::ordinates;
-  scene.occlusion.aperture = theta;
-  scene.occlusion.directions = directions;
-  return scene;
+Scene ordinatesScene(const TransferFunction& transfer, const Camera& camera, double spacing, double theta = 1) {
+  return umbrick::ordinatesScene(transfer, camera, spacing, theta, 16);
 }
 
 LightSource lightFrom(const std::vector<ListedDirection>& list, LightFrame frame = LightFrame::view) {
@@ -58,11 +53,6 @@ Camera straightCamera(bool perspective, double z, int size) {
                               : orthographicCamera({16, 16, z}, {16, 16, 0}, 30, size);
   camera.up = {0, 1, 0};
   return camera;
-}
-
-// Largest differences of the layers of two pictures.
-double layersDifference(const Picture& a, const Picture& b) {
-  return std::max(maxDifference(a.colour, b.colour), maxDifference(a.visibility, b.visibility));
 }
 
 // Texture coordinates are rounded to 6e-8 of some 50 texels, 3e-6 voxels, places on the lattice of the light to as much

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "shade/hard_case.h"
+#include "shade/ordinates_scene.h"
 #include "support/closed_forms.h"
 #include "support/complaint.h"
 #include "umbrick/core/error.h"
@@ -31,14 +32,8 @@ double blobs(const glm::ivec3& i) {
 }
 constexpr glm::dvec3 kCentre(12, 11, 12);
 
-Scene ordinatesScene(const TransferFunction& transfer, const Camera& camera, double spacing, double theta = 1,
-                     int directions = 8) {
-  Scene scene = plainScene(transfer, camera, spacing);
-  scene.model = Model::cone;
-  scene.method = Method::ordinates;
-  scene.occlusion.aperture = theta;
-  scene.occlusion.directions = directions;
-  return scene;
+Scene ordinatesScene(const TransferFunction& transfer, const Camera& camera, double spacing, double theta = 1) {
+  return umbrick::ordinatesScene(transfer, camera, spacing, theta, 8);
 }
 
 void setLights(Scene& scene, const std::vector<ListedDirection>& list, LightFrame frame = LightFrame::view) {
@@ -52,10 +47,6 @@ std::vector<Camera> cameras(int size = 32) {
 
 bool allWithin(const Image& image, float low, float high) {
   return std::all_of(image.pixels.begin(), image.pixels.end(), [&](float v) { return v >= low && v <= high; });
-}
-
-double layersDifference(const Picture& a, const Picture& b) {
-  return std::max(maxDifference(a.colour, b.colour), maxDifference(a.visibility, b.visibility));
 }
 
 // Against the reference of the same directions, at the scene's spacing and at half of it, window texels as large as

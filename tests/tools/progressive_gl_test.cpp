@@ -5,10 +5,7 @@
 #include <vector>
 
 #include "support/gl_fixture.h"
-#include "support/test_grids.h"
-#include "tools/program.h"
-#include "umbrick/grid/build_grid.h"
-#include "umbrick/image/exr.h"
+#include "tools/ball_workplace.h"
 
 using namespace umbrick;
 using Catch::Contains;
@@ -18,29 +15,6 @@ namespace {
 
 const std::string kVolume = "render ball.vdb --tf ball.json --size 24x20 ";
 const std::string kCone = kVolume + "--model cone --directions 4 ";
-
-// A folder with a small volume and a transfer function for it.
-struct Workplace {
-  TemporaryFolder folder;
-  Workplace() {
-    const openvdb::FloatGrid::Ptr grid = makeSparse(glm::ivec3(0), 2, 6, 48).grid->deepCopy();
-    grid->setName("density");
-    writeGrids(folder.path() / "ball.vdb", {grid});
-    writeBytes(folder.path() / "ball.json",
-               R"({"points": [{"value": 0.05, "albedo": [1, 0.6, 0.2], "sigma_t": 0},
-                              {"value": 1, "albedo": [0.9, 0.8, 0.7], "sigma_t": 2}]})");
-  }
-  ProgramResult run(const std::string& arguments) const { return runProgram(folder, arguments); }
-  ExrFile exr(const std::string& name) const { return readExr(folder.path() / name); }
-  Json json(const std::string& name) const { return Json::parse(readBytes(folder.path() / name)); }
-  // What the header of a picture made so says.
-  Json sceneOf(const std::string& arguments) const {
-    const ProgramResult result = run(arguments + " -o scene.exr");
-    INFO(arguments << ": " << result.err);
-    REQUIRE(result.status == 0);
-    return Json::parse(exr("scene.exr").metadata.at("umbrick.scene"));
-  }
-};
 
 // Spacing, its unit, segments, directions, scale and method.
 Json sampling(const Json& scene) {
@@ -52,7 +26,7 @@ Json sampling(const Json& scene) {
 
 TEST_CASE("Passes are averaged, and the estimate is told and kept with the statistics", "[tools]") {
   if (!testContext()) return;
-  const Workplace at;
+  const BallWorkplace at;
   const ProgramResult made =
       at.run(kCone + "--progressive 6 --seed 7 --layers --exr-pixel float -o a.exr --stats a.stats.json");
   INFO(made.err);
@@ -94,7 +68,7 @@ TEST_CASE("Passes are averaged, and the estimate is told and kept with the stati
 
 TEST_CASE("A target is reached by finer slabs, or the picture is kept and the status says so", "[tools]") {
   if (!testContext()) return;
-  const Workplace at;
+  const BallWorkplace at;
   const ProgramResult reached = at.run(kCone + "--progressive 400 --target-error 0.02 -o a.exr --stats a.stats.json");
   INFO(reached.err);
   CHECK(reached.status == 0);
@@ -122,7 +96,7 @@ TEST_CASE("A target is reached by finer slabs, or the picture is kept and the st
 
 TEST_CASE("Passes over what has no directions are one line and leave no file", "[tools]") {
   if (!testContext()) return;
-  const Workplace at;
+  const BallWorkplace at;
   const std::size_t before = filesIn(at.folder);
   const auto check = [&](const std::string& arguments, int status, const std::string& message) {
     CAPTURE(arguments);
@@ -156,7 +130,7 @@ TEST_CASE("Passes over what has no directions are one line and leave no file", "
 
 TEST_CASE("A quality sets what goes together, and single options win over it", "[tools]") {
   if (!testContext()) return;
-  const Workplace at;
+  const BallWorkplace at;
   // Spacing is in world units in a header: the voxels are of unit size.
   const Json draft{5.0, "world", 4, 6, 0.0, "ordinates"}, normal{2.5, "world", 4, 16, 0.0, "ordinates"},
       high{1.25, "world", 2, 32, 0.0, "ordinates"};

@@ -2,10 +2,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "support/test_grids.h"
-#include "tools/program.h"
-#include "umbrick/grid/build_grid.h"
-#include "umbrick/image/exr.h"
+#include "tools/ball_workplace.h"
 #include "umbrick/image/png.h"
 
 using namespace umbrick;
@@ -16,21 +13,6 @@ namespace {
 const std::string kVolume = "ball.vdb --tf ball.json ";
 const std::string kScene = kVolume + "--size 24x20 --theta 50 ";
 
-// A folder with a small volume and a transfer function for it.
-struct Workplace {
-  TemporaryFolder folder;
-  Workplace() {
-    const openvdb::FloatGrid::Ptr grid = makeSparse(glm::ivec3(0), 2, 6, 48).grid->deepCopy();
-    grid->setName("density");
-    writeGrids(folder.path() / "ball.vdb", {grid});
-    writeBytes(folder.path() / "ball.json",
-               R"({"points": [{"value": 0.05, "albedo": [1, 0.6, 0.2], "sigma_t": 0},
-                              {"value": 1, "albedo": [0.9, 0.8, 0.7], "sigma_t": 2}]})");
-  }
-  ProgramResult run(const std::string& arguments) const { return runProgram(folder, arguments); }
-  ExrFile exr(const std::string& name) const { return readExr(folder.path() / name); }
-};
-
 double largest(const Image& image) {
   double most = 0;
   for (const float value : image.pixels) most = std::max<double>(most, std::abs(value));
@@ -40,7 +22,7 @@ double largest(const Image& image) {
 }  // namespace
 
 TEST_CASE("The reference makes a picture with layers, statistics and the scene it can be made from again", "[tools]") {
-  const Workplace at;
+  const BallWorkplace at;
   const ProgramResult made = at.run("reference " + kScene +
                                     "--model cone-ray --directions 32 --layers -o a.exr -o a.png --stats a.stats.json");
   REQUIRE(made.err == "");
@@ -62,7 +44,7 @@ TEST_CASE("The reference makes a picture with layers, statistics and the scene i
 }
 
 TEST_CASE("Monte Carlo writes its standard error as a layer and repeats by its seed on any threads", "[tools]") {
-  const Workplace at;
+  const BallWorkplace at;
   const std::string options = "reference " + kScene + "--model ambient --integrator monte-carlo --samples 64 ";
   REQUIRE(at.run(options + "--seed 5 --threads 1 -o a.exr").status == 0);
   REQUIRE(at.run(options + "--seed 5 --threads 3 -o b.exr").err == "");
@@ -80,7 +62,7 @@ TEST_CASE("Monte Carlo writes its standard error as a layer and repeats by its s
 }
 
 TEST_CASE("The reference lights a scene by its sources, which dos refuses", "[tools]") {
-  const Workplace at;
+  const BallWorkplace at;
   writeBytes(at.folder.path() / "lit.json",
              R"({"volume": {"file": "ball.vdb"}, "transfer": "ball.json", "camera": {"size": [24, 20]},
                  "light": {"sources": [{"type": "directional", "direction": [1, 1, 1], "softAngle": 5,
@@ -109,7 +91,7 @@ TEST_CASE("The reference lights a scene by its sources, which dos refuses", "[to
 }
 
 TEST_CASE("A standard error is reached, or the pixels that do not reach it are counted", "[tools]") {
-  const Workplace at;
+  const BallWorkplace at;
   const std::string options = "reference " + kScene + "--model cone --integrator monte-carlo --standard-error 0.01 ";
   const ProgramResult reached = at.run(options + "-o a.exr");
   CHECK(reached.status == 0);
@@ -124,7 +106,7 @@ TEST_CASE("A standard error is reached, or the pixels that do not reach it are c
 }
 
 TEST_CASE("An interrupted reference writes what is done, says so and fails", "[tools]") {
-  const Workplace at;
+  const BallWorkplace at;
   // Hours of work, interrupted after two seconds, also within a pixel.
   const TemporaryFolder& folder = at.folder;
   const std::string command = "cd '" + folder.path().string() +
@@ -152,7 +134,7 @@ TEST_CASE("An interrupted reference writes what is done, says so and fails", "[t
 }
 
 TEST_CASE("What the reference cannot do is one line and leaves no file", "[tools]") {
-  const Workplace at;
+  const BallWorkplace at;
   const std::size_t before = filesIn(at.folder);
   const auto complaint = [&](const std::string& arguments, int status) {
     const ProgramResult result = at.run("reference " + arguments);

@@ -1,8 +1,13 @@
 // Seeded random numbers that do not depend on who draws first.
 #pragma once
 #include <cstdint>
+#include <glm/vec2.hpp>
 
 namespace umbrick {
+
+/// Steps of the low-discrepancy sequence R2 in the unit square, whose point i is fract(start + i step): 1/g and 1/g^2,
+/// with g^3 = g + 1. Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences".
+inline const glm::dvec2 kR2Step(0.7548776662466927, 0.5698402909980532);
 
 /// PCG XSH-RR 64/32: one of 2^63 independent streams of a seed. O'Neill 2014, HMC-CS-2014-0905.
 class Random {
