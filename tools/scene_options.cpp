@@ -238,7 +238,9 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
   command.add_option("--clip-box", o.clipBox, "keep x0 y0 z0 x1 y1 z1, world")->expected(6)->group(clip);
 
   const std::string bricks = "Bricks";
-  command.add_option("--brick-edge", o.interior, "owned voxels along an edge: 8 to 256, a multiple of 8 [16]")
+  command
+      .add_option("--brick-edge", o.interior,
+                  "owned voxels along an edge: 8 to 256, a multiple of 8 [0: from the sizes of slabs and pixels]")
       ->group(bricks);
   command.add_flag("--unbricked", o.unbricked, "the whole volume as one texture")->group(bricks);
   command.add_flag("--no-culling", o.noCulling, "draw bricks that the transfer function makes invisible, too")
@@ -289,7 +291,9 @@ LoadedVolume loadVolume(const Scene& scene) {
   loaded.loadMs = load.elapsedMs();
   if (loaded.grid.activeBox().empty())
     throw InvalidArgument(scene.volume.file.string() + ": grid \"" + loaded.grid.name + "\" has no active voxel");
-  loaded.scene = resolveScene(scene, loaded.grid.worldBounds(), loaded.grid.indexToWorld());
+  const glm::dmat4 indexToWorld = loaded.grid.indexToWorld();
+  loaded.scene = resolveScene(scene, loaded.grid.worldBounds(), indexToWorld);
+  loaded.scene.bricks.interior = brickInterior(loaded.scene, indexToWorld, loaded.grid.worldBounds());
   return loaded;
 }
 

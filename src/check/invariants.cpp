@@ -68,6 +68,7 @@ class Checker {
         emission_(Model::emission, scene.method),
         cone_(Model::cone, scene.method) {
     scene_.background.reset();  // the same light behind both pictures
+    scene_.bricks.interior = brickInterior(scene_, toWorld_, grid.worldBounds());
     views_ = options.views;
     if (views_.empty()) {
       views_ = checkViews(grid, scene_);

@@ -20,10 +20,15 @@
 namespace umbrick {
 namespace {
 
-std::unique_ptr<Bricks> cut(const ScalarGrid& grid, const Scene& scene, int apron) {
+BrickOptions bricksOf(const ScalarGrid& grid, const Scene& scene) {
   BrickOptions options;
-  options.interior = scene.bricks.interior;
-  options.apron = apron;
+  options.interior = brickInterior(scene, grid.indexToWorld(), grid.worldBounds());
+  options.apron = requiredApron(scene, grid.indexToWorld());
+  return options;
+}
+
+std::unique_ptr<Bricks> cut(const ScalarGrid& grid, const Scene& scene) {
+  BrickOptions options = bricksOf(grid, scene);
   options.gradients = scene.transfer->is2d();
   return scene.bricks.bricked ? brickGrid(grid, options) : unbrickedGrid(grid, options);
 }
@@ -61,7 +66,7 @@ double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Sce
   probe.size = 64;  // pixels: enough to know what lies in the picture
   const double voxelEdge = shortestVoxelEdge(grid.indexToWorld()), spacing = 0.5 * voxelEdge;
   const Scene fine = caseScene(scene, probe, {spacing, voxelEdge});
-  const std::unique_ptr<Bricks> bricks = cut(grid, fine, requiredApron(fine, grid.indexToWorld()));
+  const std::unique_ptr<Bricks> bricks = cut(grid, fine);
   SliceRenderer renderer(context, *bricks, fine, quietly());
   const auto slices = static_cast<double>(renderer.render().stats.slices);
   if (slices == 0)
@@ -74,8 +79,8 @@ int leastSlices(const ScalarGrid& grid, const Scene& scene, double extent) {
   if (scene.sampling.quadrature != Quadrature::preintegrated) return 1;
   // See requiredApron: a slab reaches at most to the other side of a brick.
   const glm::dvec3 reach = slabReach(indexView(scene.camera, grid.indexToWorld()), extent);
-  return std::max(
-      1, static_cast<int>(std::ceil(std::max({reach.x, reach.y, reach.z}) / (scene.bricks.interior - 0.5) - 1e-9)));
+  const int interior = scene.bricks.interior > 0 ? scene.bricks.interior : kMostInterior;
+  return std::max(1, static_cast<int>(std::ceil(std::max({reach.x, reach.y, reach.z}) / (interior - 0.5) - 1e-9)));
 }
 
 void checkCases(const GlContext& context, const ScalarGrid& grid, const StudyRecord& record) {
@@ -158,9 +163,9 @@ bool StudyRun::report(const std::string& step, double share) {
 }
 
 const Bricks& StudyRun::bricksFor(const Scene& scene) {
-  const int apron = requiredApron(scene, grid_.indexToWorld());
-  std::unique_ptr<Bricks>& bricks = bricks_[apron];
-  if (!bricks) bricks = cut(grid_, scene, apron);
+  const BrickOptions options = bricksOf(grid_, scene);
+  std::unique_ptr<Bricks>& bricks = bricks_[{options.interior, options.apron}];
+  if (!bricks) bricks = cut(grid_, scene);
   return *bricks;
 }
 

@@ -55,10 +55,10 @@ class StudyRun {
   StudyRecord& record_;
   const StudyFolder& folder_;
   const StudyCallback& progress_;
-  std::map<int, std::unique_ptr<Bricks>> bricks_;  // by apron
-  std::unique_ptr<Baseline> baseline_;             // of the last size
-  std::map<std::string, Image> references_;        // by id
-  double work_ = 0, done_ = 0;                     // seconds that steps may take, only for their ratio
+  std::map<std::pair<int, int>, std::unique_ptr<Bricks>> bricks_;  // by interior and apron
+  std::unique_ptr<Baseline> baseline_;                             // of the last size
+  std::map<std::string, Image> references_;                        // by id
+  double work_ = 0, done_ = 0;                                     // seconds that steps may take, only for their ratio
 };
 
 }  // namespace umbrick

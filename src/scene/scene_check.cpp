@@ -97,8 +97,8 @@ std::optional<Complaint> findComplaint(const Scene& scene) {
   checkClip(check, scene);
 
   const BrickSettings& bricks = scene.bricks;
-  check.require(bricks.interior >= 8 && bricks.interior <= 256 && bricks.interior % 8 == 0, "bricks.interior",
-                std::to_string(bricks.interior), "a multiple of 8 from 8 to 256");
+  check.require(bricks.interior >= 0 && bricks.interior <= 256 && bricks.interior % 8 == 0, "bricks.interior",
+                std::to_string(bricks.interior), "a multiple of 8 from 8 to 256, or 0 to have it chosen");
   bool known = false;
   std::string formats;
   for (const std::string_view format : kTexelFormats) {

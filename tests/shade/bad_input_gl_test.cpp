@@ -167,4 +167,30 @@ TEST_CASE("The apron follows from the reach of a slab", "[shade]") {
   scene.sampling.spacing = 100;
   CHECK_THAT(complaint<InvalidArgument>([&] { requiredApron(scene, glm::dmat4(1)); }),
              Contains("151") && Contains("16"));
+  scene.bricks.interior = 0;
+  CHECK(requiredApron(scene, glm::dmat4(1)) == 151);
+}
+
+TEST_CASE("Bricks are as large as pixels and aprons ask for, unless the scene says how large", "[shade]") {
+  // 2 x 2 world units on 8 x 8 pixels; voxels of an edge of 1.
+  Scene scene = plainScene(ramp(), orthographicCamera({0, 0, 9}, {0, 0, 0}, 2, 8), 1);
+  const Box bounds{{-1, -1, -1}, {1, 1, 1}};
+  const glm::dmat4 voxels(1);
+  CHECK(brickInterior(scene, voxels, bounds) == 16);
+  scene.bricks.interior = 0;
+  CHECK(brickInterior(scene, voxels, bounds) == 24);
+  scene.camera.viewHeight = 40;  // 5 voxels to a pixel
+  CHECK(brickInterior(scene, voxels, bounds) == 40);
+  scene.camera.viewHeight = 4000;
+  CHECK(brickInterior(scene, voxels, bounds) == 48);
+  scene.sampling.spacing = 41;  // an apron of 21
+  CHECK(brickInterior(scene, voxels, bounds) == 64);
+  scene.sampling.spacing = 400;
+  CHECK(brickInterior(scene, voxels, bounds) == 256);
+  scene.sampling.spacing = 1;
+  // As seen by an eye at a distance of 9; within the bounds pixels are small.
+  scene.camera = perspectiveCamera({0, 0, 9}, {0, 0, 0}, 2 * std::atan(20.0 / 9), 8);
+  CHECK(brickInterior(scene, voxels, bounds) == 40);
+  scene.camera = perspectiveCamera({0, 0, 0}, {0, 0, -1}, 2 * std::atan(20.0 / 9), 8);
+  CHECK(brickInterior(scene, voxels, bounds) == 24);
 }

@@ -65,9 +65,11 @@ struct SamplingOptions {
   bool operator==(const SamplingOptions&) const = default;
 };
 
+inline constexpr int kMostInterior = 256;
+
 struct BrickSettings {
   bool bricked = true;             // false: the whole volume as one texture
-  int interior = 16;               // owned voxels along a brick's edge: 8 to 256, a multiple of 8
+  int interior = 0;                // owned voxels along a brick's edge: 8 to 256, a multiple of 8; 0: see brickInterior
   bool culling = true;             // skip bricks that the transfer function makes invisible
   std::string format = "auto";     // texel: auto (smallest exact one), unorm8, unorm16, half, float32
   std::uint64_t budgetMiB = 2048;  // of textures that hold voxels; larger volumes stream through a pool of this size
