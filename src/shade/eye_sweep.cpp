@@ -1,10 +1,12 @@
 #include "shade/eye_sweep.h"
 
+#include <algorithm>
+
 namespace umbrick {
 namespace {
 // Slices between two looks at which pixels are saturated. A look costs about as much as a slice of constant colour, and
-// a pixel is shaded for half as many slices too long on average.
-constexpr std::int64_t kSaturationInterval = 8;
+// a pixel is shaded for half as many slices too long on average: the dearer a slice, the sooner a look pays.
+std::int64_t saturationInterval(const Scene& scene) { return std::max(1, 8 / scene.sampling.segments); }
 }  // namespace
 
 void EyeSweep::begin(const Frame& frame) {
@@ -14,8 +16,9 @@ void EyeSweep::begin(const Frame& frame) {
 
 void EyeSweep::draw(Frame& frame, std::span<const SliceDraw> draws, const GlProgram& program) {
   setState(frame, program);
+  const std::int64_t interval = saturationInterval(frame.scene);
   for (std::size_t i = 0; i < draws.size();) {
-    if (frame.scene.sampling.saturation > 0 && sinceTest_ >= kSaturationInterval) {
+    if (frame.scene.sampling.saturation > 0 && sinceTest_ >= interval) {
       saturation_->run(frame);
       setState(frame, program);
       sinceTest_ = 0;
@@ -24,7 +27,7 @@ void EyeSweep::draw(Frame& frame, std::span<const SliceDraw> draws, const GlProg
     SliceDraw merged = draws[i];
     std::size_t next = i + 1;
     for (; next < draws.size() && draws[next].texture == merged.texture; ++next) {
-      if (draws[next].slice != draws[next - 1].slice && ++sinceTest_ >= kSaturationInterval) break;
+      if (draws[next].slice != draws[next - 1].slice && ++sinceTest_ >= interval) break;
       merged.indices += draws[next].indices;
     }
     if (next < draws.size() && draws[next].texture != merged.texture && draws[next].slice != draws[next - 1].slice)
