@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <string>
+#include <utility>
 
 #include "command.h"
 #include "umbrick/brick/brick_grid.h"
@@ -65,6 +67,19 @@ void applyTransfer(const SceneOptions& options, const DefaultTransfer& defaultTr
   if (options.sigmaScale) scene.transfer = scene.transfer->scaled(*options.sigmaScale);
 }
 
+// What only the other method would look at says that the user expects that one.
+void checkMethodOptions(const SceneOptions& options, Method method) {
+  const std::pair<const char*, bool> given[] = {{"--footprint", options.footprint.has_value()},
+                                                {"--algorithm", options.algorithm.has_value()},
+                                                {"--passes", options.passes.has_value()},
+                                                {"--no-perspective-correction", options.noPerspectiveCorrection}};
+  for (const auto& [name, used] : given)
+    if (used && method == Method::ordinates)
+      throw UsageError(std::string(name) + ": is for --method dos, found ordinates");
+  if (options.occlusionScale && method == Method::dos)
+    throw UsageError("--occlusion-scale: is for --method ordinates, found dos");
+}
+
 void applyModel(const SceneOptions& options, Scene& scene) {
   OcclusionOptions& occlusion = scene.occlusion;
   if (options.theta) occlusion.aperture = *options.theta * kRadians;
@@ -73,6 +88,7 @@ void applyModel(const SceneOptions& options, Scene& scene) {
   apply(options.algorithm, occlusion.algorithm);
   apply(options.occlusionBits, occlusion.bits);
   if (options.method) scene.method = *options.method == "dos" ? Method::dos : Method::ordinates;
+  checkMethodOptions(options, scene.method);
   apply(options.directions, occlusion.directions);
   apply(options.occlusionScale, occlusion.scale);
   if (options.noPerspectiveCorrection) occlusion.perspectiveCorrection = false;

@@ -126,6 +126,10 @@ TEST_CASE("Passes over what has no directions are one line and leave no file", "
   check("--model cone --target-error nan", 1, "target error are 0.000000 and nan, must be 0 or more");
   check("--model cone --progressive 4 --seed -1", 2, "--seed");
   check("--model cone --quality best", 2, "--quality");
+  // What belongs to the other method.
+  for (const std::string option : {"--footprint 5", "--algorithm 2", "--passes 2", "--no-perspective-correction"})
+    check("--model cone " + option, 2, option.substr(0, option.find(' ')) + ": is for --method dos, found ordinates");
+  check("--model cone --method dos --occlusion-scale 1", 2, "--occlusion-scale: is for --method ordinates, found dos");
 }
 
 TEST_CASE("A quality sets what goes together, and single options win over it", "[tools]") {

@@ -18,7 +18,7 @@ import numpy as np
 import exr
 
 EXACT = ["--saturation", "0"]
-CONE = ["--model", "cone", "--theta", "60", "--footprint", "3"]
+CONE = ["--model", "cone", "--method", "dos", "--theta", "60", "--footprint", "3"]
 # name: options, the variant that its picture is compared with
 VARIANTS = {
     "emission": ([], "emission, d / 16"),
