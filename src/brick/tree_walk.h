@@ -1,9 +1,10 @@
 // Visits the leaves and tiles of an OpenVDB tree that overlap a box, each once, without a look-up per voxel.
 #pragma once
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cstdint>
+
+#include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
 

@@ -1,6 +1,5 @@
 // Boxes of a grid's voxels, as arrays or as ranges of values.
 #pragma once
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include "brick/leaf_range.h"
 #include "brick/tree_walk.h"
 #include "umbrick/core/range.h"
+#include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
 

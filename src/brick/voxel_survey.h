@@ -1,12 +1,12 @@
 // One pass over all voxels of a grid: what values there are, and which lattice cells they reach.
 #pragma once
-#include <openvdb/openvdb.h>
 
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
 #include "umbrick/brick/bricks.h"
+#include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
 

@@ -1,6 +1,5 @@
 #include "check/slice_check.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -13,6 +12,7 @@
 
 #include "check/result.h"
 #include "check/sampler_precision.h"
+#include "umbrick/grid/float_grid.h"
 #include "umbrick/shade/slice_renderer.h"
 #include "umbrick/slice/proxy_slices.h"
 

@@ -1,11 +1,11 @@
 // What becomes of one voxel, and of one leaf of voxels, when a volume is made sparse.
 #pragma once
-#include <openvdb/openvdb.h>
 
 #include <optional>
 #include <string>
 
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
 

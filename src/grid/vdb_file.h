@@ -2,7 +2,6 @@
 #pragma once
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
-#include <openvdb/openvdb.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "grid/mapped_file.h"
+#include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
 

@@ -1,6 +1,5 @@
 // The voxels that a transfer function makes visible, in blocks of 8 x 8 x 8 cells, found by a tree.
 #pragma once
-#include <openvdb/openvdb.h>
 
 #include <array>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "reference/cubic.h"
 #include "reference/index_ray.h"
 #include "umbrick/core/range.h"
+#include "umbrick/grid/float_grid.h"
 #include "umbrick/grid/scalar_grid.h"
 #include "umbrick/optics/transfer_function.h"
 

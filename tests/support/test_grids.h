@@ -1,6 +1,5 @@
 // Small grids for tests. What looks random has a seed, so that a failure repeats.
 #pragma once
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "umbrick/grid/float_grid.h"
 #include "umbrick/grid/scalar_grid.h"
 
 namespace umbrick {

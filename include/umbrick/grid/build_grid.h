@@ -1,6 +1,5 @@
 // Dense volumes and dense-ish grids to sparse grids, with the error that it costs.
 #pragma once
-#include <openvdb/openvdb.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "umbrick/grid/float_grid.h"
 #include "umbrick/grid/scalar_grid.h"
 #include "umbrick/ingest/voxel_source.h"
 

@@ -1,6 +1,5 @@
 // One scalar grid, as 32-bit float, with its name and its affine transform.
 #pragma once
-#include <openvdb/openvdb.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "umbrick/core/box.h"
+#include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
 
