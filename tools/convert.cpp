@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 struct ConvertOptions {
   fs::path input, output;
   BuildOptions build;
-  std::string gridName;
+  std::string gridName, series;
   bool allGrids = true;
   std::vector<std::int64_t> dims;
   std::string type, endian = "little";
@@ -92,6 +92,7 @@ bool isVdb(const fs::path& path) {
 
 std::unique_ptr<VoxelSource> openInput(const ConvertOptions& options) {
   OpenOptions open;
+  open.series = options.series;
   const glm::dvec3 spacing(options.spacing[0], options.spacing[1], options.spacing[2]);
   const glm::dvec3 origin(options.origin[0], options.origin[1], options.origin[2]);
   if (!options.dims.empty() || !options.type.empty()) {
@@ -190,6 +191,9 @@ Command addConvert(CLI::App& app) {
   command->add_option("--name", options->build.name, "name of the grid (not for .vdb)")->capture_default_str();
   command->add_option("--grid", options->gridName,
                       "of a .vdb: only this grid, \"name\" or \"name[1]\" [all scalar ones]");
+  command->add_option(
+      "--series", options->series,
+      "of a DICOM folder: the UID of a series, or its number in the list that is printed [the only one]");
   command
       ->add_option("--background", options->build.background,
                    "value of what is left out, grid units [0, or that of the .vdb]")

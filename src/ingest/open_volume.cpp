@@ -11,6 +11,7 @@
 #include "ingest/header_text.h"
 #include "ingest/packed_stream.h"
 #include "umbrick/core/error.h"
+#include "umbrick/ingest/dicom_volume.h"
 #include "umbrick/ingest/metaimage_volume.h"
 #include "umbrick/ingest/nifti_volume.h"
 #include "umbrick/ingest/npy_volume.h"
@@ -52,6 +53,12 @@ std::vector<Format> formats() {
        },
        true,
        [](const fs::path& path, const OpenOptions&) { return openNifti(path); }},
+      {{"DICOM",
+        {".dcm", ".ima"},
+        "a file or a folder of them: grey series, single- and multi-frame, raw and compressed; --series picks one"},
+       [](Bytes b) { return b.size() >= 132 && b.substr(128, 4) == "DICM"; },
+       true,
+       [](const fs::path& path, const OpenOptions& options) { return openDicom(path, options.series); }},
       {{"NumPy",
         {".npy", ".npy.gz", ".npy.xz", ".npy.zst", ".npy.bz2"},
         "arrays of two or three axes in C or Fortran order"},
@@ -69,6 +76,8 @@ bool hasExtension(const Format& format, const fs::path& path) {
 
 std::optional<Format> formatOf(const fs::path& path) {
   const std::vector<Format> all = formats();
+  if (fs::is_directory(path) && hasDicom(path))
+    return *std::find_if(all.begin(), all.end(), [](const Format& format) { return format.row.name == "DICOM"; });
   for (const Format& format : all)
     if (hasExtension(format, path)) return format;
   if (!fs::is_regular_file(path)) return std::nullopt;

@@ -13,6 +13,7 @@ namespace umbrick {
 
 struct OpenOptions {
   std::optional<RawOptions> raw = {};      // the file is headerless raw, whatever its name
+  std::string series = {};                 // of DICOM: UID, or number in the list of series, from 1
   std::optional<glm::dvec3> spacing = {};  // world units between voxel centres, of formats that state no place
   std::optional<glm::dvec3> origin = {};   // world position of the centre of the first voxel, of the same formats
 };
