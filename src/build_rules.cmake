@@ -50,3 +50,12 @@ function(umbrick_embed function)
   add_dependencies(umbrick umbrick_${function})
   target_sources(umbrick PRIVATE ${output})
 endfunction()
+
+# A library without a CMake package: sets PREFIX_INCLUDE_DIR and PREFIX_LIBRARY, or says which Debian package has it.
+function(umbrick_find_library prefix header library package)
+  find_path(${prefix}_INCLUDE_DIR ${header})
+  find_library(${prefix}_LIBRARY ${library})
+  if(NOT ${prefix}_INCLUDE_DIR OR NOT ${prefix}_LIBRARY)
+    message(FATAL_ERROR "${header} or lib${library} is missing: install ${package} (tools/setup installs all that is needed)")
+  endif()
+endfunction()

@@ -1,4 +1,4 @@
-// umbrick convert: raw, NRRD or .vdb to a sparse .vdb, with the loss it cost.
+// umbrick convert: a volume of any format that is read to a sparse .vdb, with the loss it cost.
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,11 +16,11 @@
 #include <vector>
 
 #include "command.h"
+#include "formats.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/grid/build_grid.h"
-#include "umbrick/ingest/nrrd_volume.h"
-#include "umbrick/ingest/raw_volume.h"
+#include "umbrick/ingest/open_volume.h"
 #include "validators.h"
 
 namespace umbrick::tools {
@@ -30,13 +30,14 @@ namespace fs = std::filesystem;
 struct ConvertOptions {
   fs::path input, output;
   BuildOptions build;
-  std::string gridName;
+  std::string gridName, series;
   bool allGrids = true;
   std::vector<std::int64_t> dims;
   std::string type, endian = "little";
   std::int64_t headerBytes = 0;
   int bitsStored = 0;
   std::array<double, 3> spacing{1, 1, 1}, origin{0, 0, 0};
+  bool hasSpacing = false, hasOrigin = false;
 };
 
 // A line that grows on a terminal; nothing in a pipe.
@@ -81,44 +82,45 @@ openvdb::MetaMap fileMetadata(openvdb::MetaMap metadata) {
   return metadata;
 }
 
-enum class Format { vdb, nrrd, raw };
-
-// By the extension, or else by the first bytes, unless the options of raw say that it is raw.
-Format formatOf(const ConvertOptions& options) {
-  const fs::path& path = options.input;
-  const std::string extension = path.extension().string();
-  if (extension == ".vdb") return Format::vdb;
-  if (extension == ".nrrd" || extension == ".nhdr") return Format::nrrd;
-  if (!options.dims.empty() || !options.type.empty()) return Format::raw;
-  char magic[7]{};
-  if (fs::is_regular_file(path)) std::ifstream(path, std::ios::binary).read(magic, sizeof magic);
-  const std::string_view start(magic, sizeof magic);
-  if (start.starts_with(" BDV")) return Format::vdb;
-  return start == "NRRD000" ? Format::nrrd : Format::raw;
+bool isVdb(const fs::path& path) {
+  if (path.extension() == ".vdb") return true;
+  if (formatOfName(path) || !fs::is_regular_file(path)) return false;
+  char magic[4]{};
+  std::ifstream(path, std::ios::binary).read(magic, sizeof magic);
+  return std::string_view(magic, sizeof magic) == " BDV";
 }
 
-std::unique_ptr<VoxelSource> openVolume(const ConvertOptions& options, Format format) {
-  if (format == Format::nrrd) return openNrrd(options.input);
-  if (options.dims.size() != 3 || options.type.empty())
-    throw UsageError(options.input.string() + ": taken for headerless raw, which needs --dims and --type");
-  RawOptions raw;
-  raw.dims = {options.dims[0], options.dims[1], options.dims[2]};
-  raw.type = *voxelTypeFromName(options.type);
-  raw.endian = options.endian == "big" ? std::endian::big : std::endian::little;
-  raw.headerBytes = options.headerBytes;
-  if (options.bitsStored != 0) raw.bitsStored = options.bitsStored;
-  raw.spacing = {options.spacing[0], options.spacing[1], options.spacing[2]};
-  raw.origin = {options.origin[0], options.origin[1], options.origin[2]};
+std::unique_ptr<VoxelSource> openInput(const ConvertOptions& options) {
+  OpenOptions open;
+  open.series = options.series;
+  const glm::dvec3 spacing(options.spacing[0], options.spacing[1], options.spacing[2]);
+  const glm::dvec3 origin(options.origin[0], options.origin[1], options.origin[2]);
+  if (!options.dims.empty() || !options.type.empty()) {
+    if (options.dims.size() != 3 || options.type.empty())
+      throw UsageError(options.input.string() + ": headerless raw needs --dims and --type");
+    RawOptions raw;
+    raw.dims = {options.dims[0], options.dims[1], options.dims[2]};
+    raw.type = *voxelTypeFromName(options.type);
+    raw.endian = options.endian == "big" ? std::endian::big : std::endian::little;
+    raw.headerBytes = options.headerBytes;
+    if (options.bitsStored != 0) raw.bitsStored = options.bitsStored;
+    raw.spacing = spacing;
+    raw.origin = origin;
+    open.raw = raw;
+  } else {
+    if (options.hasSpacing) open.spacing = spacing;
+    if (options.hasOrigin) open.origin = origin;
+  }
   try {
-    return openRaw(options.input, raw);
+    return openVolume(options.input, open);
   } catch (const InvalidArgument& error) {
     throw UsageError(error.what());
   }
 }
 
 // @return bytes read
-std::int64_t convertVolume(const ConvertOptions& options, Format format) {
-  const auto source = openVolume(options, format);
+std::int64_t convertVolume(const ConvertOptions& options) {
+  const auto source = openInput(options);
   const BuiltGrid built = buildGrid(*source, options.build);
   writeGrids(options.output, {built.grid}, fileMetadata({}));
   printReport(options.build.name, built.report, /*dense=*/true);
@@ -162,11 +164,12 @@ int convert(ConvertOptions options) {
     throw UsageError(options.output.string() + ": expected an output file that ends in .vdb");
   ProgressBar bar;
   options.build.progress = [&](double share) { bar.show(share); };
-  const Format format = formatOf(options);
-  if (format != Format::raw && (!options.dims.empty() || !options.type.empty()))
-    throw UsageError(options.input.string() + ": --dims and --type are for headerless raw, not for " +
-                     options.input.extension().string());
-  const std::int64_t bytesIn = format == Format::vdb ? convertVdb(options) : convertVolume(options, format);
+  const bool raw = !options.dims.empty() || !options.type.empty();
+  const auto named =
+      options.input.extension() == ".vdb" ? std::optional<std::string>(".vdb") : formatOfName(options.input);
+  if (raw && named)
+    throw UsageError(options.input.string() + ": --dims and --type are for headerless raw, not for " + *named);
+  const std::int64_t bytesIn = !raw && isVdb(options.input) ? convertVdb(options) : convertVolume(options);
   std::cout << options.output.string() << ": " << bytesIn << " bytes in, " << fs::file_size(options.output)
             << " bytes out, " << std::lround(stopwatch.elapsedMs()) << " ms\n";
   return 0;
@@ -176,14 +179,21 @@ int convert(ConvertOptions options) {
 
 Command addConvert(CLI::App& app) {
   const auto options = std::make_shared<ConvertOptions>();
-  CLI::App* command = app.add_subcommand("convert", "Turn raw, NRRD or .vdb into a sparse .vdb; prints what was lost.");
+  CLI::App* command =
+      app.add_subcommand("convert", "Turn volumes of many formats or a .vdb into a sparse .vdb; prints what was lost.");
   const CLI::Validator finite = finiteNumber();
-  command->add_option("input", options->input, ".nrrd, .nhdr, .vdb; any other name is headerless raw, plain or gzip'd")
+  command
+      ->add_option("input", options->input,
+                   "a volume, told by its name or first bytes (--list-formats), or headerless raw (--dims, --type)")
       ->required();
+  addListFormats(*command);
   command->add_option("-o,--output", options->output, "the .vdb file to write")->required();
   command->add_option("--name", options->build.name, "name of the grid (not for .vdb)")->capture_default_str();
   command->add_option("--grid", options->gridName,
                       "of a .vdb: only this grid, \"name\" or \"name[1]\" [all scalar ones]");
+  command->add_option(
+      "--series", options->series,
+      "of a DICOM folder: the UID of a series, or its number in the list that is printed [the only one]");
   command
       ->add_option("--background", options->build.background,
                    "value of what is left out, grid units [0, or that of the .vdb]")
@@ -199,8 +209,8 @@ Command addConvert(CLI::App& app) {
 
   const std::string raw = "Headerless raw";
   command->add_option("--dims", options->dims, "voxels along x (fastest), y and z")->expected(3)->group(raw);
-  command->add_option("--type", options->type, "of a voxel: u8, i8, u16, i16, u32, i32, f32, f64")
-      ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"}))
+  command->add_option("--type", options->type, "of a voxel: u8, i8, u16, i16, u32, i32, i64, u64, f16, f32, f64")
+      ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "i64", "u64", "f16", "f32", "f64"}))
       ->group(raw);
   command->add_option("--endian", options->endian, "little or big")
       ->check(CLI::IsMember({"little", "big"}))
@@ -213,12 +223,18 @@ Command addConvert(CLI::App& app) {
   command->add_option("--bits-stored", options->bitsStored, "of an integer; bits above are masked off [all]")
       ->check(CLI::PositiveNumber)
       ->group(raw);
-  command->add_option("--spacing", options->spacing, "world units between voxel centres along x, y, z [1 1 1]")
+  command
+      ->add_option("--spacing", options->spacing,
+                   "world units between voxel centres along x, y, z; also of other formats that state none [1 1 1]")
       ->group(raw);
-  command->add_option("--origin", options->origin, "world position of the centre of voxel (0, 0, 0) [0 0 0]")
+  command
+      ->add_option("--origin", options->origin,
+                   "world position of the centre of voxel (0, 0, 0); also of other formats that state none [0 0 0]")
       ->group(raw);
   return {command, [command, options] {
             options->allGrids = command->count("--grid") == 0;
+            options->hasSpacing = command->count("--spacing") > 0;
+            options->hasOrigin = command->count("--origin") > 0;
             return convert(*options);
           }};
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -104,6 +105,18 @@ void printHistogram(const ValueSummary& values) {
   }
 }
 
+// What the volume that the grid was made of said about itself, a line for each metadata of this list that there is.
+void printSource(const std::map<std::string, std::string>& metadata) {
+  for (const char* key : {"source_format", "source_file", "modality", "series_description", "space", "length_unit",
+                          "rescale", "value_unit"}) {
+    const auto found = metadata.find(key);
+    if (found == metadata.end()) continue;
+    std::string label = key;
+    label.resize(std::max<std::size_t>(label.size() + 1, 15), ' ');
+    std::cout << "  " << label << found->second << '\n';
+  }
+}
+
 void print(const GridSummary& grid) {
   std::cout << "grid \"" << grid.label << "\"\n  type           " << grid.valueType
             << (grid.savedAsHalf ? ", saved as half" : "") << (grid.scalar ? "" : " (not a scalar)") << '\n';
@@ -130,6 +143,7 @@ void print(const GridSummary& grid) {
   if (!grid.worldBounds.empty())
     std::cout << "  world bounds   (" << text(grid.worldBounds.min) << ") to (" << text(grid.worldBounds.max) << ")\n";
   std::cout << "  memory bytes   " << grid.memoryBytes << '\n';
+  printSource(grid.metadata);
   if (!grid.values) return;
   if (grid.values->nonFinite > 0) std::cout << "  not finite     " << grid.values->nonFinite << " active voxels\n";
   if (grid.values->histogram.empty()) return;

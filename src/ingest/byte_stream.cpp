@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -17,7 +16,7 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kChunkBytes = std::size_t(1) << 30;  // zlib and read() count in 32 bits
+constexpr std::size_t kChunkBytes = std::size_t(1) << 30;  // read() takes no more than 2 GB at once
 
 IoError systemError(const fs::path& path, const char* what) {
   return IoError(path.string() + ": " + what + ": " + std::strerror(errno));
@@ -33,13 +32,10 @@ class Descriptor {
       throw systemError(path, "cannot read");
     }
   }
-  ~Descriptor() {
-    if (file_ >= 0) close(file_);
-  }
+  ~Descriptor() { close(file_); }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return file_; }
-  int release() { return std::exchange(file_, -1); }
 
  private:
   int file_;
@@ -63,50 +59,6 @@ class PlainStream : public ByteStream {
  private:
   fs::path path_;
   Descriptor file_;
-};
-
-class GzipStream : public ByteStream {
- public:
-  GzipStream(const fs::path& path, std::int64_t offset) : path_(path) {
-    Descriptor file(path, offset);
-    file_ = gzdopen(file.get(), "rb");
-    if (!file_) throw IoError(path.string() + ": cannot unpack: out of memory");
-    file.release();
-    gzbuffer(file_, 1 << 18);
-  }
-  ~GzipStream() override { gzclose(file_); }
-  GzipStream(const GzipStream&) = delete;
-  GzipStream& operator=(const GzipStream&) = delete;
-
-  std::size_t read(std::span<std::byte> out) override {
-    std::size_t done = 0;
-    while (done < out.size()) {
-      const auto count = static_cast<unsigned>(std::min(out.size() - done, kChunkBytes));
-      const int got = gzread(file_, out.data() + done, count);
-      // A file cut short gives what there is, and an error beside it.
-      int status = Z_OK;
-      const char* message = gzerror(file_, &status);
-      if (got < 0 || (status != Z_OK && status != Z_STREAM_END))
-        throw IoError(path_.string() + ": cannot unpack gzip: " +
-                      (status == Z_BUF_ERROR ? "the packed data end early" : withoutName(message)) + ", after " +
-                      std::to_string(total_ + done + static_cast<std::size_t>(std::max(got, 0))) + " unpacked bytes");
-      if (got == 0) break;
-      done += static_cast<std::size_t>(got);
-    }
-    total_ += done;
-    return done;
-  }
-
- private:
-  // zlib puts "<fd:3>: " before its message.
-  static std::string withoutName(const std::string& message) {
-    const std::size_t colon = message.find(": ");
-    return colon == std::string::npos ? message : message.substr(colon + 2);
-  }
-
-  fs::path path_;
-  gzFile file_ = nullptr;
-  std::size_t total_ = 0;
 };
 
 class JoinedStream : public ByteStream {
@@ -154,18 +106,8 @@ std::int64_t checkedFileSize(const fs::path& path) {
   return static_cast<std::int64_t>(size);
 }
 
-bool isGzip(const fs::path& path, std::int64_t offset) {
-  std::byte magic[2]{};
-  PlainStream(path, offset).read(magic);
-  return magic[0] == std::byte(0x1f) && magic[1] == std::byte(0x8b);
-}
-
 std::unique_ptr<ByteStream> openPlain(const fs::path& path, std::int64_t offset) {
   return std::make_unique<PlainStream>(path, offset);
-}
-
-std::unique_ptr<ByteStream> openGzip(const fs::path& path, std::int64_t offset) {
-  return std::make_unique<GzipStream>(path, offset);
 }
 
 std::unique_ptr<ByteStream> joinStreams(std::vector<std::function<std::unique_ptr<ByteStream>()>> parts) {

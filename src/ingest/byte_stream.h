@@ -1,4 +1,4 @@
-// Bytes in order, plain or unpacked on the way.
+// Bytes in order.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -23,11 +23,7 @@ class ByteStream {
 /// IoError
 std::int64_t checkedFileSize(const std::filesystem::path& path);
 
-/// True when the file at `offset` starts with the magic bytes of gzip.
-bool isGzip(const std::filesystem::path& path, std::int64_t offset = 0);
-
 std::unique_ptr<ByteStream> openPlain(const std::filesystem::path& path, std::int64_t offset = 0);
-std::unique_ptr<ByteStream> openGzip(const std::filesystem::path& path, std::int64_t offset = 0);
 
 /// One after the other, each opened when the one before has ended: a volume may lie in thousands of files.
 std::unique_ptr<ByteStream> joinStreams(std::vector<std::function<std::unique_ptr<ByteStream>()>> parts);

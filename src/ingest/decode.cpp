@@ -1,5 +1,6 @@
 #include "ingest/decode.h"
 
+#include <half.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -42,8 +43,10 @@ float toFloat(T value, double& error) {
     return stored;
   } else {
     const auto stored = static_cast<float>(value);
-    if constexpr (std::is_integral_v<T> && sizeof(T) == 4)  // the others fit into the 24 bits of a float
-      error = std::max(error, std::abs(static_cast<double>(value) - static_cast<double>(stored)));
+    // The others fit into the 24 bits of a float. A long double holds all 64 bits.
+    if constexpr (std::is_integral_v<T> && sizeof(T) >= 4)
+      error = std::max(
+          error, static_cast<double>(std::abs(static_cast<long double>(value) - static_cast<long double>(stored))));
     return stored;
   }
 }
@@ -52,13 +55,15 @@ template <class T>
 double decodeAs(const VoxelLayout& layout, std::span<const std::byte> in, std::span<float> out) {
   const bool swap = layout.endian != std::endian::native;
   const int flagBits = layout.bitsStored > 0 ? 8 * static_cast<int>(sizeof(T)) - layout.bitsStored : 0;
+  const bool rescaled = layout.slope != 1 || layout.intercept != 0;
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, out.size(), 1 << 16), 0.0,
       [&](const tbb::blocked_range<std::size_t>& range, double error) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
           T value = load<T>(in.data() + i * sizeof(T), swap);
           if constexpr (std::is_integral_v<T>) value = onlyStoredBits(value, flagBits);
-          out[i] = toFloat(value, error);
+          out[i] = rescaled ? toFloat(layout.slope * static_cast<double>(value) + layout.intercept, error)
+                            : toFloat(value, error);
         }
         return error;
       },
@@ -82,6 +87,12 @@ double decodeVoxels(const VoxelLayout& layout, std::span<const std::byte> in, st
       return decodeAs<std::uint32_t>(layout, in, out);
     case VoxelType::i32:
       return decodeAs<std::int32_t>(layout, in, out);
+    case VoxelType::i64:
+      return decodeAs<std::int64_t>(layout, in, out);
+    case VoxelType::u64:
+      return decodeAs<std::uint64_t>(layout, in, out);
+    case VoxelType::f16:
+      return decodeAs<half>(layout, in, out);
     case VoxelType::f32:
       return decodeAs<float>(layout, in, out);
     case VoxelType::f64:

@@ -13,10 +13,11 @@ struct VoxelLayout {
   VoxelType type = VoxelType::u8;
   std::endian endian = std::endian::little;
   int bitsStored = 0;  // 0: all; else bits above them are masked off, signed types sign-extended from the last one
+  double slope = 1, intercept = 0;  // value = slope * stored + intercept
 };
 
 /// Decodes out.size() voxels. Finite doubles beyond the range of float become the largest float.
-/// @return the largest |stored - float| of the finite values
+/// @return the largest |value - float| of the finite values
 double decodeVoxels(const VoxelLayout& layout, std::span<const std::byte> in, std::span<float> out);
 
 }  // namespace umbrick

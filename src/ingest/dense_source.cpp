@@ -1,8 +1,11 @@
 #include "ingest/dense_source.h"
 
+#include <algorithm>
 #include <cassert>
 #include <limits>
+#include <sstream>
 
+#include "ingest/packed_stream.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -22,9 +25,45 @@ std::string describeBytes(const VolumeInfo& info) {
          " bytes";
 }
 
+std::unique_ptr<ByteStream> openVoxels(const VolumeInfo& info, const std::filesystem::path& path, std::int64_t offset) {
+  const std::int64_t size = checkedFileSize(path);
+  const Packing packing = size >= 0 ? packingOf(path) : Packing::none;
+  const std::int64_t expected = volumeBytes(info.dims, info.type).value_or(0);
+  if (packing == Packing::none && size >= 0) {
+    if (size - offset != expected)
+      throw IoError(path.string() + ": expected " + describeBytes(info) +
+                    (offset > 0 ? " after a header of " + std::to_string(offset) : "") + ", found " +
+                    std::to_string(std::max<std::int64_t>(size - offset, 0)));
+    return openPlain(path, offset);
+  }
+  if (packing == Packing::gzip) checkDeflateRatio(path, info, size);
+  auto bytes = openPacked(path, packing);
+  if (const std::int64_t skipped = bytes->skip(offset); skipped < offset)
+    throw IoError(path.string() + ": expected a header of " + std::to_string(offset) + " bytes, found " +
+                  std::to_string(skipped) + " bytes in all");
+  return bytes;
+}
+
+void checkDeflateRatio(const std::filesystem::path& path, const VolumeInfo& info, std::int64_t packedBytes) {
+  // Deflate packs no more than 1032 bytes into one (https://zlib.net/zlib_tech.html).
+  const std::int64_t most = (packedBytes + 1) * 1032;
+  if (*volumeBytes(info.dims, info.type) > most)
+    throw IoError(path.string() + ": expected " + describeBytes(info) + ", found " + std::to_string(packedBytes) +
+                  " packed ones, which cannot hold more than " + std::to_string(most));
+}
+
+std::optional<std::string> describeRescale(const VoxelLayout& layout) {
+  if (layout.slope == 1 && layout.intercept == 0) return std::nullopt;
+  std::ostringstream text;
+  text.precision(17);
+  text << layout.intercept << " + " << layout.slope << " * stored";
+  return text.str();
+}
+
 DenseSource::DenseSource(VolumeInfo info, VoxelLayout layout, std::unique_ptr<ByteStream> bytes, std::string hint)
     : layout_(layout), bytes_(std::move(bytes)), hint_(std::move(hint)) {
   info_ = std::move(info);
+  if (const auto rescale = describeRescale(layout)) info_.metadata["rescale"] = *rescale;
 }
 
 double DenseSource::readSlab(std::int64_t count, std::span<float> out) {

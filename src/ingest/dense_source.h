@@ -17,6 +17,16 @@ std::optional<std::int64_t> volumeBytes(const glm::i64vec3& dims, VoxelType type
 /// "256 x 256 x 94 u16 = 12320768 bytes"
 std::string describeBytes(const VolumeInfo& info);
 
+/// The voxels of a file that holds them all, from byte `offset` of the unpacked file on; packing by the first bytes.
+/// @throw IoError  a plain file of another size, or a packed one too small to hold so much
+std::unique_ptr<ByteStream> openVoxels(const VolumeInfo& info, const std::filesystem::path& path, std::int64_t offset);
+
+/// @throw IoError  gzip or zlib data of `packedBytes` cannot become `bytes`: told before anything is allocated for them
+void checkDeflateRatio(const std::filesystem::path& path, const VolumeInfo& info, std::int64_t packedBytes);
+
+/// "-1000 + 2.5 * stored", or nothing when there is nothing to rescale
+std::optional<std::string> describeRescale(const VoxelLayout& layout);
+
 class DenseSource : public VoxelSource {
  public:
   /// @param bytes  stands at the first voxel

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <glm/geometric.hpp>
@@ -12,54 +11,15 @@
 #include <string_view>
 
 #include "ingest/dense_source.h"
+#include "ingest/header_text.h"
+#include "ingest/length_unit.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMaxLine = 1 << 16, kMaxHeader = 1 << 22, kMaxFiles = 1 << 20, kMaxAxes = 16;
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return out;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-// Words between blanks; a word in quotes may hold blanks.
-std::vector<std::string> words(std::string_view text) {
-  std::vector<std::string> out;
-  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
-    const bool quoted = text.front() == '"';
-    if (quoted) text.remove_prefix(1);
-    const std::size_t end = std::min(quoted ? text.find('"') : text.find_first_of(" \t"), text.size());
-    out.emplace_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return out;
-}
-
-std::optional<std::int64_t> integer(std::string_view text) {
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
-
-std::optional<double> number(std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
-
-std::string shortened(std::string_view text) {
-  return text.empty() ? "nothing" : '"' + std::string(text.substr(0, 60)) + (text.size() > 60 ? "...\"" : "\"");
-}
+constexpr std::size_t kMaxLine = 1 << 16, kMaxHeader = 1 << 22, kMaxAxes = 16;
 
 struct Axis {
   std::int64_t size = 0;
@@ -67,6 +27,7 @@ struct Axis {
   bool hasMin = false, cell = false;    // cell-centred: `min` is the edge of the first voxel
   std::optional<glm::dvec3> direction;  // of space
   bool spatial = true;
+  std::string unit;
 };
 
 class HeaderReader {
@@ -83,13 +44,14 @@ class HeaderReader {
     for (std::size_t i = 0; i < axes.size(); ++i) header_.dims[static_cast<int>(i)] = axes[i].size;
     if (!volumeBytes(header_.dims, header_.type)) fail("sizes", "less than 2^63 bytes in all", value("sizes"));
     place(axes);
+    toMillimetres(axes);
     collectMetadata();
     return header_;
   }
 
  private:
   [[noreturn]] void fail(const std::string& field, const std::string& expected, std::string_view found) const {
-    throw IoError(path_.string() + ": " + field + ": expected " + expected + ", found " + shortened(found));
+    failField(path_, field, expected, found);
   }
 
   bool line(std::string& text) {
@@ -150,7 +112,7 @@ class HeaderReader {
 
   void readLayout() {
     using enum VoxelType;
-    static constexpr std::array<std::pair<std::string_view, VoxelType>, 28> kTypes{{
+    static constexpr std::array<std::pair<std::string_view, VoxelType>, 40> kTypes{{
         {"signed char", i8},
         {"int8", i8},
         {"int8_t", i8},
@@ -177,12 +139,24 @@ class HeaderReader {
         {"unsigned int", u32},
         {"uint32", u32},
         {"uint32_t", u32},
+        {"longlong", i64},
+        {"long long", i64},
+        {"long long int", i64},
+        {"signed long long", i64},
+        {"signed long long int", i64},
+        {"int64", i64},
+        {"int64_t", i64},
+        {"ulonglong", u64},
+        {"unsigned long long", u64},
+        {"unsigned long long int", u64},
+        {"uint64", u64},
+        {"uint64_t", u64},
         {"float", f32},
         {"double", f64},
     }};
     const std::string type = lower(required("type"));
     const auto row = std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& each) { return each.first == type; });
-    if (type.empty() || row == kTypes.end()) fail("type", "8-, 16- or 32-bit integers, float or double", type);
+    if (type.empty() || row == kTypes.end()) fail("type", "integers of 8 to 64 bits, float or double", type);
     header_.type = row->second;
 
     const std::string encoding = lower(required("encoding"));
@@ -190,12 +164,14 @@ class HeaderReader {
       header_.encoding = NrrdEncoding::raw;
     else if (encoding == "gz" || encoding == "gzip")
       header_.encoding = NrrdEncoding::gzip;
+    else if (encoding == "bz2" || encoding == "bzip2")
+      header_.encoding = NrrdEncoding::bzip2;
     else if (encoding == "txt" || encoding == "text" || encoding == "ascii")
       header_.encoding = NrrdEncoding::text;
     else if (encoding == "hex")
       header_.encoding = NrrdEncoding::hex;
     else
-      fail("encoding", "raw, gzip, text or hex", encoding);
+      fail("encoding", "raw, gzip, bzip2, text or hex", encoding);
 
     const std::string endian = lower(value("endian"));
     if (endian != "" && endian != "little" && endian != "big") fail("endian", "little or big", endian);
@@ -220,38 +196,17 @@ class HeaderReader {
     if (!fields_.contains("datafile")) return;
     std::vector<std::string> names;
     const std::vector<std::string> parts = words(value("datafile"));
-    if (!parts.empty() && lower(parts[0]) == "list")
+    if (!parts.empty() && lower(parts[0]) == "list") {
       names = list_;
-    else if (parts.size() >= 4 && parts[0].find('%') != std::string::npos)
-      names = numbered(parts);
-    else
+    } else if (parts.size() >= 4 && parts[0].find('%') != std::string::npos) {
+      names = numberedNames(parts[0], parts[1], parts[2], parts[3]);
+      if (names.empty())
+        fail("data file", "a pattern with one %d or %03d, then first, last and step", value("datafile"));
+    } else {
       names = {value("datafile")};
+    }
     if (names.empty() || names.front().empty()) fail("data file", "the name of a file", "");
     for (const std::string& name : names) header_.dataFiles.push_back(path_.parent_path() / name);
-  }
-
-  // "slice%03d.raw 1 94 1": the pattern is not given to printf, since it comes from a file.
-  std::vector<std::string> numbered(const std::vector<std::string>& parts) const {
-    const std::string& pattern = parts[0];
-    const std::size_t begin = pattern.find('%'), end = pattern.find('d', begin);
-    const auto first = integer(parts[1]), last = integer(parts[2]), step = integer(parts[3]);
-    const std::string width = end == std::string::npos ? "?" : pattern.substr(begin + 1, end - begin - 1);
-    const auto digits = width.empty() ? std::optional<std::int64_t>(0) : integer(width);
-    const bool zeros = width.starts_with('0');
-    if (!digits || *digits < 0 || *digits > 32 || pattern.find('%', begin + 1) != std::string::npos || !first ||
-        !last || !step || *step == 0 || *first < 0 || *last < 0 || *first > std::numeric_limits<int>::max() ||
-        *last > std::numeric_limits<int>::max())
-      fail("data file", "a pattern with one %d or %03d, then first, last and step", value("datafile"));
-    std::vector<std::string> names;
-    for (std::int64_t i = *first; *step > 0 ? i <= *last : i >= *last; i += *step) {
-      std::string digitsText = std::to_string(i);
-      const auto padding = static_cast<std::size_t>(*digits) - std::min<std::size_t>(*digits, digitsText.size());
-      digitsText.insert(0, padding, zeros ? '0' : ' ');
-      names.push_back(pattern.substr(0, begin) + digitsText + pattern.substr(end + 1));
-      if (names.size() > kMaxFiles || std::abs(*step) > std::numeric_limits<int>::max())
-        fail("data file", "fewer files", value("datafile"));
-    }
-    return names;
   }
 
   // One value per axis.
@@ -344,10 +299,14 @@ class HeaderReader {
   }
 
   void readSpacings(std::vector<Axis>& axes) const {
-    for (const char* field : {"spacings", "axismins", "centers"}) {
+    for (const char* field : {"units", "spacings", "axismins", "centers"}) {
       if (!fields_.contains(field)) continue;
       const std::vector<std::string> values = perAxis(field, axes.size());
       for (std::size_t i = 0; i < axes.size(); ++i) {
+        if (std::string_view(field) == "units") {
+          axes[i].unit = values[i];
+          continue;
+        }
         if (std::string_view(field) == "centers") {
           axes[i].cell = lower(values[i]) == "cell";
           continue;
@@ -405,7 +364,27 @@ class HeaderReader {
     }
   }
 
+  // Units of space scale the axes of the world; without a space those of the file's axes do.
+  void toMillimetres(const std::vector<Axis>& axes) {
+    std::vector<std::string> units;
+    if (axes[0].direction)
+      units = words(value("spaceunits"));
+    else
+      for (const Axis& axis : axes) units.push_back(axis.unit);
+    if (units.empty() || units.size() > 3) return;
+    glm::dvec3 factor(1);
+    for (std::size_t i = 0; i < units.size(); ++i) {
+      const auto millimetres = millimetresPer(units[i]);
+      if (!millimetres) return;  // unknown: left as it is
+      factor[static_cast<int>(i)] = *millimetres;
+    }
+    for (int column = 0; column < 4; ++column)
+      for (int row = 0; row < 3; ++row) header_.indexToWorld[column][row] *= factor[row];
+    header_.metadata["length_unit"] = "mm";
+  }
+
   void collectMetadata() {
+    if (fields_.contains("space")) header_.metadata["space"] = spaceName(value("space"));
     for (const char* field : {"space", "spaceunits", "units", "sampleunits", "content", "oldmin", "oldmax", "min",
                               "max", "measurementframe", "labels", "thicknesses"})
       if (fields_.contains(field)) header_.metadata.emplace(std::string("nrrd_") + field, value(field));

@@ -11,7 +11,7 @@
 
 namespace umbrick {
 
-enum class NrrdEncoding { raw, gzip, text, hex };
+enum class NrrdEncoding { raw, gzip, bzip2, text, hex };
 
 /// What the header says, checked; three axes, whatever the file had.
 struct NrrdHeader {

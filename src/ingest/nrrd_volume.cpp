@@ -8,6 +8,8 @@
 
 #include "ingest/dense_source.h"
 #include "ingest/nrrd_header.h"
+#include "ingest/packed_stream.h"
+#include "ingest/provenance.h"
 #include "ingest/text_stream.h"
 #include "umbrick/core/error.h"
 
@@ -47,10 +49,15 @@ std::unique_ptr<ByteStream> openPart(const NrrdHeader& header, const fs::path& p
                     std::to_string(std::max<std::int64_t>(size - offset, 0)));
     return openPlain(path, offset);
   }
-  if (header.encoding == NrrdEncoding::gzip && !isGzip(path, offset))
-    throw IoError(path.string() + ": encoding: expected gzip'd data, found no gzip magic at byte " +
+  Packing packing = Packing::none;
+  if (header.encoding == NrrdEncoding::gzip) packing = Packing::gzip;
+  if (header.encoding == NrrdEncoding::bzip2) packing = Packing::bzip2;
+  if (packing != Packing::none && packingOf(path, offset) != packing) {
+    const std::string name(packingName(packing));
+    throw IoError(path.string() + ": encoding: expected " + name + "'d data, found no " + name + " magic at byte " +
                   std::to_string(offset));
-  auto bytes = header.encoding == NrrdEncoding::gzip ? openGzip(path, offset) : openPlain(path, offset);
+  }
+  auto bytes = openPacked(path, packing, offset);
   if (bytes->skip(header.byteSkip) < header.byteSkip)
     throw IoError(path.string() + ": byte skip: expected " + std::to_string(header.byteSkip) +
                   " bytes to skip, found fewer");
@@ -71,6 +78,7 @@ std::unique_ptr<VoxelSource> openNrrd(const fs::path& path) {
   info.type = header.type;
   info.indexToWorld = header.indexToWorld;
   info.metadata = header.metadata;
+  addProvenance(info, path, "NRRD");
   info.fileBytes = std::max<std::int64_t>(headerFileBytes, 0);
 
   // Several files hold equal shares.

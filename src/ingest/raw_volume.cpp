@@ -6,6 +6,8 @@
 #include <sstream>
 
 #include "ingest/dense_source.h"
+#include "ingest/packed_stream.h"
+#include "ingest/provenance.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -35,8 +37,7 @@ void checkOptions(const std::string& name, const RawOptions& options) {
     throw InvalidArgument(name + ": header bytes: expected 0 or more, found " + std::to_string(options.headerBytes));
   if (!options.bitsStored) return;
   const std::string type(voxelTypeName(options.type));
-  if (options.type == VoxelType::f32 || options.type == VoxelType::f64)
-    throw InvalidArgument(name + ": bits stored: only integers can have fewer, not " + type);
+  if (isFloat(options.type)) throw InvalidArgument(name + ": bits stored: only integers can have fewer, not " + type);
   if (*options.bitsStored < 1 || *options.bitsStored > 8 * voxelBytes(options.type))
     throw InvalidArgument(name + ": bits stored: expected 1 to " + std::to_string(8 * voxelBytes(options.type)) +
                           " for " + type + ", found " + std::to_string(*options.bitsStored));
@@ -53,19 +54,20 @@ std::unique_ptr<VoxelSource> openRaw(const fs::path& path, const RawOptions& opt
   info.indexToWorld = glm::scale(glm::translate(glm::dmat4(1), options.origin), options.spacing);
   const std::int64_t size = checkedFileSize(path);
   info.fileBytes = std::max<std::int64_t>(size, 0);
+  addProvenance(info, path, "raw");
 
-  // A plain file of the right size is plain, whatever its first bytes; else the gzip magic decides.
+  // A plain file of the right size is plain, whatever its first bytes; else the magic bytes of a packing decide.
   const std::int64_t expected = *volumeBytes(options.dims, options.type);
   const bool fits = size >= options.headerBytes && size - options.headerBytes == expected;
-  const bool packed = size >= 0 && !fits && isGzip(path);
-  if (size >= 0 && !fits && !packed) {
+  const Packing packing = size >= 0 && !fits ? packingOf(path) : Packing::none;
+  if (size >= 0 && !fits && packing == Packing::none) {
     std::string header;
     if (options.headerBytes > 0) header = " after a header of " + std::to_string(options.headerBytes);
     throw IoError(info.name + ": expected " + describeBytes(info) + header + ", found " +
                   std::to_string(std::max<std::int64_t>(size - options.headerBytes, 0)) +
                   (size - options.headerBytes > expected ? kHint : ""));
   }
-  auto bytes = packed ? openGzip(path) : openPlain(path);
+  auto bytes = openPacked(path, packing);
   if (const std::int64_t skipped = bytes->skip(options.headerBytes); skipped < options.headerBytes)
     throw IoError(info.name + ": expected a header of " + std::to_string(options.headerBytes) + " bytes, found " +
                   std::to_string(skipped) + " bytes in all");

@@ -1,10 +1,13 @@
 #include "ingest/text_stream.h"
 
+#include <half.h>
+
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "umbrick/core/error.h"
 
@@ -34,17 +37,33 @@ class Characters {
 bool isBlank(int c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 
 template <class T>
-bool store(double value, std::byte* to) {
-  if constexpr (std::is_integral_v<T>)
-    if (!(value >= std::numeric_limits<T>::min() && value <= std::numeric_limits<T>::max()) ||
-        value != std::floor(value))
-      return false;
-  const auto typed = static_cast<T>(value);
+bool parse(std::string_view text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+template <class T>
+bool store(std::string_view text, std::byte* to) {
+  T typed{};
+  bool exact = false;
+  if constexpr (std::is_integral_v<T>) exact = parse(text, typed);
+  if (!exact) {  // integers may be written as 3e4 or 7.0
+    double value = 0;
+    if (!parse(text, value)) return false;
+    // 2^63 and 2^64 are doubles, but the largest integers below them are not.
+    if constexpr (std::is_integral_v<T>)
+      if (!(value >= static_cast<double>(std::numeric_limits<T>::min()) &&
+            (sizeof(T) < 8 ? value <= static_cast<double>(std::numeric_limits<T>::max())
+                           : value < static_cast<double>(std::numeric_limits<T>::max()))) ||
+          value != std::floor(value))
+        return false;
+    typed = static_cast<T>(value);
+  }
   std::memcpy(to, &typed, sizeof typed);
   return true;
 }
 
-bool storeAs(VoxelType type, double value, std::byte* to) {
+bool storeAs(VoxelType type, std::string_view value, std::byte* to) {
   switch (type) {
     case VoxelType::u8:
       return store<std::uint8_t>(value, to);
@@ -58,6 +77,12 @@ bool storeAs(VoxelType type, double value, std::byte* to) {
       return store<std::uint32_t>(value, to);
     case VoxelType::i32:
       return store<std::int32_t>(value, to);
+    case VoxelType::i64:
+      return store<std::int64_t>(value, to);
+    case VoxelType::u64:
+      return store<std::uint64_t>(value, to);
+    case VoxelType::f16:
+      return store<half>(value, to);
     case VoxelType::f32:
       return store<float>(value, to);
     case VoxelType::f64:
@@ -76,10 +101,7 @@ class DecimalStream : public ByteStream {
     std::size_t done = 0;
     for (; done + bytes <= out.size() && word(); done += bytes) {
       const bool plus = word_.front() == '+' && !word_.starts_with("+-");  // from_chars takes none
-      const char* begin = word_.data() + plus;
-      double value = 0;
-      const auto [end, error] = std::from_chars(begin, word_.data() + word_.size(), value);
-      if (error != std::errc() || end != word_.data() + word_.size() || !storeAs(type_, value, out.data() + done))
+      if (!storeAs(type_, std::string_view(word_).substr(plus), out.data() + done))
         throw IoError(name_ + ": voxel " + std::to_string(voxel_) + ": expected a number that " +
                       std::string(voxelTypeName(type_)) + " can hold, found \"" + word_.substr(0, 40) + '"');
       ++voxel_;

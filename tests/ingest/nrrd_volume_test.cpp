@@ -5,6 +5,7 @@
 #include <random>
 
 #include "support/files.h"
+#include "support/packed.h"
 #include "support/temporary_folder.h"
 #include "umbrick/core/error.h"
 
@@ -42,6 +43,8 @@ TEST_CASE("NRRD encodings give the same voxels", "[ingest]") {
   file.write(kStart + "endian: big\r\nencoding: raw\r\n\r\n", big);
   CHECK(file.read() == kFloats);
   file.write(kStart + "endian: big\nencoding: gzip\nbyte skip: 3\n\n", gzipped("abc" + big));
+  CHECK(file.read() == kFloats);
+  file.write(kStart + "endian: little\nencoding: bzip2\n\n", bzip2Packed(little));
   CHECK(file.read() == kFloats);
   file.write(kStart + "encoding: text\n\n", "0 1 2 3 4 5\n-6, -7 -8 +-9 0 0\n");
   CHECK_THROWS_WITH(file.read(), Contains("voxel 9") && Contains("+-9"));
@@ -95,6 +98,16 @@ TEST_CASE("NRRD geometry is taken as the file states it", "[ingest]") {
   CHECK(info.metadata.at("nrrd_space") == "left-posterior-superior");
   CHECK(info.metadata.at("nrrd_content") == "head");
   CHECK(info.metadata.at("key") == "some value");
+  CHECK(info.metadata.at("space") == "LPS");
+  CHECK(info.metadata.at("source_format") == "NRRD");
+  file.write(start +
+                 "space: RAS\nspace directions: (1,0,0) (0,2,0) (0,0,3)\nspace origin: (1,2,3)\n"
+                 "space units: \"um\" \"mm\" \"m\"\n",
+             data);
+  CHECK(openNrrd(file.path)->info().indexToWorld ==
+        glm::dmat4(1e-3, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3000, 0, 1e-3, 2, 3000, 1));
+  file.write(start + "spacings: 1 2 3\nunits: \"cm\" \"cm\" \"mm\"\n", data);
+  CHECK(openNrrd(file.path)->info().indexToWorld == glm::dmat4(10, 0, 0, 0, 0, 20, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1));
 }
 
 TEST_CASE("NRRD axes that are not of space are dropped when they hold one thing, else refused", "[ingest]") {
@@ -125,13 +138,15 @@ TEST_CASE("Malformed NRRD is refused with the field, what was expected and what 
   refused("NRRD0004\n" + raw, "type: expected the field, found nothing");
   refused(kStart + "encoding: raw\n", "endian: expected little or big");
   refused(kStart + "endian: middle\nencoding: raw\n", "found \"middle\"");
-  refused(kStart + "endian: little\nencoding: bzip2\n", "encoding: expected raw, gzip, text or hex, found \"bzip2\"");
+  refused(kStart + "endian: little\nencoding: bzip2\n", "no bzip2 magic");
+  refused(kStart + "endian: little\nencoding: lzma\n",
+          "encoding: expected raw, gzip, bzip2, text or hex, found \"lzma\"");
   refused("NRRD0004\ndimension: 3\nsizes: 2 3\ntype: short\n" + raw, "sizes: expected 3 values, found \"2 3\"");
   refused("NRRD0004\ndimension: 3\nsizes: 2 -3 2\ntype: short\n" + raw, "sizes: expected numbers from 1");
   refused("NRRD0004\ndimension: 3\nsizes: 2147483647 2147483647 2147483647\ntype: short\n" + raw,
           "less than 2^63 bytes");
   refused("NRRD0004\ndimension: 3\nsizes: 2 3 2\ntype: block\n" + raw, "found \"block\"");
-  refused("NRRD0004\ndimension: 3\nsizes: 2 3 2\ntype: int64\n" + raw, "found \"int64\"");
+  refused("NRRD0004\ndimension: 3\nsizes: 2 3 2\ntype: int128\n" + raw, "found \"int128\"");
   refused("NRRD0004\ndimension: 99999999999999999999\nsizes: 2 3 2\ntype: short\n" + raw, "dimension");
   refused(kStart + raw + "spacings: 1 0 1\n", "spacings: expected positive finite numbers");
   refused(kStart + raw + "space: LPS\nspace directions: (1,0,0) (2,0,0) (0,0,1)\n", "independent directions");

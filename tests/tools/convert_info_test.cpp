@@ -74,6 +74,23 @@ TEST_CASE("A .vdb converts to .vdb grid by grid", "[tools]") {
   CHECK(grids("heat.vdb").at(0).at("voxel_size") == grids("both.vdb").at(1).at("voxel_size"));
 }
 
+TEST_CASE("Formats are listed, told by their first bytes, and keep what they say about themselves", "[tools]") {
+  const TemporaryFolder folder;
+  const ProgramResult list = runProgram(folder, "convert --list-formats");
+  CHECK(list.status == 0);
+  CHECK_THAT(list.out, Contains("NIfTI and Analyze: .nii .nii.gz") && Contains("OpenVDB: .vdb"));
+  const nlohmann::json json = nlohmann::json::parse(runProgram(folder, "convert --list-formats-json").out);
+  CHECK(json.size() == static_cast<std::size_t>(std::count(list.out.begin(), list.out.end(), '\n')));
+  writeBytes(folder.path() / "unnamed",
+             "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nModality = MET_MOD_CT\n"
+             "ElementDataFile = LOCAL\nabcdefgh");
+  CHECK_THAT(runProgram(folder, "convert unnamed -o v.vdb").out, Contains("8 of 8"));
+  CHECK_THAT(runProgram(folder, "info v.vdb").out,
+             Contains("source_format  MetaImage\n") && Contains("source_file    unnamed\n") &&
+                 Contains("modality       CT\n") && Contains("space          LPS\n"));
+  CHECK(runProgram(folder, "convert unnamed --spacing 1 1 2 -o w.vdb").status == 2);
+}
+
 TEST_CASE("NRRD and pipes convert", "[tools]") {
   const TemporaryFolder folder;
   writeBytes(folder.path() / "v.nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\nabcdefgh");

@@ -20,8 +20,8 @@ struct RawOptions {
   glm::dvec3 origin{0};   // world position of the centre of voxel (0, 0, 0)
 };
 
-/// Opens a raw file, plain or gzip'd (told by its first bytes, unless the plain size fits). The size of a plain file is
-/// checked at once, that of a gzip'd one as it is read.
+/// Opens a raw file, plain or packed by gzip, xz, zstd or bzip2 (told by its first bytes, unless the plain size fits).
+/// The size of a plain file is checked at once, that of a packed one as it is read.
 /// @throw InvalidArgument  dims outside [1, 2^31), spacing not positive and finite, origin not finite, headerBytes < 0,
 ///                         bitsStored outside [1, width of the type] or for floats
 /// @throw IoError          missing, a directory, or not of the expected size

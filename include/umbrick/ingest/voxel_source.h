@@ -11,7 +11,7 @@
 
 namespace umbrick {
 
-enum class VoxelType { u8, i8, u16, i16, u32, i32, f32, f64 };
+enum class VoxelType { u8, i8, u16, i16, u32, i32, i64, u64, f16, f32, f64 };
 
 /// "u8" ... "f64"
 std::string_view voxelTypeName(VoxelType type);
@@ -19,12 +19,17 @@ std::string_view voxelTypeName(VoxelType type);
 std::optional<VoxelType> voxelTypeFromName(std::string_view name);
 /// Bytes of one voxel.
 int voxelBytes(VoxelType type);
+/// Not an integer.
+bool isFloat(VoxelType type);
 
 struct VolumeInfo {
-  std::string name;            // what messages call the source, usually its file name
-  glm::i64vec3 dims{0};        // voxels along x (fastest), y, z
-  glm::dmat4 indexToWorld{1};  // voxel centres at integers
-  VoxelType type = VoxelType::u8;
+  std::string name;                // what messages call the source, usually its file name
+  glm::i64vec3 dims{0};            // voxels along x (fastest), y, z
+  glm::dmat4 indexToWorld{1};      // voxel centres at integers; mm where the file states its unit of length
+  VoxelType type = VoxelType::u8;  // as stored
+  /// source_format and source_file; where the file states them: space (which way the axes of the world point: "LPS" is
+  /// towards left, posterior and superior of the patient, "RAS" right, anterior, superior; never converted),
+  /// length_unit, modality, rescale (slope and intercept, already applied); and what else is format's own.
   std::map<std::string, std::string> metadata;
   std::int64_t fileBytes = 0;  // of the files that hold it, packed as they are
 };
@@ -36,7 +41,8 @@ class VoxelSource {
   const VolumeInfo& info() const { return info_; }
   /// The next `count` slices, x fastest, as 32-bit float: out.size() == dims.x * dims.y * count.
   /// With the last slice the source also checks that nothing is left over.
-  /// @return the largest error of the conversion to float in this slab (0 but for 32-bit integers and f64)
+  /// @return the largest error of the conversion to float in this slab (0 but for integers beyond 24 bits, f64 and
+  ///         rescaled values)
   /// @throw IoError  the file ends early or late (expected and found bytes) or cannot be decoded
   virtual double readSlab(std::int64_t count, std::span<float> out) = 0;
 

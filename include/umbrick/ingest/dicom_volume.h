@@ -1,0 +1,40 @@
+// DICOM series: the files of a folder, or one file, as a volume.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+struct DicomSeries {
+  std::string uid, description, modality;
+  std::int64_t number = 0;                   // SeriesNumber, which need not differ between series
+  std::vector<std::filesystem::path> files;  // in order of their names
+};
+
+/// The series of a folder and the folders in it, by number and then UID; or the one of a file. Files that are no DICOM
+/// are passed over. @throw IoError  missing, or a DICOM file that cannot be read
+std::vector<DicomSeries> listDicomSeries(const std::filesystem::path& path);
+
+/// True when the folder or one in it has a DICOM file.
+bool hasDicom(const std::filesystem::path& folder);
+
+/// Opens a series of grey slices, single- or multi-frame, also enhanced, in every transfer syntax that GDCM decodes
+/// (raw of both byte orders, deflated, RLE, JPEG, JPEG-LS, JPEG 2000).
+///
+/// Slices are put in order of their positions along the normal of their plane, whatever their names and numbers. World
+/// space is the patient's LPS in mm: x and y are the directions of rows and columns times PixelSpacing, z is the step
+/// from slice to slice, so that the slices of a tilted gantry give a sheared volume. Positions must fit that step to 2
+/// % of it, or 0.01 mm: a slice that is missing, twice there or out of line is an error, never a stretched volume.
+/// Rescale slope and intercept are applied slice by slice. One file is decoded at a time; a multi-frame file is held as
+/// a whole. Source: DICOM PS3.3 C.7.6.2 (image plane), C.11.1 (modality LUT), C.7.6.16 (functional groups)
+///
+/// @param series  which one of several: its UID, or its place in the list, from 1; empty: the only one
+/// @throw InvalidArgument  several series and none picked, or none like it (lists those there are)
+/// @throw IoError          missing, unreadable, colour, slices of different kinds, positions that make no volume
+std::unique_ptr<VoxelSource> openDicom(const std::filesystem::path& path, const std::string& series = {});
+
+}  // namespace umbrick

@@ -1,0 +1,20 @@
+// NumPy arrays (.npy) as volumes.
+#pragma once
+#include <filesystem>
+#include <memory>
+
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+/// Opens an array of three axes, or of two as one slice; axes of length 1 beyond three are dropped. Format 1 to 3, both
+/// byte orders, integers of 8 to 64 bits, bool, floats of 16 to 64 bits; packed as raw files may be.
+///
+/// x is the axis that is fastest in the file, so that both orders stream: an array written in C order is indexed
+/// [z, y, x], one in Fortran order [x, y, z]. An array states no place: voxels are 1 apart and the first is at 0.
+/// Format: https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html
+///
+/// @throw IoError  missing, short, long, malformed, or complex, structured, or an object
+std::unique_ptr<VoxelSource> openNpy(const std::filesystem::path& path);
+
+}  // namespace umbrick

@@ -1,0 +1,39 @@
+// Volumes of any format, told by name and first bytes.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbrick/ingest/raw_volume.h"
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+struct OpenOptions {
+  std::optional<RawOptions> raw = {};      // the file is headerless raw, whatever its name
+  std::string series = {};                 // of DICOM: UID, or number in the list of series, from 1
+  std::optional<glm::dvec3> spacing = {};  // world units between voxel centres, of formats that state no place
+  std::optional<glm::dvec3> origin = {};   // world position of the centre of the first voxel, of the same formats
+};
+
+/// Opens a volume by the extension of its name, or else by its first bytes.
+/// @throw InvalidArgument  no format is known by that name or those bytes and `raw` is not given; spacing or origin for
+/// a
+///                         format that states its own, or not positive and finite; see also the formats
+/// @throw IoError          as the formats do
+std::unique_ptr<VoxelSource> openVolume(const std::filesystem::path& path, const OpenOptions& options = {});
+
+/// The name of the format that the extension of `path` stands for, or nothing.
+std::optional<std::string> formatOfName(const std::filesystem::path& path);
+
+struct FormatRow {
+  std::string name;
+  std::vector<std::string> extensions;  // with their dot, lower case; empty for formats without
+  std::string reads;                    // in one line
+};
+/// What openVolume reads.
+std::vector<FormatRow> listFormats();
+
+}  // namespace umbrick

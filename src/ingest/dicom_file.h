@@ -1,0 +1,50 @@
+// One DICOM file: what its tags say about its frames, and its pixels. GDCM is seen by the .cpp alone.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ingest/decode.h"
+
+namespace umbrick {
+
+/// The plane of one frame, in mm of patient space.
+struct DicomFrame {
+  std::optional<glm::dvec3> position;  // of the centre of its first pixel
+  std::optional<glm::dvec3> alongRow, alongColumn;
+  std::optional<glm::dvec2> spacing;  // between columns (x) and between rows (y)
+  double slope = 1, intercept = 0;
+};
+
+struct DicomFile {
+  std::filesystem::path path;
+  std::string seriesUid, seriesDescription, modality, valueUnit, photometric;
+  std::int64_t seriesNumber = 0;
+  std::int64_t columns = 0, rows = 0;
+  VoxelLayout layout;
+  std::vector<DicomFrame> frames;
+  std::int64_t pixelOffset = -1;  // of native pixels in the file; -1: GDCM unpacks them
+  double sliceDistance = 0;       // SpacingBetweenSlices or SliceThickness; 0 unknown
+  double gantryTilt = 0;          // degrees
+};
+
+/// True for the magic bytes of DICOM.
+bool isDicom(const std::filesystem::path& path);
+
+/// Reads all tags before the pixels. @throw IoError  unreadable, or pixels that are not grey integers
+DicomFile readDicomTags(const std::filesystem::path& path);
+
+/// Reads only what tells series apart: UID, number, description, modality.
+DicomFile readDicomSeriesTags(const std::filesystem::path& path);
+
+/// The pixels of `count` frames from `first` on, as `layout` says. Native ones are read from their place in the file;
+/// for packed ones, of which all must be asked for, the whole file is unpacked.
+/// @throw IoError  unreadable, a transfer syntax that is not decoded, or not as many pixels as the tags say
+std::vector<std::byte> readDicomPixels(const DicomFile& file, std::size_t first, std::size_t count);
+
+}  // namespace umbrick

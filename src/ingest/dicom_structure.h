@@ -1,0 +1,21 @@
+// How the data elements of a DICOM file follow each other, checked before GDCM reads it: its Debian build ends the
+// program by an assertion when it meets an element that cannot be.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace umbrick {
+
+struct DicomStructure {
+  std::string transferSyntax;  // UID
+  bool bigEndian = false;
+  bool encapsulated = false;                      // pixels are packed, in fragments
+  std::int64_t pixelOffset = -1, pixelBytes = 0;  // of native PixelData in the file; -1: there is none
+};
+
+/// Walks all elements, also of sequences. Source: DICOM PS3.5 7.1 to 7.5, PS3.10 7.1
+/// @throw IoError  no DICOM file, an element that is none or that ends beyond what holds it, or a deflated data set
+DicomStructure readDicomStructure(const std::filesystem::path& path);
+
+}  // namespace umbrick

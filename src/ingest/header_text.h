@@ -1,0 +1,42 @@
+// Pieces that headers written as text have in common.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace umbrick {
+
+/// ASCII letters only.
+std::string lower(std::string_view text);
+/// Without blanks, tabs and returns at both ends.
+std::string_view trimmed(std::string_view text);
+/// Words between blanks; a word in quotes may hold blanks.
+std::vector<std::string> words(std::string_view text);
+/// The whole text as a number, or nothing.
+std::optional<std::int64_t> integer(std::string_view text);
+std::optional<double> number(std::string_view text);
+/// In quotes and not too long for a message; "nothing" when empty.
+std::string shortened(std::string_view text);
+
+/// @throw IoError  "path: field: expected ..., found ..."
+[[noreturn]] void failField(const std::filesystem::path& path, const std::string& field, const std::string& expected,
+                            std::string_view found);
+
+/// A file name with one number in it: "slice%03d.raw". Patterns come from files, so printf never sees them.
+struct NamePattern {
+  std::string before, after;
+  std::size_t digits = 0;  // at least
+  char padding = ' ';
+  std::string name(std::int64_t number) const;
+};
+/// Nothing when `text` has not exactly one %d, %4d or %04d.
+std::optional<NamePattern> namePattern(std::string_view text);
+
+/// The names from `first` to `last`; empty when a number or the pattern is none or there would be a million files.
+std::vector<std::string> numberedNames(std::string_view pattern, std::string_view first, std::string_view last,
+                                       std::string_view step);
+
+}  // namespace umbrick

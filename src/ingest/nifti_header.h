@@ -1,0 +1,32 @@
+// The fixed header of NIfTI-1, NIfTI-2 and Analyze 7.5 files.
+#pragma once
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace umbrick {
+
+/// Fields by their names in the standards, in this machine's byte order, not checked.
+/// Sources: https://nifti.nimh.nih.gov/pub/dist/src/niftilib/nifti1.h, .../pub/dist/doc/nifti2.h
+struct NiftiHeader {
+  enum class Kind { analyze, single, pair };  // voxels in an .img beside, in the file itself, in an .img beside
+  Kind kind = Kind::analyze;
+  std::endian endian = std::endian::little;
+  std::array<std::int64_t, 8> dim{};
+  std::array<double, 8> pixdim{};
+  int datatype = 0;
+  std::int64_t voxOffset = 0;
+  double slope = 0, inter = 0;
+  int spaceUnit = 0;  // code of xyzt_units: 1 metres, 2 millimetres, 3 microns
+  int qformCode = 0, sformCode = 0;
+  std::array<double, 3> quatern{}, qoffset{};
+  std::array<double, 12> srow{};  // three rows of four
+  std::string description;
+};
+
+/// Unpacks on the way. @throw IoError  too short, or none of the three
+NiftiHeader readNiftiHeader(const std::filesystem::path& path);
+
+}  // namespace umbrick

@@ -1,0 +1,158 @@
+#include "umbrick/ingest/nifti_volume.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "ingest/dense_source.h"
+#include "ingest/header_text.h"
+#include "ingest/nifti_header.h"
+#include "ingest/provenance.h"
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace fs = std::filesystem;
+namespace {
+
+std::optional<VoxelType> voxelType(int datatype) {
+  using enum VoxelType;
+  static constexpr std::array<std::pair<int, VoxelType>, 10> kTypes{
+      {{2, u8}, {4, i16}, {8, i32}, {16, f32}, {64, f64}, {256, i8}, {512, u16}, {768, u32}, {1024, i64}, {1280, u64}}};
+  for (const auto& [code, type] : kTypes)
+    if (code == datatype) return type;
+  return std::nullopt;
+}
+
+// "a.img.gz" for "a.hdr" and the other way round: the same name with the other ending, packed or not.
+fs::path partner(const fs::path& path, const std::string& ending) {
+  fs::path stem = path;
+  if (lower(stem.extension().string()) == ".gz") stem.replace_extension();
+  if (lower(stem.extension().string()) == ending) return path;
+  for (const std::string& each : {ending, ending + ".gz"}) {
+    fs::path other = stem;
+    other.replace_extension(each);
+    std::error_code ignored;
+    if (fs::exists(other, ignored)) return other;
+  }
+  throw IoError(path.string() + ": expected a file of that name with " + ending + " or " + ending +
+                ".gz beside it, found none");
+}
+
+bool isPairName(const fs::path& path) {
+  const std::string name = lower(path.filename().string());
+  return name.ends_with(".img") || name.ends_with(".img.gz");
+}
+
+void checkDistances(const VolumeInfo& info, const NiftiHeader& header) {
+  for (std::size_t axis = 1; axis <= 3 && static_cast<std::int64_t>(axis) <= header.dim[0]; ++axis)
+    if (!(header.pixdim[axis] > 0) || !std::isfinite(header.pixdim[axis]))
+      throw IoError(info.name + ": pixdim[" + std::to_string(axis) + "]: expected a positive finite number, found " +
+                    std::to_string(header.pixdim[axis]));
+}
+
+// The rotation of the unit quaternion (a, b, c, d), of which b, c and d are stored, after the scale; nifti1.h,
+// method 2.
+glm::dmat4 qform(const NiftiHeader& header) {
+  auto [b, c, d] = header.quatern;
+  double a = 1 - (b * b + c * c + d * d);
+  if (a < 0) {  // by rounding: the angle is half a turn
+    const double length = std::sqrt(1 - a);
+    a = 0, b /= length, c /= length, d /= length;
+  } else {
+    a = std::sqrt(a);
+  }
+  const double mirror = header.pixdim[0] < 0 ? -1 : 1;
+  const auto third = header.dim[0] >= 3 ? header.pixdim[3] : 1.0;
+  glm::dmat4 m(1);
+  m[0] = glm::dvec4(a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c), 0) * header.pixdim[1];
+  m[1] = glm::dvec4(2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b), 0) * header.pixdim[2];
+  m[2] = glm::dvec4(2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - b * b - c * c, 0) * (mirror * third);
+  m[3] = glm::dvec4(header.qoffset[0], header.qoffset[1], header.qoffset[2], 1);
+  return m;
+}
+
+std::string formName(const char* form, int code) {
+  static constexpr std::array<const char*, 6> kNames{"", "scanner", "aligned", "Talairach", "MNI 152", "template"};
+  return form +
+         (code < 6 ? std::string(": ") + kNames[static_cast<std::size_t>(code)] : ": code " + std::to_string(code));
+}
+
+void place(const NiftiHeader& header, VolumeInfo& info) {
+  glm::dmat4& m = info.indexToWorld;
+  std::string field = "sform";
+  if (header.sformCode > 0) {
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column)
+        m[column][row] = header.srow[static_cast<std::size_t>(4 * row + column)];
+    info.metadata["nifti_form"] = formName("sform", header.sformCode);
+  } else if (header.qformCode > 0) {
+    checkDistances(info, header);
+    m = qform(header);
+    field = "qform";
+    info.metadata["nifti_form"] = formName("qform", header.qformCode);
+  } else {
+    checkDistances(info, header);
+    for (int axis = 0; axis < 3 && axis < header.dim[0]; ++axis)
+      m[axis][axis] = header.pixdim[static_cast<std::size_t>(axis) + 1];
+    field = "pixdim";
+  }
+  if (field != "pixdim") info.metadata["space"] = "RAS";
+  if (header.spaceUnit >= 1 && header.spaceUnit <= 3) info.metadata["length_unit"] = "mm";
+  const double millimetres = header.spaceUnit == 1 ? 1000 : header.spaceUnit == 3 ? 1e-3 : 1;
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 3; ++row) m[column][row] *= millimetres;
+  checkPlace(info, field);
+}
+
+}  // namespace
+
+std::unique_ptr<VoxelSource> openNifti(const fs::path& path) {
+  checkedFileSize(path);
+  const fs::path headerPath = isPairName(path) ? partner(path, ".hdr") : path;
+  const std::int64_t headerBytes = checkedFileSize(headerPath);
+  if (headerBytes < 0) throw IoError(path.string() + ": expected a file, found a pipe or device");
+  const NiftiHeader header = readNiftiHeader(headerPath);
+
+  VolumeInfo info;
+  info.name = path.string();
+  info.dims = glm::i64vec3(1);
+  if (header.dim[0] < 2 || header.dim[0] > 7) failField(path, "dim[0]", "2 to 7", std::to_string(header.dim[0]));
+  for (std::size_t axis = 1; axis <= static_cast<std::size_t>(header.dim[0]); ++axis) {
+    const std::string field = "dim[" + std::to_string(axis) + "]", found = std::to_string(header.dim[axis]);
+    if (axis <= 3) {
+      if (header.dim[axis] < 1 || header.dim[axis] > 2147483647)
+        failField(path, field, "a number from 1 to 2147483647", found);
+      info.dims[static_cast<int>(axis) - 1] = header.dim[axis];
+    } else if (header.dim[axis] > 1) {
+      failField(path, field, "1, since one volume of one component is read", found);
+    }
+  }
+  const auto type = voxelType(header.datatype);
+  if (!type)
+    failField(path, "datatype", "the code of an integer of 8 to 64 bits or of a float of 32 or 64",
+              std::to_string(header.datatype));
+  info.type = *type;
+  if (!volumeBytes(info.dims, info.type)) failField(path, "dim", "less than 2^63 bytes in all", "more");
+  if (header.voxOffset < 0) failField(path, "vox_offset", "a number from 0", "another");
+
+  const bool nifti = header.kind != NiftiHeader::Kind::analyze;
+  addProvenance(info, path, nifti ? "NIfTI" : "Analyze");
+  place(header, info);
+  if (!trimmed(header.description).empty()) info.metadata["nifti_description"] = header.description;
+  VoxelLayout layout{info.type, header.endian};
+  if (nifti && std::isfinite(header.slope) && header.slope != 0) {
+    if (!std::isfinite(header.inter)) failField(path, "scl_inter", "a finite number", std::to_string(header.inter));
+    layout.slope = header.slope;
+    layout.intercept = header.inter;
+  }
+
+  const fs::path voxels = header.kind == NiftiHeader::Kind::single ? headerPath : partner(headerPath, ".img");
+  info.fileBytes = checkedFileSize(voxels) + (voxels == headerPath ? 0 : headerBytes);
+  auto bytes = openVoxels(info, voxels, header.voxOffset);
+  return std::make_unique<DenseSource>(std::move(info), layout, std::move(bytes), "");
+}
+
+}  // namespace umbrick

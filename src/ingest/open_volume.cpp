@@ -1,0 +1,152 @@
+#include "umbrick/ingest/open_volume.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <glm/ext/matrix_transform.hpp>
+#include <sstream>
+#include <string_view>
+
+#include "ingest/header_text.h"
+#include "ingest/packed_stream.h"
+#include "umbrick/core/error.h"
+#include "umbrick/ingest/dicom_volume.h"
+#include "umbrick/ingest/metaimage_volume.h"
+#include "umbrick/ingest/nifti_volume.h"
+#include "umbrick/ingest/npy_volume.h"
+#include "umbrick/ingest/nrrd_volume.h"
+
+namespace umbrick {
+namespace fs = std::filesystem;
+namespace {
+
+struct Format {
+  FormatRow row;
+  std::function<bool(std::string_view)> begins;  // true for the first bytes of such a file; may be empty
+  bool placed;                                   // the file states spacing and origin
+  std::function<std::unique_ptr<VoxelSource>(const fs::path&, const OpenOptions&)> open;
+};
+
+constexpr std::size_t kMagicBytes = 352;
+
+std::vector<Format> formats() {
+  using Bytes = std::string_view;
+  return {
+      {{"NRRD",
+        {".nrrd", ".nhdr"},
+        "scalar volumes; raw, gzip, bzip2, text and hex; detached, in lists and in numbered files"},
+       [](Bytes b) { return b.starts_with("NRRD000"); },
+       true,
+       [](const fs::path& path, const OpenOptions&) { return openNrrd(path); }},
+      {{"MetaImage",
+        {".mha", ".mhd"},
+        "scalar volumes; binary, compressed and ASCII; in one file, beside, in lists and in numbered files"},
+       [](Bytes b) { return b.starts_with("ObjectType") || b.starts_with("NDims"); },
+       true,
+       [](const fs::path& path, const OpenOptions&) { return openMetaImage(path); }},
+      {{"NIfTI and Analyze",
+        {".nii", ".nii.gz", ".hdr", ".img", ".img.gz"},
+        "scalar volumes of NIfTI-1, NIfTI-2 and Analyze 7.5; sform, qform, units, slope and intercept"},
+       [](Bytes b) {
+         return b.size() >= 348 && (b.substr(344, 4) == Bytes("n+1\0", 4) || b.substr(4, 4) == Bytes("n+2\0", 4));
+       },
+       true,
+       [](const fs::path& path, const OpenOptions&) { return openNifti(path); }},
+      {{"DICOM",
+        {".dcm", ".ima"},
+        "a file or a folder of them: grey series, single- and multi-frame, raw and compressed; --series picks one"},
+       [](Bytes b) { return b.size() >= 132 && b.substr(128, 4) == "DICM"; },
+       true,
+       [](const fs::path& path, const OpenOptions& options) { return openDicom(path, options.series); }},
+      {{"NumPy",
+        {".npy", ".npy.gz", ".npy.xz", ".npy.zst", ".npy.bz2"},
+        "arrays of two or three axes in C or Fortran order"},
+       [](Bytes b) { return b.starts_with("\x93NUMPY"); },
+       false,
+       [](const fs::path& path, const OpenOptions&) { return openNpy(path); }},
+  };
+}
+
+bool hasExtension(const Format& format, const fs::path& path) {
+  const std::string name = lower(path.filename().string());
+  return std::any_of(format.row.extensions.begin(), format.row.extensions.end(),
+                     [&](const std::string& extension) { return name.ends_with(extension); });
+}
+
+std::optional<Format> formatOf(const fs::path& path) {
+  const std::vector<Format> all = formats();
+  if (fs::is_directory(path) && hasDicom(path))
+    return *std::find_if(all.begin(), all.end(), [](const Format& format) { return format.row.name == "DICOM"; });
+  for (const Format& format : all)
+    if (hasExtension(format, path)) return format;
+  if (!fs::is_regular_file(path)) return std::nullopt;
+  std::array<char, kMagicBytes> bytes{};
+  const std::size_t got = openPlain(path)->read(std::as_writable_bytes(std::span(bytes)));
+  for (const Format& format : all)
+    if (format.begins && format.begins(std::string_view(bytes.data(), got))) return format;
+  return std::nullopt;
+}
+
+// A source whose format states no place, put where the caller says.
+class PlacedSource : public VoxelSource {
+ public:
+  PlacedSource(std::unique_ptr<VoxelSource> source, const glm::dmat4& indexToWorld) : source_(std::move(source)) {
+    info_ = source_->info();
+    info_.indexToWorld = indexToWorld;
+  }
+  double readSlab(std::int64_t count, std::span<float> out) override { return source_->readSlab(count, out); }
+
+ private:
+  std::unique_ptr<VoxelSource> source_;
+};
+
+}  // namespace
+
+std::unique_ptr<VoxelSource> openVolume(const fs::path& path, const OpenOptions& options) {
+  if (options.raw) return openRaw(path, *options.raw);
+  const auto format = formatOf(path);
+  if (!format) {
+    checkedFileSize(path);
+    throw InvalidArgument(path.string() + ": taken for headerless raw, which needs --dims and --type");
+  }
+  auto source = format->open(path, options);
+  if (!options.spacing && !options.origin) return source;
+  if (format->placed)
+    throw InvalidArgument(path.string() + ": spacing and origin: " + format->row.name + " states its own");
+  glm::dmat4 place = source->info().indexToWorld;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (options.spacing) {
+      if (!((*options.spacing)[axis] > 0) || !std::isfinite((*options.spacing)[axis]))
+        throw InvalidArgument(path.string() + ": spacing: expected positive finite numbers, found " +
+                              std::to_string((*options.spacing)[axis]));
+      place[axis] = glm::dvec4(0);
+      place[axis][axis] = (*options.spacing)[axis];
+    }
+    if (options.origin) {
+      if (!std::isfinite((*options.origin)[axis]))
+        throw InvalidArgument(path.string() + ": origin: expected finite numbers, found " +
+                              std::to_string((*options.origin)[axis]));
+      place[3][axis] = (*options.origin)[axis];
+    }
+  }
+  return std::make_unique<PlacedSource>(std::move(source), place);
+}
+
+std::optional<std::string> formatOfName(const fs::path& path) {
+  for (const Format& format : formats())
+    if (hasExtension(format, path)) return format.row.name;
+  return std::nullopt;
+}
+
+std::vector<FormatRow> listFormats() {
+  std::vector<FormatRow> rows;
+  for (const Format& format : formats()) rows.push_back(format.row);
+  rows.push_back(
+      {"raw",
+       {".raw", ".raw.gz", ".raw.xz", ".raw.zst", ".raw.bz2"},
+       "headerless voxels of any name, plain or packed by gzip, xz, zstd or bzip2; needs --dims and --type"});
+  return rows;
+}
+
+}  // namespace umbrick

@@ -1,0 +1,10 @@
+// The list of formats that are read.
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace umbrick::tools {
+
+/// Adds --list-formats, which prints the list and ends the program; --list-formats-json as JSON.
+void addListFormats(CLI::App& command);
+
+}  // namespace umbrick::tools
