@@ -1,10 +1,7 @@
 // umbrick convert: raw, NRRD or .vdb to a sparse .vdb, with the loss it cost.
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -16,6 +13,8 @@
 #include <vector>
 
 #include "command.h"
+#include "convert_report.h"
+#include "progress.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/grid/build_grid.h"
@@ -38,43 +37,6 @@ struct ConvertOptions {
   int bitsStored = 0;
   std::array<double, 3> spacing{1, 1, 1}, origin{0, 0, 0};
 };
-
-// A line that grows on a terminal; nothing in a pipe.
-class ProgressBar {
- public:
-  void show(double share) {
-    if (!terminal_) return;
-    std::cerr << "\rconverting " << static_cast<int>(100 * share) << " %" << std::flush;
-    shown_ = true;
-  }
-  ~ProgressBar() {
-    if (shown_) std::cerr << "\r                \r" << std::flush;
-  }
-
- private:
-  bool terminal_ = isatty(STDERR_FILENO) != 0, shown_ = false;
-};
-
-void printReport(const std::string& label, const BuildReport& report, bool dense) {
-  const auto share = report.voxels > 0 ? 100.0 * double(report.activeVoxels) / double(report.voxels) : 0.0;
-  char line[256];
-  const auto print = [&](const char* field, const char* format, auto... values) {
-    std::snprintf(line, sizeof line, format, values...);
-    std::cout << "  " << field << line << '\n';
-  };
-  using Count = unsigned long long;
-  std::cout << "grid \"" << label << "\"\n";
-  print("active voxels   ", "%llu of %llu%s (%.2f %%)", Count(report.activeVoxels), Count(report.voxels),
-        dense ? "" : " that were active", share);
-  print("leaves, tiles   ", "%llu, %llu", Count(report.leaves), Count(report.activeTiles));
-  print("maximum error   ", "%.9g%s", report.maxError + report.conversionError,
-        report.maxError > 0 && report.conversionError > 0 ? " at most" : "");
-  if (report.conversionError > 0) print("  to float      ", "%.9g", report.conversionError);
-  if (report.clippedVoxels > 0)
-    print("clipped         ", "%llu voxels, by up to %.9g", Count(report.clippedVoxels), report.maxClipChange);
-  if (report.nonFinite > 0) print("not finite      ", "%llu voxels, stored as background", Count(report.nonFinite));
-  if (report.backgroundChange > 0) print("background moved", " by %.9g", report.backgroundChange);
-}
 
 openvdb::MetaMap fileMetadata(openvdb::MetaMap metadata) {
   if (!metadata["creator"]) metadata.insertMeta("creator", openvdb::StringMetadata("umbrick " UMBRICK_VERSION));
@@ -160,7 +122,7 @@ int convert(ConvertOptions options) {
   const Stopwatch stopwatch;
   if (options.output.extension() != ".vdb")
     throw UsageError(options.output.string() + ": expected an output file that ends in .vdb");
-  ProgressBar bar;
+  ProgressBar bar("converting");
   options.build.progress = [&](double share) { bar.show(share); };
   const Format format = formatOf(options);
   if (format != Format::raw && (!options.dims.empty() || !options.type.empty()))
