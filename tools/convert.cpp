@@ -18,6 +18,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/verify.h"
 #include "umbrick/ingest/nrrd_volume.h"
 #include "umbrick/ingest/raw_volume.h"
 #include "validators.h"
@@ -30,7 +31,7 @@ struct ConvertOptions {
   fs::path input, output;
   BuildOptions build;
   std::string gridName;
-  bool allGrids = true;
+  bool allGrids = true, verify = false;
   std::vector<std::int64_t> dims;
   std::string type, endian = "little";
   std::int64_t headerBytes = 0;
@@ -78,16 +79,34 @@ std::unique_ptr<VoxelSource> openVolume(const ConvertOptions& options, Format fo
   }
 }
 
-// @return bytes read
-std::int64_t convertVolume(const ConvertOptions& options, Format format) {
+// How a conversion went.
+struct Outcome {
+  std::int64_t bytesIn = 0;
+  bool good = true;
+};
+
+// Sources are streams: what wants to see the voxels twice opens them again.
+void expectFile(const ConvertOptions& options, const std::string& option) {
+  if (fs::exists(options.input) && !fs::is_regular_file(options.input) && !fs::is_directory(options.input))
+    throw UsageError(options.input.string() + ": " + option + " reads the input twice: expected a file, found a pipe");
+}
+
+Outcome convertVolume(const ConvertOptions& options, Format format) {
+  if (options.verify) expectFile(options, "--verify");
   const auto source = openVolume(options, format);
   const BuiltGrid built = buildGrid(*source, options.build);
   writeGrids(options.output, {built.grid}, fileMetadata({}));
   printReport(options.build.name, built.report, /*dense=*/true);
-  return source->info().fileBytes;
+  Outcome outcome{source->info().fileBytes};
+  if (options.verify) {
+    const ScalarGrid back = readScalarGrid(options.output);
+    outcome.good = printVerified(verifyGrid(*openVolume(options, format), *back.grid, options.build), built.report);
+  }
+  return outcome;
 }
 
-std::int64_t convertVdb(const ConvertOptions& options) {
+Outcome convertVdb(const ConvertOptions& options) {
+  if (options.verify) throw UsageError("--verify is for volumes, not for .vdb");
   const GridListing listing = listGrids(options.input);
   std::vector<std::string> selected;
   for (const GridListing::Row& row : listing.grids) {
@@ -115,7 +134,7 @@ std::int64_t convertVdb(const ConvertOptions& options) {
   }
   writeGrids(options.output, grids, fileMetadata(listing.metadata));
   for (const auto& [label, report] : reports) printReport(label, report, /*dense=*/false);
-  return static_cast<std::int64_t>(fs::file_size(options.input));
+  return {static_cast<std::int64_t>(fs::file_size(options.input))};
 }
 
 int convert(ConvertOptions options) {
@@ -128,10 +147,10 @@ int convert(ConvertOptions options) {
   if (format != Format::raw && (!options.dims.empty() || !options.type.empty()))
     throw UsageError(options.input.string() + ": --dims and --type are for headerless raw, not for " +
                      options.input.extension().string());
-  const std::int64_t bytesIn = format == Format::vdb ? convertVdb(options) : convertVolume(options, format);
-  std::cout << options.output.string() << ": " << bytesIn << " bytes in, " << fs::file_size(options.output)
+  const Outcome outcome = format == Format::vdb ? convertVdb(options) : convertVolume(options, format);
+  std::cout << options.output.string() << ": " << outcome.bytesIn << " bytes in, " << fs::file_size(options.output)
             << " bytes out, " << std::lround(stopwatch.elapsedMs()) << " ms\n";
-  return 0;
+  return outcome.good ? 0 : 1;
 }
 
 }  // namespace
@@ -150,14 +169,28 @@ Command addConvert(CLI::App& app) {
       ->add_option("--background", options->build.background,
                    "value of what is left out, grid units [0, or that of the .vdb]")
       ->check(finite);
-  command
-      ->add_option("--tolerance", options->build.tolerance,
-                   "leave out voxels this close to the background and merge what is this close, grid units")
-      ->check(nonNegativeNumber())
-      ->capture_default_str();
+  CLI::Option* tolerance =
+      command
+          ->add_option("--tolerance", options->build.tolerance,
+                       "leave out voxels this close to the background and merge what is this close, grid units")
+          ->check(nonNegativeNumber())
+          ->capture_default_str();
   command->add_option("--clip-below", options->build.clipBelow, "voxels below become background, grid units [none]")
       ->check(finite);
-  command->add_flag("--half", options->build.half, "save 16-bit floats; their error counts");
+  CLI::Option* half = command->add_flag("--half", options->build.half, "save 16-bit floats; their error counts");
+  CLI::Option* step = command
+                          ->add_option("--step", options->build.step,
+                                       "round values to multiples of this, grid units, so that they pack better; best "
+                                       "a power of two [not rounded]")
+                          ->check(positiveNumber());
+  command
+      ->add_option("--max-error", options->build.maxError,
+                   "no voxel that is kept or left out by tolerance is off by more, grid units: picks tolerance, half "
+                   "floats and steps")
+      ->check(nonNegativeNumber())
+      ->excludes(tolerance, half, step);
+  command->add_flag("--verify", options->verify,
+                    "read the written file back and compare it with the input; exit 1 if it is worse than stated");
 
   const std::string raw = "Headerless raw";
   command->add_option("--dims", options->dims, "voxels along x (fastest), y and z")->expected(3)->group(raw);

@@ -3,11 +3,16 @@
 #include <string>
 
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/verify.h"
 
 namespace umbrick::tools {
 
 /// On stdout.
 /// @param dense  the source was a dense volume, not a grid
 void printReport(const std::string& label, const BuildReport& report, bool dense);
+
+/// What reading the written grid back has shown, on stdout, and a complaint on stderr where that is worse than stated.
+/// @return whether it is not
+bool printVerified(const VerifyReport& seen, const BuildReport& stated);
 
 }  // namespace umbrick::tools
