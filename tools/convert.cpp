@@ -2,11 +2,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +21,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/source_filters.h"
 #include "umbrick/grid/verify.h"
 #include "umbrick/ingest/nrrd_volume.h"
 #include "umbrick/ingest/raw_volume.h"
@@ -37,6 +41,12 @@ struct ConvertOptions {
   std::int64_t headerBytes = 0;
   int bitsStored = 0;
   std::array<double, 3> spacing{1, 1, 1}, origin{0, 0, 0};
+  std::string background;                     // "auto", a number, or empty
+  std::optional<float> threshold;             // grid units
+  std::optional<std::array<float, 2>> range;  // grid units
+  fs::path mask;
+  std::string maskType = "u8";
+  std::optional<std::array<int, 6>> crop;  // first and last voxel
 };
 
 openvdb::MetaMap fileMetadata(openvdb::MetaMap metadata) {
@@ -79,6 +89,11 @@ std::unique_ptr<VoxelSource> openVolume(const ConvertOptions& options, Format fo
   }
 }
 
+IndexBox cropBox(const ConvertOptions& options) {
+  const auto& c = *options.crop;
+  return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
+}
+
 // How a conversion went.
 struct Outcome {
   std::int64_t bytesIn = 0;
@@ -91,22 +106,58 @@ void expectFile(const ConvertOptions& options, const std::string& option) {
     throw UsageError(options.input.string() + ": " + option + " reads the input twice: expected a file, found a pipe");
 }
 
-Outcome convertVolume(const ConvertOptions& options, Format format) {
+std::unique_ptr<VoxelSource> openMask(const ConvertOptions& options) {
+  ConvertOptions mask = options;
+  mask.input = options.mask;
+  if (!mask.type.empty()) mask.type = options.maskType;
+  mask.headerBytes = 0;
+  mask.bitsStored = 0;
+  return openVolume(mask, formatOf(mask));
+}
+
+// The volume as it is converted: masked, then cropped.
+std::unique_ptr<VoxelSource> openFiltered(const ConvertOptions& options, Format format, bool masked = true,
+                                          std::uint64_t* leftOut = nullptr) {
+  auto source = openVolume(options, format);
+  if (masked && !options.mask.empty())
+    source = maskSource(std::move(source), openMask(options), options.build.background.value_or(0), leftOut);
+  if (options.crop) source = cropSource(std::move(source), cropBox(options));
+  return source;
+}
+
+// Takes the value that most of the border has for the background, and says so.
+void findBackground(ConvertOptions& options, Format format) {
+  expectFile(options, "--background auto");
+  const BorderMode mode = borderMode(*openFiltered(options, format, /*masked=*/false));
+  options.build.background = mode.value;
+  printBackground(mode);
+}
+
+Outcome convertVolume(ConvertOptions options, Format format) {
   if (options.verify) expectFile(options, "--verify");
-  const auto source = openVolume(options, format);
+  if (options.background == "auto") findBackground(options, format);
+  std::uint64_t leftOut = 0;
+  const auto source = openFiltered(options, format, true, &leftOut);
   const BuiltGrid built = buildGrid(*source, options.build);
   writeGrids(options.output, {built.grid}, fileMetadata({}));
   printReport(options.build.name, built.report, /*dense=*/true);
+  if (!options.mask.empty()) printMasked(leftOut);
   Outcome outcome{source->info().fileBytes};
   if (options.verify) {
     const ScalarGrid back = readScalarGrid(options.output);
-    outcome.good = printVerified(verifyGrid(*openVolume(options, format), *back.grid, options.build), built.report);
+    outcome.good = printVerified(verifyGrid(*openFiltered(options, format), *back.grid, options.build), built.report);
   }
   return outcome;
 }
 
 Outcome convertVdb(const ConvertOptions& options) {
-  if (options.verify) throw UsageError("--verify is for volumes, not for .vdb");
+  const auto refuse = [&](bool given, const char* option) {
+    if (given) throw UsageError(options.input.string() + ": " + option + " is for volumes, not for .vdb");
+  };
+  refuse(options.verify, "--verify");
+  refuse(options.background == "auto", "--background auto");
+  refuse(!options.mask.empty(), "--mask");
+  refuse(options.crop.has_value(), "--crop");
   const GridListing listing = listGrids(options.input);
   std::vector<std::string> selected;
   for (const GridListing::Row& row : listing.grids) {
@@ -125,9 +176,10 @@ Outcome convertVdb(const ConvertOptions& options) {
   for (const std::string& selector : selected) {
     const ScalarGrid source = readScalarGridAnyTransform(options.input, selector);
     const bool levelSet = source.grid->getGridClass() == openvdb::GRID_LEVEL_SET;
-    if (levelSet && (options.build.background || options.build.clipBelow || options.build.tolerance > 0))
+    if (levelSet &&
+        (options.build.background || options.build.clipBelow || options.build.clipAbove || options.build.tolerance > 0))
       std::cerr << options.input.string() << ": grid \"" << selector
-                << "\" is a level set: --background, --tolerance and --clip-below do not apply to it\n";
+                << "\" is a level set: --background, --tolerance, --threshold and --range do not apply to it\n";
     const BuiltGrid built = sparsifyGrid(source, options.build);
     grids.push_back(built.grid);
     reports.emplace_back(selector, built.report);
@@ -137,12 +189,31 @@ Outcome convertVdb(const ConvertOptions& options) {
   return {static_cast<std::int64_t>(fs::file_size(options.input))};
 }
 
+// What the options that name values say, as the library takes it.
+void setLimits(ConvertOptions& options) {
+  if (!options.background.empty() && options.background != "auto")
+    options.build.background = static_cast<float>(std::strtod(options.background.c_str(), nullptr));
+  // What lies at the threshold is left out: the smallest value that stays is the next one.
+  if (options.threshold)
+    options.build.clipBelow = std::nextafter(*options.threshold, std::numeric_limits<float>::infinity());
+  if (!options.range) return;
+  const auto [low, high] = *options.range;
+  if (low > high) {
+    std::ostringstream text;
+    text << "--range: expected the lower limit first, found " << low << ' ' << high;
+    throw UsageError(text.str());
+  }
+  options.build.clipBelow = low;
+  options.build.clipAbove = high;
+}
+
 int convert(ConvertOptions options) {
   const Stopwatch stopwatch;
   if (options.output.extension() != ".vdb")
     throw UsageError(options.output.string() + ": expected an output file that ends in .vdb");
   ProgressBar bar("converting");
   options.build.progress = [&](double share) { bar.show(share); };
+  setLimits(options);
   const Format format = formatOf(options);
   if (format != Format::raw && (!options.dims.empty() || !options.type.empty()))
     throw UsageError(options.input.string() + ": --dims and --type are for headerless raw, not for " +
@@ -165,18 +236,42 @@ Command addConvert(CLI::App& app) {
   command->add_option("--name", options->build.name, "name of the grid (not for .vdb)")->capture_default_str();
   command->add_option("--grid", options->gridName,
                       "of a .vdb: only this grid, \"name\" or \"name[1]\" [all scalar ones]");
+  const CLI::Validator autoOrFinite(
+      [](const std::string& value) { return value == "auto" ? std::string() : finiteNumber()(value); }, "");
   command
-      ->add_option("--background", options->build.background,
-                   "value of what is left out, grid units [0, or that of the .vdb]")
-      ->check(finite);
+      ->add_option("--background", options->background,
+                   "value of what is left out, grid units; auto: the value that most voxels on the faces of the volume "
+                   "have, for which the input is read once before [0, or that of the .vdb]")
+      ->check(autoOrFinite);
   CLI::Option* tolerance =
       command
           ->add_option("--tolerance", options->build.tolerance,
                        "leave out voxels this close to the background and merge what is this close, grid units")
           ->check(nonNegativeNumber())
           ->capture_default_str();
-  command->add_option("--clip-below", options->build.clipBelow, "voxels below become background, grid units [none]")
-      ->check(finite);
+  CLI::Option* threshold = command
+                               ->add_option("--threshold", options->threshold,
+                                            "voxels at and below this value become background, grid units [none]")
+                               ->check(finite);
+  CLI::Option* clipBelow = command
+                               ->add_option("--clip-below", options->build.clipBelow,
+                                            "as --threshold, but voxels at the value itself stay, grid units [none]")
+                               ->check(finite)
+                               ->excludes(threshold);
+  command
+      ->add_option("--range", options->range,
+                   "lowest and highest value that stay, both included; the rest becomes background, grid units [all]")
+      ->check(finite)
+      ->excludes(threshold, clipBelow);
+  command->add_option("--mask", options->mask,
+                      "a volume of the same size and place: voxels where it is 0 become background; headerless raw has "
+                      "the same --dims");
+  command->add_option("--mask-type", options->maskType, "of a voxel of a headerless mask, as --type")
+      ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"}))
+      ->capture_default_str();
+  command->add_option(
+      "--crop", options->crop,
+      "only the voxels from x0 y0 z0 to x1 y1 z1, both included; they stay where they are in the world");
   CLI::Option* half = command->add_flag("--half", options->build.half, "save 16-bit floats; their error counts");
   CLI::Option* step = command
                           ->add_option("--step", options->build.step,

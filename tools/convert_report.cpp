@@ -32,6 +32,16 @@ void printReport(const std::string& label, const BuildReport& report, bool dense
   if (report.backgroundChange > 0) print("background moved", " by %.9g", report.backgroundChange);
 }
 
+void printBackground(const BorderMode& mode) {
+  char line[128];
+  std::snprintf(line, sizeof line, "background %.9g, the value of %.2f %% of %llu voxels on the border",
+                static_cast<double>(mode.value), 100.0 * double(mode.voxels) / double(mode.border),
+                static_cast<unsigned long long>(mode.border));
+  std::cout << line << '\n';
+}
+
+void printMasked(std::uint64_t voxels) { std::cout << "  masked          " << voxels << " voxels\n"; }
+
 bool printVerified(const VerifyReport& seen, const BuildReport& stated) {
   char line[256];
   std::snprintf(line, sizeof line, "%llu voxels read back, maximum error %.9g, RMS %.9g",
