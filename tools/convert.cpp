@@ -1,25 +1,29 @@
 // umbrick convert: a volume of any format that is read to a sparse .vdb, with the loss it cost.
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "command.h"
+#include "convert_report.h"
 #include "formats.h"
+#include "progress.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/source_filters.h"
+#include "umbrick/grid/verify.h"
 #include "umbrick/ingest/open_volume.h"
 #include "validators.h"
 
@@ -31,51 +35,20 @@ struct ConvertOptions {
   fs::path input, output;
   BuildOptions build;
   std::string gridName, series;
-  bool allGrids = true;
+  bool allGrids = true, verify = false;
   std::vector<std::int64_t> dims;
   std::string type, endian = "little";
   std::int64_t headerBytes = 0;
   int bitsStored = 0;
   std::array<double, 3> spacing{1, 1, 1}, origin{0, 0, 0};
   bool hasSpacing = false, hasOrigin = false;
+  std::string background;                     // "auto", a number, or empty
+  std::optional<float> threshold;             // grid units
+  std::optional<std::array<float, 2>> range;  // grid units
+  fs::path mask;
+  std::string maskType = "u8";
+  std::optional<std::array<int, 6>> crop;  // first and last voxel
 };
-
-// A line that grows on a terminal; nothing in a pipe.
-class ProgressBar {
- public:
-  void show(double share) {
-    if (!terminal_) return;
-    std::cerr << "\rconverting " << static_cast<int>(100 * share) << " %" << std::flush;
-    shown_ = true;
-  }
-  ~ProgressBar() {
-    if (shown_) std::cerr << "\r                \r" << std::flush;
-  }
-
- private:
-  bool terminal_ = isatty(STDERR_FILENO) != 0, shown_ = false;
-};
-
-void printReport(const std::string& label, const BuildReport& report, bool dense) {
-  const auto share = report.voxels > 0 ? 100.0 * double(report.activeVoxels) / double(report.voxels) : 0.0;
-  char line[256];
-  const auto print = [&](const char* field, const char* format, auto... values) {
-    std::snprintf(line, sizeof line, format, values...);
-    std::cout << "  " << field << line << '\n';
-  };
-  using Count = unsigned long long;
-  std::cout << "grid \"" << label << "\"\n";
-  print("active voxels   ", "%llu of %llu%s (%.2f %%)", Count(report.activeVoxels), Count(report.voxels),
-        dense ? "" : " that were active", share);
-  print("leaves, tiles   ", "%llu, %llu", Count(report.leaves), Count(report.activeTiles));
-  print("maximum error   ", "%.9g%s", report.maxError + report.conversionError,
-        report.maxError > 0 && report.conversionError > 0 ? " at most" : "");
-  if (report.conversionError > 0) print("  to float      ", "%.9g", report.conversionError);
-  if (report.clippedVoxels > 0)
-    print("clipped         ", "%llu voxels, by up to %.9g", Count(report.clippedVoxels), report.maxClipChange);
-  if (report.nonFinite > 0) print("not finite      ", "%llu voxels, stored as background", Count(report.nonFinite));
-  if (report.backgroundChange > 0) print("background moved", " by %.9g", report.backgroundChange);
-}
 
 openvdb::MetaMap fileMetadata(openvdb::MetaMap metadata) {
   if (!metadata["creator"]) metadata.insertMeta("creator", openvdb::StringMetadata("umbrick " UMBRICK_VERSION));
@@ -118,16 +91,81 @@ std::unique_ptr<VoxelSource> openInput(const ConvertOptions& options) {
   }
 }
 
-// @return bytes read
-std::int64_t convertVolume(const ConvertOptions& options) {
-  const auto source = openInput(options);
+IndexBox cropBox(const ConvertOptions& options) {
+  const auto& c = *options.crop;
+  return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
+}
+
+// How a conversion went.
+struct Outcome {
+  std::int64_t bytesIn = 0;
+  bool good = true;
+};
+
+// Sources are streams: what wants to see the voxels twice opens them again.
+void expectFile(const ConvertOptions& options, const std::string& option) {
+  if (fs::exists(options.input) && !fs::is_regular_file(options.input) && !fs::is_directory(options.input))
+    throw UsageError(options.input.string() + ": " + option + " reads the input twice: expected a file, found a pipe");
+}
+
+std::unique_ptr<VoxelSource> openMask(const ConvertOptions& options) {
+  ConvertOptions mask = options;
+  mask.input = options.mask;
+  mask.series.clear();
+  mask.headerBytes = 0;
+  mask.bitsStored = 0;
+  if (formatOfName(mask.input)) {
+    mask.dims.clear();
+    mask.type.clear();
+  } else if (!mask.type.empty()) {
+    mask.type = options.maskType;
+  }
+  return openInput(mask);
+}
+
+// The volume as it is converted: masked, then cropped.
+std::unique_ptr<VoxelSource> openFiltered(const ConvertOptions& options, bool masked = true,
+                                          std::uint64_t* leftOut = nullptr) {
+  auto source = openInput(options);
+  if (masked && !options.mask.empty())
+    source = maskSource(std::move(source), openMask(options), options.build.background.value_or(0), leftOut);
+  if (options.crop) source = cropSource(std::move(source), cropBox(options));
+  return source;
+}
+
+// Takes the value that most of the border has for the background, and says so.
+void findBackground(ConvertOptions& options) {
+  expectFile(options, "--background auto");
+  const BorderMode mode = borderMode(*openFiltered(options, /*masked=*/false));
+  options.build.background = mode.value;
+  printBackground(mode);
+}
+
+Outcome convertVolume(ConvertOptions options) {
+  if (options.verify) expectFile(options, "--verify");
+  if (options.background == "auto") findBackground(options);
+  std::uint64_t leftOut = 0;
+  const auto source = openFiltered(options, true, &leftOut);
   const BuiltGrid built = buildGrid(*source, options.build);
   writeGrids(options.output, {built.grid}, fileMetadata({}));
   printReport(options.build.name, built.report, /*dense=*/true);
-  return source->info().fileBytes;
+  if (!options.mask.empty()) printMasked(leftOut);
+  Outcome outcome{source->info().fileBytes};
+  if (options.verify) {
+    const ScalarGrid back = readScalarGrid(options.output);
+    outcome.good = printVerified(verifyGrid(*openFiltered(options), *back.grid, options.build), built.report);
+  }
+  return outcome;
 }
 
-std::int64_t convertVdb(const ConvertOptions& options) {
+Outcome convertVdb(const ConvertOptions& options) {
+  const auto refuse = [&](bool given, const char* option) {
+    if (given) throw UsageError(options.input.string() + ": " + option + " is for volumes, not for .vdb");
+  };
+  refuse(options.verify, "--verify");
+  refuse(options.background == "auto", "--background auto");
+  refuse(!options.mask.empty(), "--mask");
+  refuse(options.crop.has_value(), "--crop");
   const GridListing listing = listGrids(options.input);
   std::vector<std::string> selected;
   for (const GridListing::Row& row : listing.grids) {
@@ -146,33 +184,53 @@ std::int64_t convertVdb(const ConvertOptions& options) {
   for (const std::string& selector : selected) {
     const ScalarGrid source = readScalarGridAnyTransform(options.input, selector);
     const bool levelSet = source.grid->getGridClass() == openvdb::GRID_LEVEL_SET;
-    if (levelSet && (options.build.background || options.build.clipBelow || options.build.tolerance > 0))
+    if (levelSet &&
+        (options.build.background || options.build.clipBelow || options.build.clipAbove || options.build.tolerance > 0))
       std::cerr << options.input.string() << ": grid \"" << selector
-                << "\" is a level set: --background, --tolerance and --clip-below do not apply to it\n";
+                << "\" is a level set: --background, --tolerance, --threshold and --range do not apply to it\n";
     const BuiltGrid built = sparsifyGrid(source, options.build);
     grids.push_back(built.grid);
     reports.emplace_back(selector, built.report);
   }
   writeGrids(options.output, grids, fileMetadata(listing.metadata));
   for (const auto& [label, report] : reports) printReport(label, report, /*dense=*/false);
-  return static_cast<std::int64_t>(fs::file_size(options.input));
+  return {static_cast<std::int64_t>(fs::file_size(options.input))};
+}
+
+// What the options that name values say, as the library takes it.
+void setLimits(ConvertOptions& options) {
+  if (!options.background.empty() && options.background != "auto")
+    options.build.background = static_cast<float>(std::strtod(options.background.c_str(), nullptr));
+  // What lies at the threshold is left out: the smallest value that stays is the next one.
+  if (options.threshold)
+    options.build.clipBelow = std::nextafter(*options.threshold, std::numeric_limits<float>::infinity());
+  if (!options.range) return;
+  const auto [low, high] = *options.range;
+  if (low > high) {
+    std::ostringstream text;
+    text << "--range: expected the lower limit first, found " << low << ' ' << high;
+    throw UsageError(text.str());
+  }
+  options.build.clipBelow = low;
+  options.build.clipAbove = high;
 }
 
 int convert(ConvertOptions options) {
   const Stopwatch stopwatch;
   if (options.output.extension() != ".vdb")
     throw UsageError(options.output.string() + ": expected an output file that ends in .vdb");
-  ProgressBar bar;
+  ProgressBar bar("converting");
   options.build.progress = [&](double share) { bar.show(share); };
+  setLimits(options);
   const bool raw = !options.dims.empty() || !options.type.empty();
   const auto named =
       options.input.extension() == ".vdb" ? std::optional<std::string>(".vdb") : formatOfName(options.input);
   if (raw && named)
     throw UsageError(options.input.string() + ": --dims and --type are for headerless raw, not for " + *named);
-  const std::int64_t bytesIn = !raw && isVdb(options.input) ? convertVdb(options) : convertVolume(options);
-  std::cout << options.output.string() << ": " << bytesIn << " bytes in, " << fs::file_size(options.output)
+  const Outcome outcome = !raw && isVdb(options.input) ? convertVdb(options) : convertVolume(options);
+  std::cout << options.output.string() << ": " << outcome.bytesIn << " bytes in, " << fs::file_size(options.output)
             << " bytes out, " << std::lround(stopwatch.elapsedMs()) << " ms\n";
-  return 0;
+  return outcome.good ? 0 : 1;
 }
 
 }  // namespace
@@ -194,18 +252,56 @@ Command addConvert(CLI::App& app) {
   command->add_option(
       "--series", options->series,
       "of a DICOM folder: the UID of a series, or its number in the list that is printed [the only one]");
+  const CLI::Validator autoOrFinite(
+      [](const std::string& value) { return value == "auto" ? std::string() : finiteNumber()(value); }, "");
   command
-      ->add_option("--background", options->build.background,
-                   "value of what is left out, grid units [0, or that of the .vdb]")
-      ->check(finite);
+      ->add_option("--background", options->background,
+                   "value of what is left out, grid units; auto: the value that most voxels on the faces of the volume "
+                   "have, for which the input is read once before [0, or that of the .vdb]")
+      ->check(autoOrFinite);
+  CLI::Option* tolerance =
+      command
+          ->add_option("--tolerance", options->build.tolerance,
+                       "leave out voxels this close to the background and merge what is this close, grid units")
+          ->check(nonNegativeNumber())
+          ->capture_default_str();
+  CLI::Option* threshold = command
+                               ->add_option("--threshold", options->threshold,
+                                            "voxels at and below this value become background, grid units [none]")
+                               ->check(finite);
+  CLI::Option* clipBelow = command
+                               ->add_option("--clip-below", options->build.clipBelow,
+                                            "as --threshold, but voxels at the value itself stay, grid units [none]")
+                               ->check(finite)
+                               ->excludes(threshold);
   command
-      ->add_option("--tolerance", options->build.tolerance,
-                   "leave out voxels this close to the background and merge what is this close, grid units")
-      ->check(nonNegativeNumber())
+      ->add_option("--range", options->range,
+                   "lowest and highest value that stay, both included; the rest becomes background, grid units [all]")
+      ->check(finite)
+      ->excludes(threshold, clipBelow);
+  command->add_option("--mask", options->mask,
+                      "a volume of the same size and place: voxels where it is 0 become background; headerless raw has "
+                      "the same --dims");
+  command->add_option("--mask-type", options->maskType, "of a voxel of a headerless mask, as --type")
+      ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "i64", "u64", "f16", "f32", "f64"}))
       ->capture_default_str();
-  command->add_option("--clip-below", options->build.clipBelow, "voxels below become background, grid units [none]")
-      ->check(finite);
-  command->add_flag("--half", options->build.half, "save 16-bit floats; their error counts");
+  command->add_option(
+      "--crop", options->crop,
+      "only the voxels from x0 y0 z0 to x1 y1 z1, both included; they stay where they are in the world");
+  CLI::Option* half = command->add_flag("--half", options->build.half, "save 16-bit floats; their error counts");
+  CLI::Option* step = command
+                          ->add_option("--step", options->build.step,
+                                       "round values to multiples of this, grid units, so that they pack better; best "
+                                       "a power of two [not rounded]")
+                          ->check(positiveNumber());
+  command
+      ->add_option("--max-error", options->build.maxError,
+                   "no voxel that is kept or left out by tolerance is off by more, grid units: picks tolerance, half "
+                   "floats and steps")
+      ->check(nonNegativeNumber())
+      ->excludes(tolerance, half, step);
+  command->add_flag("--verify", options->verify,
+                    "read the written file back and compare it with the input; exit 1 if it is worse than stated");
 
   const std::string raw = "Headerless raw";
   command->add_option("--dims", options->dims, "voxels along x (fastest), y and z")->expected(3)->group(raw);

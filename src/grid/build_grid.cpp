@@ -82,7 +82,7 @@ class SlabBuilder {
     const std::int64_t layers = (slab.slices + kEdge - 1) / kEdge;
     places_.clear();
     places_.resize(static_cast<std::size_t>(leavesX_ * leavesY_ * layers));
-    const SparseTally tally = tbb::parallel_reduce(
+    const SparseTally tally = tbb::parallel_deterministic_reduce(
         tbb::blocked_range<std::size_t>(0, places_.size(), 16), SparseTally{},
         [&](const tbb::blocked_range<std::size_t>& range, SparseTally sum) {
           for (std::size_t i = range.begin(); i != range.end(); ++i) places_[i] = build(slab, origin(i, slab), sum);
@@ -170,11 +170,17 @@ BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options) {
     std::swap(slab, next);
     if (options.progress) options.progress(static_cast<double>(slab.firstSlice) / static_cast<double>(info.dims.z));
   }
+  BuildOptions stored = options;
+  if (options.maxError) {
+    stored = storageWithin(built.grid->tree(), options);
+    tally.add(sparsifyTree(built.grid->tree(), SparseRule(info.name, stored, rule.background())));
+    built.grid->setSaveFloatAsHalf(stored.half);
+  }
   checkTally(info.name, tally);
   // Equal neighbours become larger tiles: no error beyond what the leaves had.
   openvdb::tools::prune(built.grid->tree());
-  describe(built.grid->tree(), tally, built.report);
   built.report.voxels = static_cast<std::uint64_t>(sliceVoxels) * static_cast<std::uint64_t>(info.dims.z);
+  describe(*built.grid, tally, stored, built.report);
   return built;
 }
 

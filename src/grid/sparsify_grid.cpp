@@ -24,8 +24,8 @@ SparseTally joined(SparseTally a, const SparseTally& b) {
 SparseTally sparsifyLeaves(FloatTree& tree, const SparseRule& rule) {
   openvdb::tree::LeafManager<FloatTree> leaves(tree);
   std::vector<std::optional<float>> tiles(leaves.leafCount());
-  const SparseTally tally = tbb::parallel_reduce(
-      leaves.leafRange(), SparseTally{},
+  const SparseTally tally = tbb::parallel_deterministic_reduce(
+      leaves.leafRange(64), SparseTally{},
       [&](const auto& range, SparseTally sum) {
         for (auto leaf = range.begin(); leaf; ++leaf) {
           LeafVoxels voxels;
@@ -58,21 +58,23 @@ SparseTally sparsifyTiles(FloatTree& tree, const SparseRule& rule) {
   return tally;
 }
 
-// Rounds values to half and tallies the loss: of all of them, or of the inactive ones where the rest is done.
-SparseTally roundToHalf(FloatTree& tree, const SparseRule& rule, bool onlyInactive) {
-  const auto round = [&](float value, SparseTally& tally) {
-    const float stored = rule.stored(value);
+// Rounds values as they are stored and tallies the loss: of all of them, or of the inactive ones where the rest is
+// done. The mean is over active voxels, so inactive ones count for the maximum only.
+SparseTally roundValues(FloatTree& tree, const SparseRule& rule, bool onlyInactive) {
+  const auto round = [&](float value, bool active, double voxels, SparseTally& tally) {
+    const float stored = active ? rule.stored(value) : rule.storedInactive(value);
     if (std::isfinite(value) && !std::isfinite(stored)) tally.tooLarge = value;
-    if (std::isfinite(value)) tally.maxError = std::max(tally.maxError, std::abs(double(value) - double(stored)));
+    if (std::isfinite(value)) tally.rounded.add(std::abs(double(value) - double(stored)), active ? voxels : 0);
     return stored;
   };
   openvdb::tree::LeafManager<FloatTree> leaves(tree);
-  SparseTally tally = tbb::parallel_reduce(
-      leaves.leafRange(), SparseTally{},
+  SparseTally tally = tbb::parallel_deterministic_reduce(
+      leaves.leafRange(64), SparseTally{},
       [&](const auto& range, SparseTally sum) {
         for (auto leaf = range.begin(); leaf; ++leaf)
           for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
-            if (!onlyInactive || !leaf->isValueOn(i)) leaf->setValueOnly(i, round(leaf->getValue(i), sum));
+            if (!onlyInactive || !leaf->isValueOn(i))
+              leaf->setValueOnly(i, round(leaf->getValue(i), leaf->isValueOn(i), 1, sum));
         return sum;
       },
       joined);
@@ -81,14 +83,20 @@ SparseTally roundToHalf(FloatTree& tree, const SparseRule& rule, bool onlyInacti
   for (; tile; ++tile)
     if (!onlyInactive || !tile.isValueOn()) {
       const bool active = tile.isValueOn();
-      tile.setValue(round(*tile, tally));
+      tile.setValue(round(*tile, active, static_cast<double>(tile.getVoxelCount()), tally));
       tile.setActiveState(active);
     }
-  tree.root().setBackground(round(tree.background(), tally), /*updateChildNodes=*/false);
+  tree.root().setBackground(round(tree.background(), false, 0, tally), /*updateChildNodes=*/false);
   return tally;
 }
 
 }  // namespace
+
+SparseTally sparsifyTree(FloatTree& tree, const SparseRule& rule) {
+  SparseTally tally = sparsifyTiles(tree, rule);
+  tally.add(sparsifyLeaves(tree, rule));
+  return tally;
+}
 
 BuiltGrid sparsifyGrid(const ScalarGrid& source, const BuildOptions& asked) {
   openvdb::initialize();
@@ -103,6 +111,10 @@ BuiltGrid sparsifyGrid(const ScalarGrid& source, const BuildOptions& asked) {
   const bool levelSet = built.grid->getGridClass() == openvdb::GRID_LEVEL_SET;
   const float oldBackground = tree.background();
 
+  if (options.maxError) {
+    const SparseRule checked(name, options, oldBackground);
+    options = storageWithin(tree, options);
+  }
   const SparseRule rule(name, options, oldBackground);
   SparseTally tally;
   if (!levelSet) {
@@ -110,17 +122,14 @@ BuiltGrid sparsifyGrid(const ScalarGrid& source, const BuildOptions& asked) {
       openvdb::tools::changeBackground(tree, rule.background());
       built.report.backgroundChange = std::abs(double(rule.background()) - double(oldBackground));
     }
-    tally.add(sparsifyTiles(tree, rule));
-    tally.add(sparsifyLeaves(tree, rule));
+    tally.add(sparsifyTree(tree, rule));
   }
-  if (rule.half()) {
-    tally.add(roundToHalf(tree, rule, /*onlyInactive=*/!levelSet));
-    built.grid->setSaveFloatAsHalf(true);
-  }
+  if (rule.rounds()) tally.add(roundValues(tree, rule, /*onlyInactive=*/!levelSet));
+  built.grid->setSaveFloatAsHalf(rule.half());
   checkTally(name, tally);
   openvdb::tools::prune(tree);
 
-  describe(tree, tally, built.report);
+  describe(*built.grid, tally, options, built.report);
   return built;
 }
 

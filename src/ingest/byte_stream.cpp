@@ -1,6 +1,7 @@
 #include "ingest/byte_stream.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -55,8 +56,23 @@ class PlainStream : public ByteStream {
     }
     return done;
   }
+  std::int64_t skip(std::int64_t count) override {
+    const std::int64_t left = regularBytesLeft();
+    if (left < 0) return ByteStream::skip(count);
+    const std::int64_t skipped = std::min(count, left);
+    if (lseek(file_.get(), skipped, SEEK_CUR) < 0) throw systemError(path_, "cannot read");
+    return skipped;
+  }
+  bool skipsFast() override { return regularBytesLeft() >= 0; }
 
  private:
+  // -1 for pipes and devices.
+  std::int64_t regularBytesLeft() const {
+    struct stat status {};
+    if (fstat(file_.get(), &status) != 0 || !S_ISREG(status.st_mode)) return -1;
+    return std::max<std::int64_t>(status.st_size - lseek(file_.get(), 0, SEEK_CUR), 0);
+  }
+
   fs::path path_;
   Descriptor file_;
 };
@@ -66,15 +82,29 @@ class JoinedStream : public ByteStream {
   explicit JoinedStream(std::vector<std::function<std::unique_ptr<ByteStream>()>> parts) : parts_(std::move(parts)) {}
   std::size_t read(std::span<std::byte> out) override {
     std::size_t done = 0;
-    while (done < out.size() && (open_ || next_ < parts_.size())) {
-      if (!open_) open_ = parts_[next_++]();
+    while (done < out.size() && openNext()) {
       done += open_->read(out.subspan(done));
       if (done < out.size()) open_.reset();
     }
     return done;
   }
+  std::int64_t skip(std::int64_t count) override {
+    std::int64_t done = 0;
+    while (done < count && openNext()) {
+      done += open_->skip(count - done);
+      if (done < count) open_.reset();
+    }
+    return done;
+  }
+  bool skipsFast() override { return openNext() && open_->skipsFast(); }
 
  private:
+  // @return false behind the last one
+  bool openNext() {
+    if (!open_ && next_ < parts_.size()) open_ = parts_[next_++]();
+    return open_ != nullptr;
+  }
+
   std::vector<std::function<std::unique_ptr<ByteStream>()>> parts_;
   std::unique_ptr<ByteStream> open_;
   std::size_t next_ = 0;

@@ -16,7 +16,9 @@ class ByteStream {
   /// Fills `out`; less only at the end. @return bytes read  @throw IoError
   virtual std::size_t read(std::span<std::byte> out) = 0;
   /// @return bytes skipped, less than `count` only at the end
-  std::int64_t skip(std::int64_t count);
+  virtual std::int64_t skip(std::int64_t count);
+  /// Whether that takes no longer the more is skipped.
+  virtual bool skipsFast() { return false; }
 };
 
 /// Checks that `path` can be opened and is not a directory. @return its size, or -1 for pipes and devices @throw

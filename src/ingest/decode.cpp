@@ -2,6 +2,7 @@
 
 #include <half.h>
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
@@ -70,7 +71,37 @@ double decodeAs(const VoxelLayout& layout, std::span<const std::byte> in, std::s
       [](double a, double b) { return std::max(a, b); });
 }
 
+template <class T>
+void normaliseAs(const VoxelLayout& layout, std::span<std::byte> voxels) {
+  const bool swap = layout.endian != std::endian::native;
+  const int flagBits = layout.bitsStored > 0 ? 8 * static_cast<int>(sizeof(T)) - layout.bitsStored : 0;
+  if (!(swap && sizeof(T) > 1) && flagBits == 0) return;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, voxels.size() / sizeof(T), 1 << 16),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                        std::byte* at = voxels.data() + i * sizeof(T);
+                        T value = load<T>(at, swap);
+                        if constexpr (std::is_integral_v<T>) value = onlyStoredBits(value, flagBits);
+                        std::memcpy(at, &value, sizeof(T));
+                      }
+                    });
+}
+
 }  // namespace
+
+void normaliseVoxels(const VoxelLayout& layout, std::span<std::byte> voxels) {
+  switch (voxelBytes(layout.type)) {
+    case 1:
+      return layout.type == VoxelType::u8 ? normaliseAs<std::uint8_t>(layout, voxels)
+                                          : normaliseAs<std::int8_t>(layout, voxels);
+    case 2:
+      return layout.type == VoxelType::u16 ? normaliseAs<std::uint16_t>(layout, voxels)
+                                           : normaliseAs<std::int16_t>(layout, voxels);
+    default:
+      assert(layout.type == VoxelType::f32);
+      return normaliseAs<float>(layout, voxels);
+  }
+}
 
 double decodeVoxels(const VoxelLayout& layout, std::span<const std::byte> in, std::span<float> out) {
   assert(in.size() == out.size() * static_cast<std::size_t>(voxelBytes(layout.type)));

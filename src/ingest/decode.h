@@ -20,4 +20,7 @@ struct VoxelLayout {
 /// @return the largest |value - float| of the finite values
 double decodeVoxels(const VoxelLayout& layout, std::span<const std::byte> in, std::span<float> out);
 
+/// The same values in place, stored as this machine stores them and without flag bits.
+void normaliseVoxels(const VoxelLayout& layout, std::span<std::byte> voxels);
+
 }  // namespace umbrick

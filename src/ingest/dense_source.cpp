@@ -67,17 +67,47 @@ DenseSource::DenseSource(VolumeInfo info, VoxelLayout layout, std::unique_ptr<By
 }
 
 double DenseSource::readSlab(std::int64_t count, std::span<float> out) {
-  const std::int64_t sliceVoxels = info_.dims.x * info_.dims.y;
-  assert(count >= 0 && slicesRead_ + count <= info_.dims.z && std::ssize(out) == sliceVoxels * count);
-  const std::int64_t sliceBytes = sliceVoxels * voxelBytes(info_.type);
-  slab_.resize(static_cast<std::size_t>(sliceBytes * count));
-  const std::size_t got = bytes_->read(slab_);
-  if (got < slab_.size())
+  assert(std::ssize(out) == info_.dims.x * info_.dims.y * count);
+  slab_.resize(out.size() * static_cast<std::size_t>(voxelBytes(info_.type)));
+  readBytes(count, slab_);
+  return decodeVoxels(layout_, slab_, out);
+}
+
+void DenseSource::skipSlices(std::int64_t count) {
+  advance(count, bytes_->skip(info_.dims.x * info_.dims.y * voxelBytes(info_.type) * count));
+}
+
+std::optional<VoxelType> DenseSource::storedType() const {
+  switch (info_.type) {
+    case VoxelType::u8:
+    case VoxelType::i8:
+    case VoxelType::u16:
+    case VoxelType::i16:
+    case VoxelType::f32:
+      return info_.type;
+    default:
+      return std::nullopt;
+  }
+}
+
+void DenseSource::readStored(std::int64_t count, std::span<std::byte> out) {
+  readBytes(count, out);
+  normaliseVoxels(layout_, out);
+}
+
+void DenseSource::readBytes(std::int64_t count, std::span<std::byte> out) {
+  advance(count, static_cast<std::int64_t>(bytes_->read(out)));
+}
+
+// `got` bytes of the next `count` slices are behind us.
+void DenseSource::advance(std::int64_t count, std::int64_t got) {
+  assert(count >= 0 && slicesRead_ + count <= info_.dims.z);
+  const std::int64_t sliceBytes = info_.dims.x * info_.dims.y * voxelBytes(info_.type);
+  if (got < sliceBytes * count)
     throw IoError(info_.name + ": expected " + describeBytes(info_) + ", found " +
-                  std::to_string(sliceBytes * slicesRead_ + static_cast<std::int64_t>(got)));
+                  std::to_string(sliceBytes * slicesRead_ + got));
   slicesRead_ += count;
   if (slicesRead_ == info_.dims.z) checkEnd();
-  return decodeVoxels(layout_, slab_, out);
 }
 
 void DenseSource::checkEnd() {

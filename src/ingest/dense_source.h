@@ -33,8 +33,14 @@ class DenseSource : public VoxelSource {
   /// @param hint   added to the message when bytes are left over
   DenseSource(VolumeInfo info, VoxelLayout layout, std::unique_ptr<ByteStream> bytes, std::string hint);
   double readSlab(std::int64_t count, std::span<float> out) override;
+  void skipSlices(std::int64_t count) override;
+  bool skipsFast() const override { return bytes_->skipsFast(); }
+  std::optional<VoxelType> storedType() const override;
+  void readStored(std::int64_t count, std::span<std::byte> out) override;
 
  private:
+  void readBytes(std::int64_t count, std::span<std::byte> out);
+  void advance(std::int64_t count, std::int64_t got);
   void checkEnd();
 
   VoxelLayout layout_;

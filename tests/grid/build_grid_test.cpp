@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "grid/memory_source.h"
 #include "support/temporary_folder.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/raw_volume.h"
@@ -17,26 +18,6 @@ using Catch::Contains;
 using openvdb::Coord;
 
 namespace {
-
-// Voxels out of memory.
-class MemorySource : public VoxelSource {
- public:
-  MemorySource(const glm::i64vec3& dims, std::vector<float> voxels) : voxels_(std::move(voxels)) {
-    info_.name = "memory";
-    info_.dims = dims;
-    info_.type = VoxelType::f32;
-  }
-  VolumeInfo& editInfo() { return info_; }
-  double readSlab(std::int64_t count, std::span<float> out) override {
-    std::copy_n(voxels_.begin() + at_, out.size(), out.begin());
-    at_ += count * info_.dims.x * info_.dims.y;
-    return 0;
-  }
-
- private:
-  std::vector<float> voxels_;
-  std::int64_t at_ = 0;
-};
 
 std::size_t indexOf(const glm::i64vec3& dims, int x, int y, int z) {
   return static_cast<std::size_t>((z * dims.y + y) * dims.x + x);

@@ -101,6 +101,22 @@ TEST_CASE("NRRD and pipes convert", "[tools]") {
   CHECK_THAT(runProgram(folder, "convert /dev/stdin --dims 2 2 2 --type u8 -o v.vdb < v.raw").out, Contains("8 of 8"));
 }
 
+TEST_CASE("What is left out is chosen by the border, a threshold, a range, a mask and a box", "[tools]") {
+  const TemporaryFolder folder;
+  writeBytes(folder.path() / "v.raw", "aaaaaaabcdefaaaa");
+  writeBytes(folder.path() / "m.raw", std::string(7, '\0') + "\1\1" + std::string(7, '\0'));
+  const auto convert = [&](const std::string& options) {
+    return runProgram(folder, "convert v.raw --dims 16 1 1 --type u8 --verify -o v.vdb " + options).out;
+  };
+  CHECK_THAT(convert("--background auto"), Contains("background 97, ") && Contains("active voxels   5 of 16"));
+  CHECK_THAT(convert("--threshold 97"), Contains("5 of 16"));
+  CHECK_THAT(convert("--clip-below 97"), Contains("16 of 16"));
+  CHECK_THAT(convert("--range 98 100"), Contains("3 of 16") && Contains("13 voxels, by up to 102"));
+  CHECK_THAT(convert("--mask m.raw"), Contains("2 of 16") && Contains("masked          14 voxels"));
+  CHECK_THAT(convert("--crop 6 0 0 8 0 0"), Contains("3 of 3"));
+  CHECK_THAT(convert("--max-error 2"), Contains("stored as       half") && Contains("maximum error   0"));
+}
+
 TEST_CASE("Failed conversions exit 1 with one line and leave nothing behind", "[tools]") {
   const Failing failing;
   writeBytes(failing.folder.path() / "short.raw", std::string(100, 'x'));
@@ -115,6 +131,8 @@ TEST_CASE("Failed conversions exit 1 with one line and leave nothing behind", "[
   failing.check("convert broken.vdb -o o.vdb", 1, "broken.vdb: truncated or corrupt");
   failing.check("convert " + kAssets + "densityAndHeat.vdb --grid smoke -o o.vdb", 1,
                 "no grid \"smoke\": the file has \"density\" (float), \"heat\" (float)");
+  failing.check("convert short.raw --dims 10 10 1 --type u8 --crop 0 0 0 9 10 0 -o o.vdb", 1,
+                "inside (0 0 0) to (9 9 0), found (0 0 0) to (9 10 0)");
   failing.check("info broken.vdb", 1, "truncated or corrupt");
   failing.check("info short.raw", 1, "expected a .vdb file");
   failing.check("info none.vdb", 1, "no such file");
@@ -135,6 +153,10 @@ TEST_CASE("Wrong usage exits 2", "[tools]") {
   failing.check(start + "--spacing 1 0 1", 2, "spacing: expected positive");
   failing.check(start + "--spacing 1 nan 1", 2, "spacing: expected positive");
   failing.check(start + "--bits-stored 9", 2, "bits stored: expected 1 to 8");
+  failing.check(start + "--range 3 2", 2, "expected the lower limit first, found 3 2");
+  failing.check(start + "--half --max-error 1", 2, "--max-error");
+  failing.check("convert v.vdb --mask m.raw -o o.vdb", 2, "--mask is for volumes");
+  failing.check("convert /dev/null -o o.vdb --dims 1 1 1 --type u8 --background auto", 2, "found a pipe");
   failing.check(start + "--tolerance -1", 2, "--tolerance");
   failing.check(start + "--background nan", 2, "--background");
   failing.check(start + "--endian middle", 2, "--endian");

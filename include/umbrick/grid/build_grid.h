@@ -20,8 +20,19 @@ struct BuildOptions {
   float tolerance = 0;  // grid units: voxels this close to the background are left out, and leaves whose
                         // values lie this close to one value become a tile
   std::optional<float> clipBelow = {};  // grid units: voxels below become background
+  std::optional<float> clipAbove = {};  // grid units: voxels above become background
   bool half = false;  // round to 16-bit floats and save as such; so is a grid that is so marked already
+  float step = 0;     // grid units: round values to multiples of it, which pack better (best if a power of two); 0: not
+  std::optional<float> maxError = {};  // grid units: picks tolerance, step and half so that no voxel is off by more,
+                                       // in place of those three: exact half floats, half floats in steps, half
+                                       // floats, floats in steps, or floats, whichever is the first that holds it
   std::function<void(double)> progress = {};  // called now and then with the share done, 0 to 1; may be empty
+};
+
+/// |source - stored| of the voxels looked at; voxels clipped and not finite count as 0.
+struct Loss {
+  double max = 0;  // grid units
+  double rms = 0;  // grid units, over all voxels looked at: the squares of the steps add up
 };
 
 /// What a grid holds after it was built, and what was lost. Exact, not sampled.
@@ -29,9 +40,14 @@ struct BuildReport {
   std::uint64_t voxels = 0;        // looked at: all of a dense volume, the active ones of a grid
   std::uint64_t activeVoxels = 0;  // after; those in tiles included
   std::uint64_t activeTiles = 0, leaves = 0;
-  double maxError = 0;         // largest |source - stored| by tolerance and half, of voxels neither clipped nor NaN/Inf
+  double maxError = 0;        // largest |source - stored| by tolerance, step and half, of voxels neither clipped nor
+                              // NaN/Inf
+  double rmsError = 0;        // root of the mean square of the same, over all voxels looked at
+  double activeRmsError = 0;  // over the voxels that are active after
+  Loss tolerance, rounding;   // parts of it: left out or merged; step and half
+  std::string storage = "float";  // "float" or "half", with ", steps of ..." behind it
   double conversionError = 0;  // largest error of the step to 32-bit float, before; add both for a bound of the total
-  std::uint64_t clippedVoxels = 0;  // below clipBelow and not background already
+  std::uint64_t clippedVoxels = 0;  // below clipBelow or above clipAbove, and not background already
   double maxClipChange = 0;         // largest |source - background| among them
   std::uint64_t nonFinite = 0;      // NaN and infinite voxels, stored as background
   double backgroundChange = 0;      // |new - old| background of a grid: what the outside changes by
@@ -44,8 +60,13 @@ struct BuiltGrid {
 
 /// Reads a source to its end, slab by slab: only active leaves stay in memory. A fog volume whose transform is the
 /// source's indexToWorld; metadata is kept. Leaves are built on all cores while the next slab is read.
+///
+/// The losses are kept in the metadata of the grid: error_max and error_rms, of tolerance and rounding apart
+/// (error_max_tolerance, ...), error_max_to_float, clipped_voxels, clipped_max_change and storage, each where it is not
+/// 0. For a grid that had them already the sums are kept, which bound the errors since the first source.
 /// @throw IoError          the source fails
-/// @throw InvalidArgument  tolerance negative, a limit not finite, values that half floats cannot hold, or a transform
+/// @throw InvalidArgument  tolerance, step or maxError negative, a limit not finite, values that half floats cannot
+/// hold, or a transform
 ///                         that OpenVDB refuses (voxels of less than 3e-15 cubed world units)
 BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options = {});
 

@@ -1,5 +1,6 @@
 // Where voxels come from: a stream of slabs with spacing and orientation.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -45,6 +46,15 @@ class VoxelSource {
   ///         rescaled values)
   /// @throw IoError  the file ends early or late (expected and found bytes) or cannot be decoded
   virtual double readSlab(std::int64_t count, std::span<float> out) = 0;
+  /// Moves past the next `count` slices, as if they had been read. @throw IoError
+  virtual void skipSlices(std::int64_t count);
+  /// Whether that takes no longer the more is skipped: then a part of the volume can be looked at quickly.
+  virtual bool skipsFast() const { return false; }
+  /// The type of what readStored gives, one of u8, i8, u16, i16 and f32; nothing where there is only readSlab.
+  virtual std::optional<VoxelType> storedType() const { return std::nullopt; }
+  /// As readSlab, but the values as they are stored, in the byte order of this machine and without flag bits. They are
+  /// what readSlab gives, without an error: out.size() == dims.x * dims.y * count * voxelBytes(*storedType()).
+  virtual void readStored(std::int64_t count, std::span<std::byte> out);
 
  protected:
   VolumeInfo info_;

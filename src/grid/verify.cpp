@@ -1,0 +1,109 @@
+#include "umbrick/grid/verify.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "grid/sparse_rule.h"
+
+namespace umbrick {
+namespace {
+
+constexpr std::int64_t kEdge = Leaf::DIM;
+constexpr std::int64_t kSlabVoxels = std::int64_t(1) << 22;
+
+struct Seen {
+  LossSum error;
+  std::uint64_t wrongly = 0, active = 0;
+  void add(const Seen& other) {
+    error.add(other.error);
+    wrongly += other.wrongly;
+    active += other.active;
+  }
+};
+
+class Verifier {
+ public:
+  Verifier(const openvdb::FloatGrid& grid, const BuildOptions& options)
+      : tree_(grid.tree()),
+        clipBelow_(options.clipBelow.value_or(-std::numeric_limits<float>::infinity())),
+        clipAbove_(options.clipAbove.value_or(std::numeric_limits<float>::infinity())) {}
+
+  /// Compares the voxels of one leaf or of the part of it that the volume has.
+  /// @param voxels  of the slab that starts at slice `firstSlice`, x fastest
+  Seen compare(const float* voxels, const glm::i64vec3& from, const glm::i64vec3& to, const glm::i64vec3& dims,
+               std::int64_t firstSlice, const openvdb::FloatGrid::ConstAccessor& access) const {
+    Seen seen;
+    const openvdb::Coord origin(int(from.x), int(from.y), int(from.z));
+    const Leaf* leaf = access.probeConstLeaf(origin);
+    float tile = 0;
+    const bool tileOn = !leaf && access.probeValue(origin, tile);
+    for (std::int64_t z = from.z; z < to.z; ++z)
+      for (std::int64_t y = from.y; y < to.y; ++y)
+        for (std::int64_t x = from.x; x < to.x; ++x) {
+          const auto at = static_cast<openvdb::Index>(((x & 7) << 6) | ((y & 7) << 3) | (z & 7));
+          const float source = voxels[((z - firstSlice) * dims.y + y) * dims.x + x];
+          const float stored = leaf ? leaf->getValue(at) : tile;
+          seen.active += leaf ? leaf->isValueOn(at) : tileOn;
+          if (!std::isfinite(source) || source < clipBelow_ || source > clipAbove_)
+            seen.wrongly += stored != tree_.background();
+          else
+            seen.error.add(std::abs(static_cast<double>(source) - static_cast<double>(stored)));
+        }
+    return seen;
+  }
+
+ private:
+  const openvdb::FloatTree& tree_;
+  float clipBelow_, clipAbove_;
+};
+
+}  // namespace
+
+bool VerifyReport::honours(const BuildReport& stated) const {
+  constexpr double kSumRounding = 1e-9;  // of squares added up in another order
+  return error.max <= stated.maxError && error.rms <= stated.rmsError * (1 + kSumRounding) && wrongly == 0 &&
+         beyond == 0;
+}
+
+VerifyReport verifyGrid(VoxelSource& source, const openvdb::FloatGrid& grid, const BuildOptions& options) {
+  const glm::i64vec3 dims = source.info().dims;
+  const std::int64_t leavesX = (dims.x + kEdge - 1) / kEdge, leavesY = (dims.y + kEdge - 1) / kEdge;
+  const std::int64_t slabSlices = std::max<std::int64_t>(kSlabVoxels / (dims.x * dims.y) / kEdge, 1) * kEdge;
+  const Verifier verifier(grid, options);
+  Seen seen;
+  std::vector<float> slab;
+  for (std::int64_t first = 0; first < dims.z; first += slabSlices) {
+    const std::int64_t slices = std::min(slabSlices, dims.z - first);
+    slab.resize(static_cast<std::size_t>(slices * dims.x * dims.y));
+    source.readSlab(slices, slab);
+    seen.add(tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::int64_t>(0, leavesX * leavesY * ((slices + kEdge - 1) / kEdge), 64), Seen{},
+        [&](const tbb::blocked_range<std::int64_t>& range, Seen sum) {
+          const auto access = grid.getConstAccessor();
+          for (std::int64_t i = range.begin(); i != range.end(); ++i) {
+            const glm::i64vec3 from(i % leavesX * kEdge, i / leavesX % leavesY * kEdge,
+                                    first + i / (leavesX * leavesY) * kEdge);
+            const glm::i64vec3 to = glm::min(from + kEdge, glm::i64vec3(dims.x, dims.y, first + slices));
+            sum.add(verifier.compare(slab.data(), from, to, dims, first, access));
+          }
+          return sum;
+        },
+        [](Seen a, const Seen& b) {
+          a.add(b);
+          return a;
+        }));
+    if (options.progress) options.progress(static_cast<double>(first) / static_cast<double>(dims.z));
+  }
+  VerifyReport report;
+  report.voxels = static_cast<std::uint64_t>(dims.x * dims.y) * static_cast<std::uint64_t>(dims.z);
+  report.error = {seen.error.max, std::sqrt(seen.error.squares / static_cast<double>(report.voxels))};
+  report.wrongly = seen.wrongly;
+  report.beyond = grid.activeVoxelCount() - seen.active;
+  return report;
+}
+
+}  // namespace umbrick
