@@ -78,6 +78,8 @@ void DenseSource::skipSlices(std::int64_t count) {
 }
 
 std::optional<VoxelType> DenseSource::storedType() const {
+  // Rescaled values are not those that are stored.
+  if (layout_.slope != 1 || layout_.intercept != 0 || layout_.type != info_.type) return std::nullopt;
   switch (info_.type) {
     case VoxelType::u8:
     case VoxelType::i8:

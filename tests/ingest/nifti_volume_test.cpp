@@ -103,6 +103,7 @@ TEST_CASE("NIfTI slope and intercept are applied once", "[ingest]") {
   file.write(Header().put<float>(112, {0.5f, -1000}));
   const auto source = openNifti(file.path);
   CHECK(source->info().metadata.at("rescale") == "-1000 + 0.5 * stored");
+  CHECK_FALSE(source->storedType());  // what is stored is not the value
   CHECK(readVolume(*source)[10] == -1150);
 }
 

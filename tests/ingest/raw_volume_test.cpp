@@ -62,7 +62,37 @@ void checkRoundTrip(VoxelType type) {
     }
 }
 
+// As readAll, through readStored.
+template <class T>
+std::vector<float> readStoredAs(VoxelSource& source) {
+  const glm::i64vec3 dims = source.info().dims;
+  std::vector<T> stored(static_cast<std::size_t>(dims.x * dims.y * dims.z));
+  source.readStored(dims.z, std::as_writable_bytes(std::span(stored)));
+  return {stored.begin(), stored.end()};
+}
+
+template <class T>
+void checkStored(VoxelType type, std::optional<int> bitsStored = {}) {
+  const TemporaryFolder folder;
+  for (const bool big : {false, true}) {
+    writeBytes(folder.path() / "v.raw", bytesOf(someValues<T>(5 * 3 * 7), big));
+    RawOptions options{{5, 3, 7}, type, big ? std::endian::big : std::endian::little};
+    options.bitsStored = bitsStored;
+    const auto source = openRaw(folder.path() / "v.raw", options);
+    REQUIRE(source->storedType() == type);
+    CHECK(readStoredAs<T>(*source) == readAll(*openRaw(folder.path() / "v.raw", options), 7));
+  }
+}
+
 }  // namespace
+
+TEST_CASE("Values as stored are those that are read as floats", "[ingest]") {
+  checkStored<std::uint8_t>(VoxelType::u8);
+  checkStored<std::int8_t>(VoxelType::i8, 5);
+  checkStored<std::uint16_t>(VoxelType::u16, 12);
+  checkStored<std::int16_t>(VoxelType::i16, 12);
+  checkStored<float>(VoxelType::f32);
+}
 
 TEST_CASE("Every voxel type comes through in both byte orders, plain and packed", "[ingest]") {
   checkRoundTrip<std::uint8_t>(VoxelType::u8);
