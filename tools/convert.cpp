@@ -1,4 +1,6 @@
 // umbrick convert: a volume of any format that is read to a sparse .vdb, with the loss it cost.
+#include <tbb/global_control.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,7 +41,7 @@ struct ConvertOptions {
   std::vector<std::int64_t> dims;
   std::string type, endian = "little";
   std::int64_t headerBytes = 0;
-  int bitsStored = 0;
+  int bitsStored = 0, threads = 0;
   std::array<double, 3> spacing{1, 1, 1}, origin{0, 0, 0};
   bool hasSpacing = false, hasOrigin = false;
   std::string background;                     // "auto", a number, or empty
@@ -219,8 +221,15 @@ int convert(ConvertOptions options) {
   const Stopwatch stopwatch;
   if (options.output.extension() != ".vdb")
     throw UsageError(options.output.string() + ": expected an output file that ends in .vdb");
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+  const StopRequest stop;
   ProgressBar bar("converting");
-  options.build.progress = [&](double share) { bar.show(share); };
+  options.build.progress = [&](double share) {
+    if (stop.requested()) throw Error(options.output.string() + ": interrupted before it was written");
+    bar.show(share);
+  };
   setLimits(options);
   const bool raw = !options.dims.empty() || !options.type.empty();
   const auto named =
@@ -302,6 +311,10 @@ Command addConvert(CLI::App& app) {
       ->excludes(tolerance, half, step);
   command->add_flag("--verify", options->verify,
                     "read the written file back and compare it with the input; exit 1 if it is worse than stated");
+
+  command
+      ->add_option("--threads", options->threads, "that build leaves; one more reads [0: as many as there are cores]")
+      ->check(CLI::Range(0, 4096));
 
   const std::string raw = "Headerless raw";
   command->add_option("--dims", options->dims, "voxels along x (fastest), y and z")->expected(3)->group(raw);
