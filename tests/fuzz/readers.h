@@ -1,0 +1,82 @@
+// Feeds bytes to a reader and holds it to its word: a result, or an Error that says why not.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "umbrick/core/error.h"
+#include "umbrick/ingest/metaimage_volume.h"
+#include "umbrick/ingest/nifti_volume.h"
+#include "umbrick/ingest/npy_volume.h"
+#include "umbrick/ingest/nrrd_volume.h"
+#include "umbrick/ingest/raw_volume.h"
+#include "umbrick/optics/transfer_function.h"
+#include "umbrick/scene/scene.h"
+
+namespace umbrick::fuzz {
+
+/// Reads a volume slice by slice. Sizes that a header only promises cost the reader nothing: slices beyond 16 MiB,
+/// which the caller would have to hold, are not asked for.
+inline void readAll(VoxelSource& source) {
+  const glm::i64vec3 dims = source.info().dims;
+  if (dims.x > (1 << 22) / std::max<std::int64_t>(dims.y, 1)) return;
+  std::vector<float> slice(static_cast<std::size_t>(dims.x * dims.y));
+  for (std::int64_t z = 0; z < std::min<std::int64_t>(dims.z, 64); ++z) source.readSlab(1, slice);
+}
+
+/// What a target makes of a file of that content. `path` is where the content lies.
+using Target = std::function<void(const std::filesystem::path& path, std::string_view content)>;
+
+inline Target volumeTarget(std::unique_ptr<VoxelSource> (*open)(const std::filesystem::path&)) {
+  return [open](const std::filesystem::path& path, std::string_view) { readAll(*open(path)); };
+}
+
+/// Name of a target, extension of its files, and what it does.
+struct NamedTarget {
+  std::string extension;
+  Target run;
+};
+
+inline std::map<std::string, NamedTarget> targets() {
+  return {
+      {"metaimage", {".mha", volumeTarget(openMetaImage)}},
+      {"nifti", {".nii", volumeTarget(openNifti)}},
+      {"npy", {".npy", volumeTarget(openNpy)}},
+      {"nrrd", {".nrrd", volumeTarget(openNrrd)}},
+      {"raw",
+       {".raw",
+        // The first bytes choose the options, the rest is the file.
+        [](const std::filesystem::path& path, std::string_view content) {
+          const auto byte = [&](std::size_t i) {
+            return i < content.size() ? static_cast<unsigned char>(content[i]) : 0;
+          };
+          RawOptions options;
+          options.dims = {byte(0), byte(1), byte(2) | byte(3) << 24};
+          options.type = static_cast<VoxelType>(byte(4) % 8);
+          options.endian = byte(5) % 2 != 0 ? std::endian::big : std::endian::little;
+          options.headerBytes = byte(6) % 32;
+          if (byte(7) % 2 != 0) options.bitsStored = byte(7) / 2;
+          readAll(*openRaw(path, options));
+        }}},
+      {"scene", {".json", [](const auto&, std::string_view content) { parseScene(content, "scene.json"); }}},
+      {"transfer",
+       {".json", [](const auto&, std::string_view content) { parseTransferFunction(content, "transfer.json"); }}},
+  };
+}
+
+/// @throw what a reader must not throw
+inline void runTarget(const Target& target, const std::filesystem::path& path, std::string_view content) {
+  try {
+    target(path, content);
+  } catch (const Error&) {
+  }
+}
+
+}  // namespace umbrick::fuzz

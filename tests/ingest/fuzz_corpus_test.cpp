@@ -1,0 +1,25 @@
+// What tests/fuzz starts from and what broke a reader once.
+#include <catch2/catch.hpp>
+
+#include "fuzz/readers.h"
+#include "support/files.h"
+#include "support/temporary_folder.h"
+
+using namespace umbrick;
+namespace fs = std::filesystem;
+
+TEST_CASE("Readers make a result or an Error of every file that fuzzing has kept", "[ingest]") {
+  const TemporaryFolder folder;
+  for (const auto& [name, target] : fuzz::targets()) {
+    std::size_t files = 0;
+    for (const auto& entry : fs::directory_iterator(fs::path(UMBRICK_FUZZ_CORPUS) / name)) {
+      INFO(entry.path());
+      const fs::path path = folder.path() / (name + std::to_string(files++) + target.extension);
+      fs::copy_file(entry.path(), path);
+      CHECK_NOTHROW(fuzz::runTarget(target.run, path, readBytes(path)));
+      // The seeds are good: each is read to its end.
+      if (entry.path().filename().string().starts_with("seed")) CHECK_NOTHROW(target.run(path, readBytes(path)));
+    }
+    CHECK(files > 0);
+  }
+}
