@@ -78,6 +78,7 @@ void DenseSource::skipSlices(std::int64_t count) {
 }
 
 std::optional<VoxelType> DenseSource::storedType() const {
+  if (describeRescale(layout_)) return std::nullopt;
   switch (info_.type) {
     case VoxelType::u8:
     case VoxelType::i8:
