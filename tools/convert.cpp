@@ -19,6 +19,7 @@
 #include "convert_report.h"
 #include "formats.h"
 #include "grid_names.h"
+#include "grid_output.h"
 #include "progress.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
@@ -35,8 +36,9 @@ namespace fs = std::filesystem;
 struct ConvertOptions {
   std::vector<fs::path> inputs;
   std::vector<std::string> names, units;  // of the grids, given by the user
-  fs::path input, output;                 // the input at hand
-  std::string unit;                       // of its values
+  fs::path input;                         // the one at hand
+  GridOutput output;
+  std::string unit;  // of its values
   BuildOptions build;
   std::string gridName, series;
   bool allGrids = true, verify = false;
@@ -53,11 +55,6 @@ struct ConvertOptions {
   std::string maskType = "u8";
   std::optional<std::array<int, 6>> crop;  // first and last voxel
 };
-
-openvdb::MetaMap fileMetadata(openvdb::MetaMap metadata) {
-  if (!metadata["creator"]) metadata.insertMeta("creator", openvdb::StringMetadata("umbrick " UMBRICK_VERSION));
-  return metadata;
-}
 
 bool isVdb(const fs::path& path) {
   if (path.extension() == ".vdb") return true;
@@ -102,7 +99,7 @@ IndexBox cropBox(const ConvertOptions& options) {
 
 // How a conversion went.
 struct Outcome {
-  std::int64_t bytesIn = 0;
+  std::int64_t bytesIn = 0, bytesOut = 0;
   bool good = true;
 };
 
@@ -148,6 +145,7 @@ void findBackground(ConvertOptions& options) {
 struct Converted {
   ConvertOptions options;  // of this input, its background found
   BuiltGrid built;
+  VoxelType type = VoxelType::f32;  // as the input stores it
   std::int64_t bytesIn = 0;
   std::uint64_t leftOut = 0;  // by the mask
 };
@@ -159,6 +157,7 @@ Converted buildVolume(ConvertOptions options) {
   const auto source = openFiltered(options, true, &converted.leftOut);
   converted.built = buildGrid(*source, options.build);
   if (!options.unit.empty()) converted.built.grid->insertMeta("value_unit", openvdb::StringMetadata(options.unit));
+  converted.type = source->info().type;
   converted.bytesIn = source->info().fileBytes;
   converted.options = std::move(options);
   return converted;
@@ -178,15 +177,15 @@ Outcome convertVolumes(const ConvertOptions& options) {
     all.push_back(buildVolume(one));
     grids.push_back(all.back().built.grid);
   }
-  writeGrids(options.output, grids, fileMetadata({}));
   Outcome outcome;
+  outcome.bytesOut = writeOutput(options.output, grids, {}, all.front().type);
   for (const Converted& one : all) {
     const BuildOptions& build = one.options.build;
     printReport(build.name, one.built.report, /*dense=*/true);
     if (!options.mask.empty()) printMasked(one.leftOut);
     outcome.bytesIn += one.bytesIn;
     if (!options.verify) continue;
-    const ScalarGrid back = readScalarGrid(options.output, build.name);
+    const ScalarGrid back = readScalarGrid(options.output.path, build.name);
     if (!printVerified(verifyGrid(*openFiltered(one.options), *back.grid, build), one.built.report))
       outcome.good = false;
   }
@@ -229,9 +228,9 @@ Outcome convertVdb(const ConvertOptions& options) {
     grids.push_back(built.grid);
     reports.emplace_back(selector, built.report);
   }
-  writeGrids(options.output, grids, fileMetadata(listing.metadata));
+  const std::int64_t bytesOut = writeOutput(options.output, grids, listing.metadata, std::nullopt);
   for (const auto& [label, report] : reports) printReport(label, report, /*dense=*/false);
-  return {static_cast<std::int64_t>(fs::file_size(options.input))};
+  return {static_cast<std::int64_t>(fs::file_size(options.input)), bytesOut};
 }
 
 // What the options that name values say, as the library takes it.
@@ -254,8 +253,10 @@ void setLimits(ConvertOptions& options) {
 
 int convert(ConvertOptions options) {
   const Stopwatch stopwatch;
-  if (options.output.extension() != ".vdb")
-    throw UsageError(options.output.string() + ": expected an output file that ends in .vdb");
+  checkOutput(options.output, options.inputs);
+  if (options.verify && options.output.path.extension() != ".vdb")
+    throw UsageError(options.output.path.string() + ": --verify reads a .vdb back, not a " +
+                     options.output.path.extension().string());
   ProgressBar bar("converting");
   options.build.progress = [&](double share) { bar.show(share); };
   setLimits(options);
@@ -271,7 +272,7 @@ int convert(ConvertOptions options) {
   }
   options.input = options.inputs.front();
   const Outcome outcome = vdb ? convertVdb(options) : convertVolumes(options);
-  std::cout << options.output.string() << ": " << outcome.bytesIn << " bytes in, " << fs::file_size(options.output)
+  std::cout << options.output.path.string() << ": " << outcome.bytesIn << " bytes in, " << outcome.bytesOut
             << " bytes out, " << std::lround(stopwatch.elapsedMs()) << " ms\n";
   return outcome.good ? 0 : 1;
 }
@@ -280,8 +281,8 @@ int convert(ConvertOptions options) {
 
 Command addConvert(CLI::App& app) {
   const auto options = std::make_shared<ConvertOptions>();
-  CLI::App* command =
-      app.add_subcommand("convert", "Turn volumes of many formats or a .vdb into a sparse .vdb; prints what was lost.");
+  CLI::App* command = app.add_subcommand(
+      "convert", "Turn volumes of many formats or a .vdb into a sparse .vdb or another format; prints what was lost.");
   const CLI::Validator finite = finiteNumber();
   command
       ->add_option("input", options->inputs,
@@ -289,7 +290,14 @@ Command addConvert(CLI::App& app) {
                    "several become grids of one file")
       ->required();
   addListFormats(*command);
-  command->add_option("-o,--output", options->output, "the .vdb file to write")->required();
+  command
+      ->add_option("-o,--output", options->output.path,
+                   "the file to write: .vdb, .nvdb (NanoVDB), or the dense box of the active voxels, up to 16 GiB, as "
+                   ".nrrd or as .mhd with a .raw beside it, in the type of the input if it holds all values, else as "
+                   "32-bit float")
+      ->required();
+  command->add_option("--codec", options->output.codec, "of a .vdb: blosc, zip or none [blosc]")
+      ->check(CLI::IsMember({"blosc", "zip", "none"}));
   command
       ->add_option("--name", options->names,
                    "name of the grid, once for each input (not for .vdb) [density; of several, the stems of the file "
