@@ -20,6 +20,9 @@ void checkOutput(const GridOutput& output, const std::vector<fs::path>& inputs) 
     throw UsageError(path.string() + ": expected an output file that ends in .vdb, .nvdb, .mhd or .nrrd");
   if (!output.codec.empty() && path.extension() != ".vdb")
     throw UsageError(path.string() + ": --codec is for .vdb, not for " + path.extension().string());
+  if (isDense(path) && inputs.size() > 1)
+    throw UsageError(path.string() + ": expected one input for " + path.extension().string() + ", found " +
+                     std::to_string(inputs.size()));
   std::error_code missing;
   for (const fs::path& input : inputs) {
     const bool voxels = path.extension() == ".mhd" && fs::equivalent(input, voxelsOf(path), missing);

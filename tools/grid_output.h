@@ -16,8 +16,8 @@ struct GridOutput {
 };
 
 /// To be asked before anything is read.
-/// @throw UsageError  another extension, a codec for another format than .vdb, or an output that would take the place
-///                    of an input
+/// @throw UsageError  another extension, a codec for another format than .vdb, several inputs for a format that holds
+///                    one grid, or an output that would take the place of an input
 void checkOutput(const GridOutput& output, const std::vector<std::filesystem::path>& inputs);
 
 /// @param type  of the voxels of the source, for the dense formats
