@@ -20,6 +20,8 @@
 #include "command.h"
 #include "convert_report.h"
 #include "formats.h"
+#include "grid_names.h"
+#include "grid_output.h"
 #include "progress.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
@@ -34,7 +36,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ConvertOptions {
-  fs::path input, output;
+  std::vector<fs::path> inputs;
+  std::vector<std::string> names, units;  // of the grids, given by the user
+  fs::path input;                         // the one at hand
+  GridOutput output;
+  std::string unit;  // of its values
   BuildOptions build;
   std::string gridName, series;
   bool allGrids = true, verify = false;
@@ -51,11 +57,6 @@ struct ConvertOptions {
   std::string maskType = "u8";
   std::optional<std::array<int, 6>> crop;  // first and last voxel
 };
-
-openvdb::MetaMap fileMetadata(openvdb::MetaMap metadata) {
-  if (!metadata["creator"]) metadata.insertMeta("creator", openvdb::StringMetadata("umbrick " UMBRICK_VERSION));
-  return metadata;
-}
 
 bool isVdb(const fs::path& path) {
   if (path.extension() == ".vdb") return true;
@@ -100,7 +101,7 @@ IndexBox cropBox(const ConvertOptions& options) {
 
 // How a conversion went.
 struct Outcome {
-  std::int64_t bytesIn = 0;
+  std::int64_t bytesIn = 0, bytesOut = 0;
   bool good = true;
 };
 
@@ -143,19 +144,52 @@ void findBackground(ConvertOptions& options) {
   printBackground(mode);
 }
 
-Outcome convertVolume(ConvertOptions options) {
+struct Converted {
+  ConvertOptions options;  // of this input, its background found
+  BuiltGrid built;
+  VoxelType type = VoxelType::f32;  // as the input stores it
+  std::int64_t bytesIn = 0;
+  std::uint64_t leftOut = 0;  // by the mask
+};
+
+Converted buildVolume(ConvertOptions options) {
   if (options.verify) expectFile(options, "--verify");
   if (options.background == "auto") findBackground(options);
-  std::uint64_t leftOut = 0;
-  const auto source = openFiltered(options, true, &leftOut);
-  const BuiltGrid built = buildGrid(*source, options.build);
-  writeGrids(options.output, {built.grid}, fileMetadata({}));
-  printReport(options.build.name, built.report, /*dense=*/true);
-  if (!options.mask.empty()) printMasked(leftOut);
-  Outcome outcome{source->info().fileBytes};
-  if (options.verify) {
-    const ScalarGrid back = readScalarGrid(options.output);
-    outcome.good = printVerified(verifyGrid(*openFiltered(options), *back.grid, options.build), built.report);
+  Converted converted;
+  const auto source = openFiltered(options, true, &converted.leftOut);
+  converted.built = buildGrid(*source, options.build);
+  if (!options.unit.empty()) converted.built.grid->insertMeta("value_unit", openvdb::StringMetadata(options.unit));
+  converted.type = source->info().type;
+  converted.bytesIn = source->info().fileBytes;
+  converted.options = std::move(options);
+  return converted;
+}
+
+// Each input becomes a grid of the file.
+Outcome convertVolumes(const ConvertOptions& options) {
+  const std::vector<std::string> names = gridNames(options.inputs, options.names);
+  const std::vector<std::string> units = oneForEach("--unit", options.units, options.inputs.size());
+  std::vector<Converted> all;
+  std::vector<openvdb::FloatGrid::ConstPtr> grids;
+  for (std::size_t i = 0; i < options.inputs.size(); ++i) {
+    ConvertOptions one = options;
+    one.input = options.inputs[i];
+    one.build.name = names[i];
+    one.unit = units[i];
+    all.push_back(buildVolume(one));
+    grids.push_back(all.back().built.grid);
+  }
+  Outcome outcome;
+  outcome.bytesOut = writeOutput(options.output, grids, {}, all.front().type);
+  for (const Converted& one : all) {
+    const BuildOptions& build = one.options.build;
+    printReport(build.name, one.built.report, /*dense=*/true);
+    if (!options.mask.empty()) printMasked(one.leftOut);
+    outcome.bytesIn += one.bytesIn;
+    if (!options.verify) continue;
+    const ScalarGrid back = readScalarGrid(options.output.path, build.name);
+    if (!printVerified(verifyGrid(*openFiltered(one.options), *back.grid, build), one.built.report))
+      outcome.good = false;
   }
   return outcome;
 }
@@ -168,6 +202,8 @@ Outcome convertVdb(const ConvertOptions& options) {
   refuse(options.background == "auto", "--background auto");
   refuse(!options.mask.empty(), "--mask");
   refuse(options.crop.has_value(), "--crop");
+  refuse(!options.names.empty(), "--name");
+  refuse(!options.units.empty(), "--unit");
   const GridListing listing = listGrids(options.input);
   std::vector<std::string> selected;
   for (const GridListing::Row& row : listing.grids) {
@@ -194,9 +230,9 @@ Outcome convertVdb(const ConvertOptions& options) {
     grids.push_back(built.grid);
     reports.emplace_back(selector, built.report);
   }
-  writeGrids(options.output, grids, fileMetadata(listing.metadata));
+  const std::int64_t bytesOut = writeOutput(options.output, grids, listing.metadata, std::nullopt);
   for (const auto& [label, report] : reports) printReport(label, report, /*dense=*/false);
-  return {static_cast<std::int64_t>(fs::file_size(options.input))};
+  return {static_cast<std::int64_t>(fs::file_size(options.input)), bytesOut};
 }
 
 // What the options that name values say, as the library takes it.
@@ -219,25 +255,33 @@ void setLimits(ConvertOptions& options) {
 
 int convert(ConvertOptions options) {
   const Stopwatch stopwatch;
-  if (options.output.extension() != ".vdb")
-    throw UsageError(options.output.string() + ": expected an output file that ends in .vdb");
+  checkOutput(options.output, options.inputs);
+  if (options.verify && options.output.path.extension() != ".vdb")
+    throw UsageError(options.output.path.string() + ": --verify reads a .vdb back, not a " +
+                     options.output.path.extension().string());
   std::optional<tbb::global_control> limit;
   if (options.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
   const StopRequest stop;
   ProgressBar bar("converting");
   options.build.progress = [&](double share) {
-    if (stop.requested()) throw Error(options.output.string() + ": interrupted before it was written");
+    if (stop.requested()) throw Error(options.output.path.string() + ": interrupted before it was written");
     bar.show(share);
   };
   setLimits(options);
   const bool raw = !options.dims.empty() || !options.type.empty();
-  const auto named =
-      options.input.extension() == ".vdb" ? std::optional<std::string>(".vdb") : formatOfName(options.input);
-  if (raw && named)
-    throw UsageError(options.input.string() + ": --dims and --type are for headerless raw, not for " + *named);
-  const Outcome outcome = !raw && isVdb(options.input) ? convertVdb(options) : convertVolume(options);
-  std::cout << options.output.string() << ": " << outcome.bytesIn << " bytes in, " << fs::file_size(options.output)
+  bool vdb = false;
+  for (const fs::path& input : options.inputs) {
+    const auto named = input.extension() == ".vdb" ? std::optional<std::string>(".vdb") : formatOfName(input);
+    if (raw && named)
+      throw UsageError(input.string() + ": --dims and --type are for headerless raw, not for " + *named);
+    vdb = vdb || (!raw && isVdb(input));
+    if (vdb && options.inputs.size() > 1)
+      throw UsageError(input.string() + ": expected volumes where there are several inputs, found a .vdb");
+  }
+  options.input = options.inputs.front();
+  const Outcome outcome = vdb ? convertVdb(options) : convertVolumes(options);
+  std::cout << options.output.path.string() << ": " << outcome.bytesIn << " bytes in, " << outcome.bytesOut
             << " bytes out, " << std::lround(stopwatch.elapsedMs()) << " ms\n";
   return outcome.good ? 0 : 1;
 }
@@ -246,16 +290,33 @@ int convert(ConvertOptions options) {
 
 Command addConvert(CLI::App& app) {
   const auto options = std::make_shared<ConvertOptions>();
-  CLI::App* command =
-      app.add_subcommand("convert", "Turn volumes of many formats or a .vdb into a sparse .vdb; prints what was lost.");
+  CLI::App* command = app.add_subcommand(
+      "convert", "Turn volumes of many formats or a .vdb into a sparse .vdb or another format; prints what was lost.");
   const CLI::Validator finite = finiteNumber();
   command
-      ->add_option("input", options->input,
-                   "a volume, told by its name or first bytes (--list-formats), or headerless raw (--dims, --type)")
+      ->add_option("input", options->inputs,
+                   "a volume, told by its name or first bytes (--list-formats), or headerless raw (--dims, --type); "
+                   "several become grids of one file")
       ->required();
   addListFormats(*command);
-  command->add_option("-o,--output", options->output, "the .vdb file to write")->required();
-  command->add_option("--name", options->build.name, "name of the grid (not for .vdb)")->capture_default_str();
+  command
+      ->add_option("-o,--output", options->output.path,
+                   "the file to write: .vdb, .nvdb (NanoVDB), or the dense box of the active voxels, up to 16 GiB, as "
+                   ".nrrd or as .mhd with a .raw beside it, in the type of the input if it holds all values, else as "
+                   "32-bit float")
+      ->required();
+  command->add_option("--codec", options->output.codec, "of a .vdb: blosc, zip or none [blosc]")
+      ->check(CLI::IsMember({"blosc", "zip", "none"}));
+  command
+      ->add_option("--name", options->names,
+                   "name of the grid, once for each input (not for .vdb) [density; of several, the stems of the file "
+                   "names]")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--unit", options->units,
+                   "unit of the values, kept as value_unit in the metadata of the grid; once, or once for each input "
+                   "[none]")
+      ->allow_extra_args(false);
   command->add_option("--grid", options->gridName,
                       "of a .vdb: only this grid, \"name\" or \"name[1]\" [all scalar ones]");
   command->add_option(

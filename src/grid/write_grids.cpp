@@ -18,10 +18,16 @@ class Writer : public openvdb::io::Archive {
   using Archive::write;
 };
 
+std::uint32_t compressionOf(VdbCodec codec) {
+  if (codec == VdbCodec::none) return openvdb::io::COMPRESS_NONE;
+  const bool blosc = codec == VdbCodec::blosc && openvdb::io::Archive::hasBloscCompression();
+  return blosc ? openvdb::io::COMPRESS_BLOSC : openvdb::io::COMPRESS_ZIP;
+}
+
 }  // namespace
 
 void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
-                const openvdb::MetaMap& metadata) {
+                const openvdb::MetaMap& metadata, VdbCodec codec) {
   openvdb::initialize();
   PendingFile pending(path);
   try {
@@ -29,9 +35,7 @@ void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::Fl
     out.exceptions(std::ios::failbit | std::ios::badbit);
     out.open(pending.path(), std::ios::binary | std::ios::trunc);
     Writer writer;
-    writer.setCompression(
-        (openvdb::io::Archive::hasBloscCompression() ? openvdb::io::COMPRESS_BLOSC : openvdb::io::COMPRESS_ZIP) |
-        openvdb::io::COMPRESS_ACTIVE_MASK);
+    writer.setCompression(compressionOf(codec) | openvdb::io::COMPRESS_ACTIVE_MASK);
     writer.write(out, openvdb::GridCPtrVec(grids.begin(), grids.end()), /*seekable=*/true, metadata);
     out.close();
   } catch (const std::ios_base::failure&) {

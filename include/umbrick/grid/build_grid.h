@@ -76,9 +76,12 @@ BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options = {});
 /// @throw InvalidArgument  as above
 BuiltGrid sparsifyGrid(const ScalarGrid& grid, const BuildOptions& options = {});
 
-/// Writes grids to a new .vdb file, whole or not at all: Blosc, inactive values left out.
+/// How the values in a .vdb are packed.
+enum class VdbCodec { blosc, zip, none };
+
+/// Writes grids to a new .vdb file, whole or not at all; inactive values are left out.
 /// @throw IoError  not writable, disk full
 void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
-                const openvdb::MetaMap& metadata = {});
+                const openvdb::MetaMap& metadata = {}, VdbCodec codec = VdbCodec::blosc);
 
 }  // namespace umbrick

@@ -1,0 +1,75 @@
+// Several volumes become grids of one file.
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/program.h"
+
+using namespace umbrick;
+using Catch::Contains;
+
+namespace {
+
+// 4 x 3 x 2 voxels of u8, `active` of them 9.
+void writeNrrd(const TemporaryFolder& folder, const std::string& name, std::size_t active) {
+  std::string voxels(24, '\0');
+  for (std::size_t i = 0; i < active; ++i) voxels[2 * i] = 9;
+  writeBytes(folder.path() / name, "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 3 2\nspacings: 1 1 " +
+                                       std::to_string(active) + "\nencoding: raw\n\n" + voxels);
+}
+
+nlohmann::json gridsOf(const TemporaryFolder& folder, const std::string& file) {
+  return nlohmann::json::parse(runProgram(folder, "info --json " + file).out).at("grids");
+}
+
+}  // namespace
+
+TEST_CASE("Several volumes become grids of one file, each with its name, place and unit", "[tools]") {
+  const TemporaryFolder folder;
+  writeNrrd(folder, "a.nrrd", 3);
+  writeNrrd(folder, "b.nrrd", 5);
+  const ProgramResult stems = runProgram(folder, "convert a.nrrd b.nrrd --verify -o x.vdb");
+  CHECK(stems.status == 0);
+  CHECK_THAT(stems.out, Contains("grid \"a\"") && Contains("grid \"b\""));
+  nlohmann::json grids = gridsOf(folder, "x.vdb");
+  REQUIRE(grids.size() == 2);
+  CHECK(grids.at(0).at("name") == "a");
+  CHECK(grids.at(0).at("active_voxels") == 3);
+  CHECK(grids.at(1).at("name") == "b");
+  CHECK(grids.at(1).at("active_voxels") == 5);
+  CHECK(grids.at(1).at("voxel_size").at(2) == 5);
+
+  CHECK(runProgram(folder, "convert --name heat --unit K a.nrrd b.nrrd --name smoke --unit kg/m3 -o y.vdb").status ==
+        0);
+  grids = gridsOf(folder, "y.vdb");
+  CHECK(grids.at(0).at("name") == "heat");
+  CHECK(grids.at(0).at("metadata").at("value_unit") == "K");
+  CHECK(grids.at(1).at("name") == "smoke");
+  CHECK(grids.at(1).at("metadata").at("value_unit") == "kg/m3");
+}
+
+TEST_CASE("Inputs that cannot stand beside each other are refused in one line, and nothing is written", "[tools]") {
+  const TemporaryFolder folder;
+  writeNrrd(folder, "a.nrrd", 3);
+  writeNrrd(folder, "a.b.nrrd", 3);
+  std::filesystem::create_directory(folder.path() / "sub");
+  std::filesystem::copy(folder.path() / "a.nrrd", folder.path() / "sub/a.nrrd");
+  writeBytes(folder.path() / "short.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 3 2\nencoding: raw\n\nabc");
+  const std::size_t before = filesIn(folder);
+  const auto check = [&](const std::string& arguments, int status, const std::string& message) {
+    CAPTURE(arguments);
+    const ProgramResult result = runProgram(folder, "convert " + arguments + " -o x.vdb");
+    CHECK(result.status == status);
+    CHECK_THAT(result.err, Contains(message));
+    CHECK(filesIn(folder) == before);
+  };
+  check("a.nrrd sub/a.nrrd", 2, "found \"a\" for both a.nrrd and sub/a.nrrd");
+  check("a.nrrd a.b.nrrd --name n", 2, "expected one for each of 2 inputs, found 1");
+  check("a.nrrd a.b.nrrd --name n --name n", 2, "found \"n\" for both a.nrrd and a.b.nrrd");
+  check("a.nrrd --unit K --unit C", 2, "for each of 1 inputs, found 2");
+  check("a.nrrd '" UMBRICK_ASSETS "/densityAndHeat.vdb'", 2, "found a .vdb");
+  check("a.nrrd short.nrrd", 1, "short.nrrd: ");
+  check("a.nrrd missing.nrrd", 1, "missing.nrrd: no such file");
+}

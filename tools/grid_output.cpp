@@ -1,0 +1,59 @@
+#include "grid_output.h"
+
+#include "command.h"
+#include "umbrick/grid/write_volume.h"
+
+namespace umbrick::tools {
+namespace fs = std::filesystem;
+namespace {
+
+bool isDense(const fs::path& path) { return path.extension() == ".mhd" || path.extension() == ".nrrd"; }
+
+// The file beside a .mhd.
+fs::path voxelsOf(fs::path path) { return path.replace_extension(".raw"); }
+
+}  // namespace
+
+void checkOutput(const GridOutput& output, const std::vector<fs::path>& inputs) {
+  const fs::path& path = output.path;
+  if (path.extension() != ".vdb" && path.extension() != ".nvdb" && !isDense(path))
+    throw UsageError(path.string() + ": expected an output file that ends in .vdb, .nvdb, .mhd or .nrrd");
+  if (!output.codec.empty() && path.extension() != ".vdb")
+    throw UsageError(path.string() + ": --codec is for .vdb, not for " + path.extension().string());
+  if (isDense(path) && inputs.size() > 1)
+    throw UsageError(path.string() + ": expected one input for " + path.extension().string() + ", found " +
+                     std::to_string(inputs.size()));
+  std::error_code missing;
+  for (const fs::path& input : inputs) {
+    const bool voxels = path.extension() == ".mhd" && fs::equivalent(input, voxelsOf(path), missing);
+    if (voxels || (isDense(path) && fs::equivalent(input, path, missing)))
+      throw UsageError(path.string() +
+                       ": expected another name than that of the input, which would be overwritten, found " +
+                       input.string());
+  }
+}
+
+std::int64_t writeOutput(const GridOutput& output, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
+                         openvdb::MetaMap metadata, std::optional<VoxelType> type) {
+  const fs::path& path = output.path;
+  if (isDense(path)) {
+    if (grids.size() != 1)
+      throw UsageError(path.string() + ": expected one grid for " + path.extension().string() + ", found " +
+                       std::to_string(grids.size()));
+    DenseOptions dense;
+    dense.type = type;
+    writeDense(path, *grids.front(), dense);
+  } else if (path.extension() == ".nvdb") {
+    writeNanoVdb(path, grids);
+  } else {
+    if (!metadata["creator"]) metadata.insertMeta("creator", openvdb::StringMetadata("umbrick " UMBRICK_VERSION));
+    const VdbCodec codec = output.codec == "zip"    ? VdbCodec::zip
+                           : output.codec == "none" ? VdbCodec::none
+                                                    : VdbCodec::blosc;
+    writeGrids(path, grids, metadata, codec);
+  }
+  const auto bytes = static_cast<std::int64_t>(fs::file_size(path));
+  return path.extension() == ".mhd" ? bytes + static_cast<std::int64_t>(fs::file_size(voxelsOf(path))) : bytes;
+}
+
+}  // namespace umbrick::tools
