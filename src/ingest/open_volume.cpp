@@ -12,6 +12,7 @@
 #include "ingest/packed_stream.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/dicom_volume.h"
+#include "umbrick/ingest/image_stack.h"
 #include "umbrick/ingest/metaimage_volume.h"
 #include "umbrick/ingest/nifti_volume.h"
 #include "umbrick/ingest/npy_volume.h"
@@ -59,6 +60,15 @@ std::vector<Format> formats() {
        [](Bytes b) { return b.size() >= 132 && b.substr(128, 4) == "DICM"; },
        true,
        [](const fs::path& path, const OpenOptions& options) { return openDicom(path, options.series); }},
+      {{"images",
+        {".tif", ".tiff", ".png"},
+        "grey TIFF of one or many pages and PNG: a file, slice_%04d.tif, 'slice*.png' or a folder"},
+       [](Bytes b) {
+         return b.starts_with(Bytes("II*\0", 4)) || b.starts_with(Bytes("MM\0*", 4)) ||
+                b.starts_with(Bytes("II+\0", 4)) || b.starts_with(Bytes("MM\0+", 4)) || b.starts_with("\x89PNG");
+       },
+       false,
+       [](const fs::path& path, const OpenOptions&) { return openImageStack(path); }},
       {{"NumPy",
         {".npy", ".npy.gz", ".npy.xz", ".npy.zst", ".npy.bz2"},
         "arrays of two or three axes in C or Fortran order"},
@@ -76,8 +86,11 @@ bool hasExtension(const Format& format, const fs::path& path) {
 
 std::optional<Format> formatOf(const fs::path& path) {
   const std::vector<Format> all = formats();
-  if (fs::is_directory(path) && hasDicom(path))
-    return *std::find_if(all.begin(), all.end(), [](const Format& format) { return format.row.name == "DICOM"; });
+  const auto named = [&](const char* name) {
+    return *std::find_if(all.begin(), all.end(), [&](const Format& format) { return format.row.name == name; });
+  };
+  if (fs::is_directory(path) && hasDicom(path)) return named("DICOM");
+  if (isImageStack(path)) return named("images");
   for (const Format& format : all)
     if (hasExtension(format, path)) return format;
   if (!fs::is_regular_file(path)) return std::nullopt;
