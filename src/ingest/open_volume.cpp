@@ -17,6 +17,7 @@
 #include "umbrick/ingest/nifti_volume.h"
 #include "umbrick/ingest/npy_volume.h"
 #include "umbrick/ingest/nrrd_volume.h"
+#include "umbrick/ingest/vtk_volume.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;
@@ -69,6 +70,16 @@ std::vector<Format> formats() {
        },
        false,
        [](const fs::path& path, const OpenOptions&) { return openImageStack(path); }},
+      {{"VTK ImageData",
+        {".vti"},
+        "one scalar array of points or cells; ascii, base64 and raw, inline and appended; zlib, LZ4 and LZMA"},
+       {},
+       true,
+       [](const fs::path& path, const OpenOptions&) { return openVti(path); }},
+      {{"legacy VTK", {".vtk"}, "structured points, ASCII and binary"},
+       [](Bytes b) { return b.starts_with("# vtk DataFile"); },
+       true,
+       [](const fs::path& path, const OpenOptions&) { return openLegacyVtk(path); }},
       {{"NumPy",
         {".npy", ".npy.gz", ".npy.xz", ".npy.zst", ".npy.bz2"},
         "arrays of two or three axes in C or Fortran order"},
