@@ -12,6 +12,7 @@
 #include "ingest/packed_stream.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/dicom_volume.h"
+#include "umbrick/ingest/hdf5_volume.h"
 #include "umbrick/ingest/image_stack.h"
 #include "umbrick/ingest/metaimage_volume.h"
 #include "umbrick/ingest/nifti_volume.h"
@@ -80,6 +81,12 @@ std::vector<Format> formats() {
        [](Bytes b) { return b.starts_with("# vtk DataFile"); },
        true,
        [](const fs::path& path, const OpenOptions&) { return openLegacyVtk(path); }},
+      {{"HDF5",
+        {".h5", ".hdf5", ".he5"},
+        "a dataset of three axes: file.h5:/path, or the only one; every layout and filter of libhdf5"},
+       [](Bytes b) { return b.starts_with("\x89HDF\r\n\x1a\n"); },
+       false,
+       [](const fs::path& path, const OpenOptions&) { return openHdf5(path); }},
       {{"NumPy",
         {".npy", ".npy.gz", ".npy.xz", ".npy.zst", ".npy.bz2"},
         "arrays of two or three axes in C or Fortran order"},
@@ -102,6 +109,7 @@ std::optional<Format> formatOf(const fs::path& path) {
   };
   if (fs::is_directory(path) && hasDicom(path)) return named("DICOM");
   if (isImageStack(path)) return named("images");
+  if (isHdf5Dataset(path)) return named("HDF5");
   for (const Format& format : all)
     if (hasExtension(format, path)) return format;
   if (!fs::is_regular_file(path)) return std::nullopt;
@@ -158,6 +166,7 @@ std::unique_ptr<VoxelSource> openVolume(const fs::path& path, const OpenOptions&
 }
 
 std::optional<std::string> formatOfName(const fs::path& path) {
+  if (isHdf5Dataset(path)) return "HDF5";
   for (const Format& format : formats())
     if (hasExtension(format, path)) return format.row.name;
   return std::nullopt;
