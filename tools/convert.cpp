@@ -56,11 +56,12 @@ openvdb::MetaMap fileMetadata(openvdb::MetaMap metadata) {
 }
 
 bool isVdb(const fs::path& path) {
-  if (path.extension() == ".vdb") return true;
+  if (path.extension() == ".vdb" || path.extension() == ".nvdb") return true;
   if (formatOfName(path) || !fs::is_regular_file(path)) return false;
-  char magic[4]{};
+  char magic[8]{};
   std::ifstream(path, std::ios::binary).read(magic, sizeof magic);
-  return std::string_view(magic, sizeof magic) == " BDV";
+  const std::string_view first(magic, sizeof magic);
+  return first.starts_with(" BDV") || first == "NanoVDB0";
 }
 
 std::unique_ptr<VoxelSource> openInput(const ConvertOptions& options) {
@@ -223,8 +224,9 @@ int convert(ConvertOptions options) {
   options.build.progress = [&](double share) { bar.show(share); };
   setLimits(options);
   const bool raw = !options.dims.empty() || !options.type.empty();
-  const auto named =
-      options.input.extension() == ".vdb" ? std::optional<std::string>(".vdb") : formatOfName(options.input);
+  const auto named = options.input.extension() == ".vdb" || options.input.extension() == ".nvdb"
+                         ? std::optional<std::string>(options.input.extension().string())
+                         : formatOfName(options.input);
   if (raw && named)
     throw UsageError(options.input.string() + ": --dims and --type are for headerless raw, not for " + *named);
   const Outcome outcome = !raw && isVdb(options.input) ? convertVdb(options) : convertVolume(options);
