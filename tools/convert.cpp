@@ -59,11 +59,12 @@ struct ConvertOptions {
 };
 
 bool isVdb(const fs::path& path) {
-  if (path.extension() == ".vdb") return true;
+  if (path.extension() == ".vdb" || path.extension() == ".nvdb") return true;
   if (formatOfName(path) || !fs::is_regular_file(path)) return false;
-  char magic[4]{};
+  char magic[8]{};
   std::ifstream(path, std::ios::binary).read(magic, sizeof magic);
-  return std::string_view(magic, sizeof magic) == " BDV";
+  const std::string_view first(magic, sizeof magic);
+  return first.starts_with(" BDV") || first == "NanoVDB0";
 }
 
 std::unique_ptr<VoxelSource> openInput(const ConvertOptions& options) {
@@ -272,7 +273,9 @@ int convert(ConvertOptions options) {
   const bool raw = !options.dims.empty() || !options.type.empty();
   bool vdb = false;
   for (const fs::path& input : options.inputs) {
-    const auto named = input.extension() == ".vdb" ? std::optional<std::string>(".vdb") : formatOfName(input);
+    const std::string extension = input.extension().string();
+    const auto named =
+        extension == ".vdb" || extension == ".nvdb" ? std::optional<std::string>(extension) : formatOfName(input);
     if (raw && named)
       throw UsageError(input.string() + ": --dims and --type are for headerless raw, not for " + *named);
     vdb = vdb || (!raw && isVdb(input));

@@ -13,6 +13,7 @@ namespace {
 std::vector<FormatRow> rows() {
   std::vector<FormatRow> all = listFormats();
   all.push_back({"OpenVDB", {".vdb"}, "scalar grids, each by itself"});
+  all.push_back({"NanoVDB", {".nvdb"}, "scalar grids and quantised ones; plain, ZIP and Blosc"});
   return all;
 }
 

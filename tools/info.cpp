@@ -159,7 +159,8 @@ int info(const InfoOptions& options) {
     return 0;
   }
   std::cout << options.input.string() << ": " << file.fileBytes << " bytes, file version " << file.version
-            << ", written by OpenVDB " << file.libraryVersion.substr(0, file.libraryVersion.find('/')) << '\n';
+            << ", written by " << (file.libraryVersion.starts_with("NanoVDB") ? "" : "OpenVDB ")
+            << file.libraryVersion.substr(0, file.libraryVersion.find('/')) << '\n';
   for (const GridSummary& grid : file.grids) print(grid);
   if (file.grids.empty()) std::cout << "no grids\n";
   return 0;

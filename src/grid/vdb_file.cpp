@@ -3,6 +3,7 @@
 #include <map>
 #include <new>
 
+#include "grid/nano_file.h"
 #include "grid/vdb_check.h"
 #include "umbrick/core/error.h"
 
@@ -38,7 +39,7 @@ auto VdbFile::guarded(const std::string& what, const Action& action) {
 VdbFile::VdbFile(const fs::path& path) : path_(path), file_(path), buffer_(file_.bytes()), stream_(&buffer_) {
   openvdb::initialize();
   stream_.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
-  guarded("", [&] { readHead(); });
+  guarded("", [&] { isNanoVdb(file_.bytes()) ? readNano() : readHead(); });
   nameEntries();
 }
 
@@ -65,6 +66,16 @@ void VdbFile::readHead() {
   if (count < 0) throw BrokenVdb("corrupt: the file says that it has " + std::to_string(count) + " grids");
   stream_.seekg(sizeof count, std::ios::cur);
   for (std::int32_t i = 0; i < count; ++i) entries_.push_back(readEntry());
+}
+
+void VdbFile::readNano() {
+  for (NanoGridEntry& grid : readNanoGrids(file_.bytes(), nano_))
+    entries_.push_back({{},
+                        grid.name,
+                        grid.valueType,
+                        grid.fileBytes,
+                        openvdb::io::GridDescriptor(grid.name, grid.valueType),
+                        grid.grid});
 }
 
 // One row of the table; rows lie before the data of their grids.
@@ -117,6 +128,7 @@ const VdbFile::Entry* VdbFile::find(const std::string& selector) const {
 openvdb::GridBase::Ptr VdbFile::read(const Entry& entry) {
   return guarded("grid \"" + entry.label + "\": ", [&] {
     openvdb::GridBase::Ptr grid = entry.loaded;
+    if (!nano_.empty()) return grid;
     if (!grid) {
       stream_.clear();
       stream_.seekg(entry.descriptor.getGridPos());

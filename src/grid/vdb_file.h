@@ -16,7 +16,7 @@ namespace umbrick {
 
 /// OpenVDB trusts what it reads: wrong lengths in a broken file make it allocate gigabytes or write beyond its buffers,
 /// and a short read goes unnoticed. So everything is checked (vdb_check.h) before OpenVDB sees it, and the stream
-/// throws when it is read past its end. Nothing is loaded later than it is asked for.
+/// throws when it is read past its end. Nothing is loaded later than it is asked for. A .nvdb file is read as a whole.
 class VdbFile : private openvdb::io::Archive {
  public:
   struct Entry {
@@ -35,7 +35,8 @@ class VdbFile : private openvdb::io::Archive {
   const std::vector<Entry>& entries() const { return entries_; }
   std::int64_t fileBytes() const { return std::int64_t(file_.bytes().size()); }
   std::uint32_t version() const { return fileVersion(); }
-  std::string writtenBy() const { return openvdb::io::Archive::version(); }
+  /// Of the library; "NanoVDB 32.4" for a .nvdb file.
+  std::string writtenBy() const { return nano_.empty() ? openvdb::io::Archive::version() : "NanoVDB " + nano_; }
   const openvdb::MetaMap& metadata() const { return metadata_; }
 
   /// The entry of a selector: a label, a name (the first of that name) or "name[k]".
@@ -49,6 +50,7 @@ class VdbFile : private openvdb::io::Archive {
   template <class Action>
   auto guarded(const std::string& what, const Action& action);
   void readHead();
+  void readNano();
   Entry readEntry();
   void nameEntries();
   openvdb::GridBase::Ptr readHere(const Entry& entry);
@@ -60,6 +62,7 @@ class VdbFile : private openvdb::io::Archive {
   openvdb::io::StreamMetadata::Ptr streamMetadata_;
   openvdb::MetaMap metadata_;
   std::vector<Entry> entries_;
+  std::string nano_;  // version of NanoVDB; empty for a .vdb file
 };
 
 /// "float" for "Tree_float_5_4_3": the type of the values, as people call it; others as they are.

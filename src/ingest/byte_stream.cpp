@@ -110,6 +110,27 @@ class JoinedStream : public ByteStream {
   std::size_t next_ = 0;
 };
 
+class FirstBytes : public ByteStream {
+ public:
+  FirstBytes(std::unique_ptr<ByteStream> stream, std::int64_t count) : stream_(std::move(stream)), left_(count) {}
+  std::size_t read(std::span<std::byte> out) override {
+    const auto want = static_cast<std::size_t>(std::min<std::int64_t>(std::ssize(out), left_));
+    const std::size_t got = stream_->read(out.first(want));
+    left_ -= static_cast<std::int64_t>(got);
+    return got;
+  }
+  std::int64_t skip(std::int64_t count) override {
+    const std::int64_t done = stream_->skip(std::min(count, left_));
+    left_ -= done;
+    return done;
+  }
+  bool skipsFast() override { return stream_->skipsFast(); }
+
+ private:
+  std::unique_ptr<ByteStream> stream_;
+  std::int64_t left_;
+};
+
 }  // namespace
 
 std::int64_t ByteStream::skip(std::int64_t count) {
@@ -138,6 +159,10 @@ std::int64_t checkedFileSize(const fs::path& path) {
 
 std::unique_ptr<ByteStream> openPlain(const fs::path& path, std::int64_t offset) {
   return std::make_unique<PlainStream>(path, offset);
+}
+
+std::unique_ptr<ByteStream> firstBytes(std::unique_ptr<ByteStream> stream, std::int64_t count) {
+  return std::make_unique<FirstBytes>(std::move(stream), count);
 }
 
 std::unique_ptr<ByteStream> joinStreams(std::vector<std::function<std::unique_ptr<ByteStream>()>> parts) {

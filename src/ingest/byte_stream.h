@@ -27,6 +27,9 @@ std::int64_t checkedFileSize(const std::filesystem::path& path);
 
 std::unique_ptr<ByteStream> openPlain(const std::filesystem::path& path, std::int64_t offset = 0);
 
+/// The first `count` bytes of what is left of a stream.
+std::unique_ptr<ByteStream> firstBytes(std::unique_ptr<ByteStream> stream, std::int64_t count);
+
 /// One after the other, each opened when the one before has ended: a volume may lie in thousands of files.
 std::unique_ptr<ByteStream> joinStreams(std::vector<std::function<std::unique_ptr<ByteStream>()>> parts);
 

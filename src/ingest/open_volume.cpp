@@ -12,10 +12,13 @@
 #include "ingest/packed_stream.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/dicom_volume.h"
+#include "umbrick/ingest/hdf5_volume.h"
+#include "umbrick/ingest/image_stack.h"
 #include "umbrick/ingest/metaimage_volume.h"
 #include "umbrick/ingest/nifti_volume.h"
 #include "umbrick/ingest/npy_volume.h"
 #include "umbrick/ingest/nrrd_volume.h"
+#include "umbrick/ingest/vtk_volume.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;
@@ -59,6 +62,31 @@ std::vector<Format> formats() {
        [](Bytes b) { return b.size() >= 132 && b.substr(128, 4) == "DICM"; },
        true,
        [](const fs::path& path, const OpenOptions& options) { return openDicom(path, options.series); }},
+      {{"images",
+        {".tif", ".tiff", ".png"},
+        "grey TIFF of one or many pages and PNG: a file, slice_%04d.tif, 'slice*.png' or a folder"},
+       [](Bytes b) {
+         return b.starts_with(Bytes("II*\0", 4)) || b.starts_with(Bytes("MM\0*", 4)) ||
+                b.starts_with(Bytes("II+\0", 4)) || b.starts_with(Bytes("MM\0+", 4)) || b.starts_with("\x89PNG");
+       },
+       false,
+       [](const fs::path& path, const OpenOptions&) { return openImageStack(path); }},
+      {{"VTK ImageData",
+        {".vti"},
+        "one scalar array of points or cells; ascii, base64 and raw, inline and appended; zlib, LZ4 and LZMA"},
+       {},
+       true,
+       [](const fs::path& path, const OpenOptions&) { return openVti(path); }},
+      {{"legacy VTK", {".vtk"}, "structured points, ASCII and binary"},
+       [](Bytes b) { return b.starts_with("# vtk DataFile"); },
+       true,
+       [](const fs::path& path, const OpenOptions&) { return openLegacyVtk(path); }},
+      {{"HDF5",
+        {".h5", ".hdf5", ".he5"},
+        "a dataset of three axes: file.h5:/path, or the only one; every layout and filter of libhdf5"},
+       [](Bytes b) { return b.starts_with("\x89HDF\r\n\x1a\n"); },
+       false,
+       [](const fs::path& path, const OpenOptions&) { return openHdf5(path); }},
       {{"NumPy",
         {".npy", ".npy.gz", ".npy.xz", ".npy.zst", ".npy.bz2"},
         "arrays of two or three axes in C or Fortran order"},
@@ -76,8 +104,12 @@ bool hasExtension(const Format& format, const fs::path& path) {
 
 std::optional<Format> formatOf(const fs::path& path) {
   const std::vector<Format> all = formats();
-  if (fs::is_directory(path) && hasDicom(path))
-    return *std::find_if(all.begin(), all.end(), [](const Format& format) { return format.row.name == "DICOM"; });
+  const auto named = [&](const char* name) {
+    return *std::find_if(all.begin(), all.end(), [&](const Format& format) { return format.row.name == name; });
+  };
+  if (fs::is_directory(path) && hasDicom(path)) return named("DICOM");
+  if (isImageStack(path)) return named("images");
+  if (isHdf5Dataset(path)) return named("HDF5");
   for (const Format& format : all)
     if (hasExtension(format, path)) return format;
   if (!fs::is_regular_file(path)) return std::nullopt;
@@ -134,6 +166,7 @@ std::unique_ptr<VoxelSource> openVolume(const fs::path& path, const OpenOptions&
 }
 
 std::optional<std::string> formatOfName(const fs::path& path) {
+  if (isHdf5Dataset(path)) return "HDF5";
   for (const Format& format : formats())
     if (hasExtension(format, path)) return format.row.name;
   return std::nullopt;

@@ -2,6 +2,7 @@
 
 #include <half.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -156,6 +157,60 @@ class HexStream : public ByteStream {
   std::string name_;
 };
 
+class Base64Stream : public ByteStream {
+ public:
+  Base64Stream(std::unique_ptr<ByteStream> text, std::string name) : text_(std::move(text)), name_(std::move(name)) {}
+
+  std::size_t read(std::span<std::byte> out) override {
+    std::size_t done = 0;
+    while (done < out.size() && (at_ < count_ || decode())) out[done++] = group_[at_++];
+    return done;
+  }
+
+ private:
+  static constexpr int kPadding = 64, kEnd = -1;
+
+  int digit() {
+    if (ended_) return kEnd;
+    int c = text_.next();
+    while (isBlank(c)) c = text_.next();
+    ended_ = c < 0 || c == '<';
+    if (ended_) return kEnd;
+    if (c >= 'A' && c <= 'Z') return c - 'A';
+    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+    if (c >= '0' && c <= '9') return c - '0' + 52;
+    if (c == '+') return 62;
+    if (c == '/') return 63;
+    if (c == '=') return kPadding;
+    throw IoError(name_ + ": base64: expected A to Z, a to z, 0 to 9, + or /, found character " + std::to_string(c));
+  }
+
+  // Four digits to three bytes, or fewer where the group is padded. @return false at the end
+  bool decode() {
+    unsigned bits = 0;
+    int digits = 0;
+    for (int i = 0; i < 4; ++i) {
+      const int d = digit();
+      if (d == kEnd && i == 0) return false;
+      if (d == kEnd || (d == kPadding && i < 2) || (d != kPadding && digits < i))
+        throw IoError(name_ + ": base64: expected groups of four characters, found " + std::to_string(i) +
+                      " before the end or padding");
+      bits = bits << 6 | static_cast<unsigned>(d & 63);
+      if (d != kPadding) ++digits;
+    }
+    for (std::size_t i = 0; i < 3; ++i) group_[i] = static_cast<std::byte>(bits >> (16 - 8 * i) & 255);
+    count_ = static_cast<std::size_t>(digits - 1);
+    at_ = 0;
+    return true;
+  }
+
+  Characters text_;
+  std::string name_;
+  std::array<std::byte, 3> group_{};
+  std::size_t at_ = 0, count_ = 0;
+  bool ended_ = false;
+};
+
 }  // namespace
 
 std::unique_ptr<ByteStream> decimalStream(std::unique_ptr<ByteStream> text, VoxelType type, std::string name) {
@@ -164,6 +219,10 @@ std::unique_ptr<ByteStream> decimalStream(std::unique_ptr<ByteStream> text, Voxe
 
 std::unique_ptr<ByteStream> hexStream(std::unique_ptr<ByteStream> text, std::string name) {
   return std::make_unique<HexStream>(std::move(text), std::move(name));
+}
+
+std::unique_ptr<ByteStream> base64Stream(std::unique_ptr<ByteStream> text, std::string name) {
+  return std::make_unique<Base64Stream>(std::move(text), std::move(name));
 }
 
 }  // namespace umbrick

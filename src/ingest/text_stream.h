@@ -14,4 +14,8 @@ std::unique_ptr<ByteStream> decimalStream(std::unique_ptr<ByteStream> text, Voxe
 /// Pairs of hexadecimal digits, blanks ignored.
 std::unique_ptr<ByteStream> hexStream(std::unique_ptr<ByteStream> text, std::string name);
 
+/// Base64 (RFC 4648), blanks ignored. Pieces that were padded each by itself may follow each other. Ends at the first
+/// character that is none of its alphabet only if that is '<', which ends the text of an XML element.
+std::unique_ptr<ByteStream> base64Stream(std::unique_ptr<ByteStream> text, std::string name);
+
 }  // namespace umbrick

@@ -1,0 +1,23 @@
+// Datasets of HDF5 files as volumes.
+#pragma once
+#include <filesystem>
+#include <memory>
+
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+/// Opens "file.h5:/group/dataset", or of "file.h5" the only dataset of three axes. Integers of 8 to 64 bits and floats
+/// of 16 to 64 bits, either byte order, contiguous or in chunks with every filter that libhdf5 has; two axes are one
+/// slice, axes of length 1 beyond three are dropped. Slabs are read one by one; chunks that reach into the next stay
+/// unpacked.
+///
+/// The last axis, which is the fastest, is x. A dataset states no place: voxels are 1 apart and the first is at 0.
+///
+/// @throw IoError  missing, truncated, no such dataset, several to choose from (they are listed), another type or rank
+std::unique_ptr<VoxelSource> openHdf5(const std::filesystem::path& path);
+
+/// True for "file:/dataset" where the file exists and is HDF5.
+bool isHdf5Dataset(const std::filesystem::path& path);
+
+}  // namespace umbrick

@@ -1,0 +1,26 @@
+// NanoVDB files (.nvdb) as OpenVDB grids. NanoVDB itself is seen by the .cpp file alone.
+#pragma once
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace umbrick {
+
+struct NanoGridEntry {
+  std::string name, valueType;  // "float" also for grids of quantised floats
+  std::int64_t fileBytes = 0;
+  openvdb::GridBase::Ptr grid;  // null for types that are no scalars
+};
+
+bool isNanoVdb(std::span<const char> file);
+
+/// All grids of a file. A NanoVDB grid is a block of memory whose nodes point at each other, so every pointer is
+/// checked before it is followed.
+/// @param version  becomes that of the file, "32.4"
+/// @throw BrokenVdb
+std::vector<NanoGridEntry> readNanoGrids(std::span<const char> file, std::string& version);
+
+}  // namespace umbrick

@@ -1,0 +1,279 @@
+#include "umbrick/ingest/hdf5_volume.h"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "ingest/dense_source.h"
+#include "ingest/header_text.h"
+#include "ingest/provenance.h"
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kMagic{"\x89HDF\r\n\x1a\n", 8};
+constexpr std::size_t kMaxListed = 20;
+constexpr std::int64_t kMaxCacheBytes = std::int64_t(1) << 30;
+
+// libhdf5 prints its errors unless told not to.
+class Quiet {
+ public:
+  Quiet() {
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+// The innermost complaint, which is the first.
+std::string complaint() {
+  std::string text;
+  const auto take = [](unsigned n, const H5E_error2_t* error, void* out) -> herr_t {
+    if (n == 0 && error->desc) *static_cast<std::string*>(out) = error->desc;
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take, &text);
+  return text.empty() ? "an unreadable file" : text;
+}
+
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  hid_t get() const { return id_; }
+  bool good() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+struct Place {
+  fs::path file;
+  std::string dataset;  // empty: the only one
+};
+
+bool beginsAsHdf5(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return false;
+  std::array<char, 8> bytes{};
+  openPlain(path)->read(std::as_writable_bytes(std::span(bytes)));
+  return std::string_view(bytes.data(), bytes.size()) == kMagic;
+}
+
+Place split(const fs::path& path) {
+  const std::string text = path.string();
+  for (std::size_t at = text.find(":/"); at != text.npos; at = text.find(":/", at + 1))
+    if (beginsAsHdf5(text.substr(0, at))) return {text.substr(0, at), text.substr(at + 1)};
+  return {path, {}};
+}
+
+std::vector<hsize_t> shapeOf(hid_t dataset) {
+  const Handle space(H5Dget_space(dataset), H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  std::vector<hsize_t> shape(static_cast<std::size_t>(std::max(rank, 0)));
+  if (rank > 0) H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
+  return shape;
+}
+
+// Axes that count: the last three when those before have length 1, fewer when there are fewer.
+std::size_t axesOf(const std::vector<hsize_t>& shape) {
+  std::size_t dropped = 0;
+  while (shape.size() - dropped > 3 && shape[dropped] == 1) ++dropped;
+  return shape.size() - dropped;
+}
+
+std::string shapeText(const std::vector<hsize_t>& shape) {
+  std::string text;
+  for (const hsize_t length : shape) text += (text.empty() ? "" : " x ") + std::to_string(length);
+  return text;
+}
+
+// The type in memory that a dataset is read as, and how it is stored.
+struct NumberType {
+  VoxelType stored = VoxelType::u8, read = VoxelType::u8;
+};
+std::optional<NumberType> numberType(hid_t dataset) {
+  using enum VoxelType;
+  const Handle type(H5Dget_type(dataset), H5Tclose);
+  const std::size_t bytes = H5Tget_size(type.get());
+  const H5T_class_t kind = H5Tget_class(type.get());
+  const int power = bytes == 1 ? 0 : bytes == 2 ? 1 : bytes == 4 ? 2 : bytes == 8 ? 3 : -1;
+  if (power < 0) return std::nullopt;
+  const auto at = static_cast<std::size_t>(power);
+  if (kind == H5T_INTEGER) {
+    const VoxelType found =
+        H5Tget_sign(type.get()) == H5T_SGN_2 ? std::array{i8, i16, i32, i64}[at] : std::array{u8, u16, u32, u64}[at];
+    return NumberType{found, found};
+  }
+  if (kind != H5T_FLOAT || power < 1) return std::nullopt;
+  const VoxelType found = std::array{f16, f16, f32, f64}[at];
+  return NumberType{found, found == f16 ? f32 : found};  // libhdf5 widens halves, exactly
+}
+
+hid_t memoryType(VoxelType type) {
+  switch (type) {
+    case VoxelType::u8:
+      return H5T_NATIVE_UINT8;
+    case VoxelType::i8:
+      return H5T_NATIVE_INT8;
+    case VoxelType::u16:
+      return H5T_NATIVE_UINT16;
+    case VoxelType::i16:
+      return H5T_NATIVE_INT16;
+    case VoxelType::u32:
+      return H5T_NATIVE_UINT32;
+    case VoxelType::i32:
+      return H5T_NATIVE_INT32;
+    case VoxelType::u64:
+      return H5T_NATIVE_UINT64;
+    case VoxelType::i64:
+      return H5T_NATIVE_INT64;
+    case VoxelType::f64:
+      return H5T_NATIVE_DOUBLE;
+    default:
+      return H5T_NATIVE_FLOAT;
+  }
+}
+
+struct Found {
+  std::vector<std::string> volumes;  // of three axes and numbers
+};
+
+herr_t onObject(hid_t file, const char* name, const H5O_info_t* info, void* user) {
+  if (info->type != H5O_TYPE_DATASET) return 0;
+  const Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+  if (dataset.good() && axesOf(shapeOf(dataset.get())) == 3 && numberType(dataset.get()))
+    static_cast<Found*>(user)->volumes.push_back(std::string("/") + name);
+  return 0;
+}
+
+std::string onlyVolume(const fs::path& path, hid_t file) {
+  Found found;
+  if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, onObject, &found, H5O_INFO_BASIC) < 0)
+    throw IoError(path.string() + ": expected an HDF5 file, found: " + complaint());
+  if (found.volumes.size() == 1) return found.volumes.front();
+  std::string list;
+  for (std::size_t i = 0; i < std::min(found.volumes.size(), kMaxListed); ++i)
+    list += (i == 0 ? "" : ", ") + found.volumes[i];
+  if (found.volumes.size() > kMaxListed) list += ", ...";
+  throw IoError(path.string() + ": expected one dataset of three axes, or its name as in " + path.filename().string() +
+                ":/name, found " + (list.empty() ? "none" : list));
+}
+
+// Chunks are unpacked whole, so those of one layer are kept until the slabs have passed them.
+Handle openDataset(hid_t file, const std::string& name) {
+  Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.good()) return dataset;
+  const std::vector<hsize_t> shape = shapeOf(dataset.get());
+  const Handle creation(H5Dget_create_plist(dataset.get()), H5Pclose);
+  std::vector<hsize_t> chunk(shape.size());
+  if (shape.empty() || H5Pget_layout(creation.get()) != H5D_CHUNKED ||
+      H5Pget_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data()) < 0)
+    return dataset;
+  const Handle type(H5Dget_type(dataset.get()), H5Tclose);
+  double chunks = 1, bytes = static_cast<double>(H5Tget_size(type.get()));
+  for (std::size_t axis = 0; axis < shape.size(); ++axis) {
+    bytes *= static_cast<double>(chunk[axis]);
+    if (axis + 2 >= shape.size())
+      chunks *= static_cast<double>((shape[axis] + chunk[axis] - 1) / std::max<hsize_t>(chunk[axis], 1));
+  }
+  if (chunks * bytes > static_cast<double>(kMaxCacheBytes)) return dataset;
+  const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+  H5Pset_chunk_cache(access.get(), static_cast<std::size_t>(chunks) * 10 + 1, static_cast<std::size_t>(chunks * bytes),
+                     1.0);
+  return {H5Dopen2(file, name.c_str(), access.get()), H5Dclose};
+}
+
+class Hdf5Source : public VoxelSource {
+ public:
+  Hdf5Source(VolumeInfo info, Handle file, Handle dataset, VoxelType read)
+      : file_(std::move(file)), dataset_(std::move(dataset)), shape_(shapeOf(dataset_.get())) {
+    info_ = std::move(info);
+    layout_.type = read;
+    layout_.endian = std::endian::native;  // libhdf5 swaps
+  }
+
+  double readSlab(std::int64_t count, std::span<float> out) override {
+    const Quiet quiet;
+    slab_.resize(out.size() * static_cast<std::size_t>(voxelBytes(layout_.type)));
+    std::vector<hsize_t> start(shape_.size()), extent = shape_;
+    if (axesOf(shape_) == 3) {
+      start[shape_.size() - 3] = static_cast<hsize_t>(next_);
+      extent[shape_.size() - 3] = static_cast<hsize_t>(count);
+    }
+    const Handle from(H5Dget_space(dataset_.get()), H5Sclose);
+    const Handle to(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose);
+    if (H5Sselect_hyperslab(from.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr) < 0 ||
+        H5Dread(dataset_.get(), memoryType(layout_.type), to.get(), from.get(), H5P_DEFAULT, slab_.data()) < 0)
+      throw IoError(info_.name + ": expected " + describeBytes(info_) + ", found from slice " +
+                    std::to_string(next_ + 1) + " on: " + complaint());
+    next_ += count;
+    return decodeVoxels(layout_, slab_, out);
+  }
+
+  void skipSlices(std::int64_t count) override { next_ += count; }
+  bool skipsFast() const override { return true; }
+
+ private:
+  Handle file_, dataset_;
+  std::vector<hsize_t> shape_;
+  VoxelLayout layout_;
+  std::int64_t next_ = 0;
+  std::vector<std::byte> slab_;
+};
+
+}  // namespace
+
+bool isHdf5Dataset(const fs::path& path) { return !split(path).dataset.empty(); }
+
+std::unique_ptr<VoxelSource> openHdf5(const fs::path& path) {
+  const Quiet quiet;
+  Place place = split(path);
+  VolumeInfo info;
+  info.fileBytes = checkedFileSize(place.file);
+  Handle file(H5Fopen(place.file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file.good()) throw IoError(place.file.string() + ": expected an HDF5 file, found: " + complaint());
+  if (place.dataset.empty()) place.dataset = onlyVolume(place.file, file.get());
+  info.name = place.file.string() + ':' + place.dataset;
+  Handle dataset = openDataset(file.get(), place.dataset);
+  if (!dataset.good()) throw IoError(info.name + ": expected a dataset, found: " + complaint());
+
+  const auto type = numberType(dataset.get());
+  if (!type) throw IoError(info.name + ": expected integers of 8 to 64 bits or floats of 16 to 64, found another type");
+  const std::vector<hsize_t> shape = shapeOf(dataset.get());
+  const std::size_t axes = axesOf(shape);
+  if (axes < 2 || axes > 3)
+    failField(info.name, "shape", "two or three axes", shape.empty() ? "none" : shapeText(shape));
+  info.type = type->stored;
+  info.dims = glm::i64vec3(1);
+  for (std::size_t i = 0; i < axes; ++i)
+    info.dims[static_cast<int>(i)] = static_cast<std::int64_t>(shape[shape.size() - 1 - i]);
+  if (!volumeBytes(info.dims, info.type))
+    failField(info.name, "shape", "each from 1 to 2147483647 and less than 2^63 bytes in all", shapeText(shape));
+  // A slice is held as a whole. Chunks that nobody wrote take no bytes, so this leaves much room.
+  const std::int64_t sliceBytes = info.dims.x * info.dims.y * voxelBytes(info.type);
+  const auto storedBytes = static_cast<std::int64_t>(H5Dget_storage_size(dataset.get()));
+  if (sliceBytes / 100000 > storedBytes)
+    failField(info.name, "shape", "slices that the " + std::to_string(storedBytes) + " stored bytes can fill",
+              shapeText(shape));
+  addProvenance(info, place.file, "HDF5");
+  info.metadata["hdf5_dataset"] = place.dataset;
+  return std::make_unique<Hdf5Source>(std::move(info), std::move(file), std::move(dataset), type->read);
+}
+
+}  // namespace umbrick

@@ -1,0 +1,34 @@
+// One grey image of a stack. libtiff and libpng are seen by the .cpp files alone.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ingest/decode.h"
+
+namespace umbrick {
+
+/// The pages of one file.
+class SliceImages {
+ public:
+  virtual ~SliceImages() = default;
+  std::int64_t width = 0, height = 0, pages = 1;
+  VoxelLayout layout;
+  bool whiteIsZero = false;
+  std::string description;                 // of the first page
+  std::optional<double> pixelsPerUnit[2];  // along x and y
+  /// The pixels of a page, rows from the top. Pages must be read in order. @throw IoError
+  virtual void read(std::int64_t page, std::span<std::byte> out) = 0;
+};
+
+/// By the first bytes. @throw IoError  neither, unreadable, or no grey image
+std::unique_ptr<SliceImages> openSliceImages(const std::filesystem::path& path);
+std::unique_ptr<SliceImages> openTiff(const std::filesystem::path& path);
+std::unique_ptr<SliceImages> openPng(const std::filesystem::path& path);
+
+}  // namespace umbrick

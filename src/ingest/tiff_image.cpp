@@ -1,0 +1,171 @@
+#include <tiffio.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+
+#include "ingest/header_text.h"
+#include "ingest/slice_image.h"
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace {
+
+struct CloseTiff {
+  void operator()(TIFF* tiff) const { TIFFClose(tiff); }
+};
+
+// The first complaint of libtiff, instead of printing it.
+struct Complaint {
+  std::string text;
+};
+int onError(TIFF*, void* user, const char*, const char* format, va_list arguments) {
+  auto& complaint = *static_cast<Complaint*>(user);
+  std::array<char, 256> line{};
+  std::vsnprintf(line.data(), line.size(), format, arguments);
+  if (complaint.text.empty()) complaint.text = line.data();
+  return 1;
+}
+int onWarning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
+
+template <class T>
+T field(TIFF* tiff, std::uint32_t tag, T otherwise) {
+  T value{};
+  return TIFFGetFieldDefaulted(tiff, tag, &value) ? value : otherwise;
+}
+
+class TiffImages : public SliceImages {
+ public:
+  explicit TiffImages(const std::filesystem::path& path) : path_(path) {
+    TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
+    TIFFOpenOptionsSetErrorHandlerExtR(options, onError, &complaint_);
+    TIFFOpenOptionsSetWarningHandlerExtR(options, onWarning, nullptr);
+    tiff_.reset(TIFFOpenExt(path.c_str(), "rm", options));
+    TIFFOpenOptionsFree(options);
+    if (!tiff_) fail("a TIFF image");
+    // Thumbnails and masks are no slices. Directories are counted without reading their pixels.
+    pages_.clear();
+    do {
+      if (!(field<std::uint32_t>(tiff_.get(), TIFFTAG_SUBFILETYPE, 0) & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)))
+        pages_.push_back(TIFFCurrentDirOffset(tiff_.get()));
+    } while (TIFFReadDirectory(tiff_.get()));
+    if (!complaint_.text.empty() || pages_.empty()) fail("pages of a TIFF image");
+    pages = std::ssize(pages_);
+    select(0);
+    width = field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0);
+    height = field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0);
+    layout = layoutHere();
+    whiteIsZero =
+        field<std::uint16_t>(tiff_.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE;
+    char* text = nullptr;
+    if (TIFFGetField(tiff_.get(), TIFFTAG_IMAGEDESCRIPTION, &text) && text) description = text;
+    for (const std::uint32_t axis : {0u, 1u}) {
+      float resolution = 0;
+      if (TIFFGetField(tiff_.get(), axis == 0 ? TIFFTAG_XRESOLUTION : TIFFTAG_YRESOLUTION, &resolution) &&
+          resolution > 0)
+        pixelsPerUnit[axis] = resolution;
+    }
+  }
+
+  void read(std::int64_t page, std::span<std::byte> out) override {
+    select(page);
+    const auto here = layoutHere();
+    if (field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0) != width ||
+        field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0) != height || here.type != layout.type)
+      failField(path_, "page " + std::to_string(page + 1), sizeText(width, height, layout.type) + " as on the first",
+                sizeText(field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0),
+                         field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0), here.type));
+    TIFFIsTiled(tiff_.get()) ? readTiles(page, out) : readStrips(page, out);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& expected) const {
+    throw IoError(path_.string() + ": expected " + expected + ", found " +
+                  (complaint_.text.empty() ? std::string("none") : complaint_.text));
+  }
+  static std::string sizeText(std::int64_t w, std::int64_t h, VoxelType type) {
+    return std::to_string(w) + " x " + std::to_string(h) + " " + std::string(voxelTypeName(type));
+  }
+
+  void select(std::int64_t page) {
+    if (!TIFFSetSubDirectory(tiff_.get(), pages_[static_cast<std::size_t>(page)]))
+      fail("page " + std::to_string(page + 1));
+  }
+
+  VoxelLayout layoutHere() const {
+    const auto samples = field<std::uint16_t>(tiff_.get(), TIFFTAG_SAMPLESPERPIXEL, 1);
+    const auto photometric = field<std::uint16_t>(tiff_.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    if (samples != 1 || photometric > PHOTOMETRIC_MINISBLACK)
+      failField(path_, "photometric interpretation", "grey with one sample per pixel",
+                std::to_string(photometric) + " with " + std::to_string(samples));
+    const auto bits = field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1);
+    const auto format = field<std::uint16_t>(tiff_.get(), TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
+    using enum VoxelType;
+    VoxelLayout out;
+    out.endian = std::endian::native;  // libtiff swaps
+    const bool integer = format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_INT || format == SAMPLEFORMAT_VOID;
+    const bool isSigned = format == SAMPLEFORMAT_INT;
+    if (integer && bits == 8)
+      out.type = isSigned ? i8 : u8;
+    else if (integer && bits == 16)
+      out.type = isSigned ? i16 : u16;
+    else if (integer && bits == 32)
+      out.type = isSigned ? i32 : u32;
+    else if (integer && bits == 64)
+      out.type = isSigned ? i64 : u64;
+    else if (format == SAMPLEFORMAT_IEEEFP && (bits == 16 || bits == 32 || bits == 64))
+      out.type = bits == 16 ? f16 : bits == 32 ? f32 : f64;
+    else
+      failField(path_, "bits per sample", "8, 16, 32 or 64 of integers, 16, 32 or 64 of floats", std::to_string(bits));
+    return out;
+  }
+
+  void readStrips(std::int64_t page, std::span<std::byte> out) {
+    const auto rowBytes = static_cast<std::size_t>(width * voxelBytes(layout.type));
+    const std::size_t rows = std::min<std::size_t>(field<std::uint32_t>(tiff_.get(), TIFFTAG_ROWSPERSTRIP, 1),
+                                                   static_cast<std::size_t>(height));
+    for (std::uint32_t strip = 0; !out.empty(); ++strip) {
+      const std::size_t want = std::min(std::max<std::size_t>(rows, 1) * rowBytes, out.size());
+      const tmsize_t got = TIFFReadEncodedStrip(tiff_.get(), strip, out.data(), static_cast<tmsize_t>(want));
+      if (got != static_cast<tmsize_t>(want))
+        fail("the pixels of page " + std::to_string(page + 1) + ", " + std::to_string(want) + " bytes of strip " +
+             std::to_string(strip));
+      out = out.subspan(want);
+    }
+  }
+
+  void readTiles(std::int64_t page, std::span<std::byte> out) {
+    const std::int64_t tileWidth = field<std::uint32_t>(tiff_.get(), TIFFTAG_TILEWIDTH, 0);
+    const std::int64_t tileHeight = field<std::uint32_t>(tiff_.get(), TIFFTAG_TILELENGTH, 0);
+    const std::int64_t bytes = voxelBytes(layout.type);
+    const tmsize_t tileBytes = TIFFTileSize(tiff_.get());
+    // A tile is no larger than what it covers, but for the rest of its own edge.
+    if (tileWidth < 1 || tileHeight < 1 || tileBytes != tileWidth * tileHeight * bytes || tileWidth > width + 65536 ||
+        tileHeight > height + 65536)
+      fail("tiles of the size of the image");
+    std::vector<std::byte> tile(static_cast<std::size_t>(tileBytes));
+    for (std::int64_t y = 0; y < height; y += tileHeight)
+      for (std::int64_t x = 0; x < width; x += tileWidth) {
+        if (TIFFReadTile(tiff_.get(), tile.data(), static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, 0) <
+            0)
+          fail("the pixels of page " + std::to_string(page + 1));
+        const std::int64_t columns = std::min(tileWidth, width - x);
+        for (std::int64_t row = 0; row < std::min(tileHeight, height - y); ++row)
+          std::memcpy(out.data() + ((y + row) * width + x) * bytes, tile.data() + row * tileWidth * bytes,
+                      static_cast<std::size_t>(columns * bytes));
+      }
+  }
+
+  std::filesystem::path path_;
+  Complaint complaint_;
+  std::unique_ptr<TIFF, CloseTiff> tiff_;
+  std::vector<std::uint64_t> pages_;  // offsets of their directories, so that each is found at once
+};
+
+}  // namespace
+
+std::unique_ptr<SliceImages> openTiff(const std::filesystem::path& path) { return std::make_unique<TiffImages>(path); }
+
+}  // namespace umbrick
