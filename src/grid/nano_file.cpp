@@ -144,7 +144,14 @@ class TreeCheck {
 template <class Build>
 openvdb::GridBase::Ptr converted(const nanovdb::GridHandle<>& handle) {
   TreeCheck({handle.data(), static_cast<std::size_t>(handle.size())}).check<Build>();
-  return nanovdb::nanoToOpenVDB(*reinterpret_cast<const nanovdb::NanoGrid<Build>*>(handle.data()));
+  const auto grid = nanovdb::nanoToOpenVDB(*reinterpret_cast<const nanovdb::NanoGrid<Build>*>(handle.data()));
+  // NanoVDB multiplies columns and OpenVDB rows; the conversion of 10.0.1 forgets to transpose.
+  const nanovdb::Map& map = reinterpret_cast<const nanovdb::GridData*>(handle.data())->mMap;
+  openvdb::Mat4d matrix = openvdb::Mat4d::identity();
+  matrix.setMat3(openvdb::Mat3d(map.mMatD).transpose());
+  matrix.setTranslation(openvdb::Vec3d(map.mVecD));
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+  return grid;
 }
 
 openvdb::GridBase::Ptr toOpenVdb(nanovdb::GridHandle<>& handle, nanovdb::GridType type) {
