@@ -1,9 +1,11 @@
 #include "umbrick/grid/build_grid.h"
 
 #include <openvdb/tools/Prune.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <future>
+#include <iomanip>
 #include <memory>
 #include <sstream>
 
@@ -57,6 +59,18 @@ openvdb::FloatGrid::Ptr emptyGrid(const VolumeInfo& info, const BuildOptions& op
   return grid;
 }
 
+// A header may promise slices of any size, and packed files cannot be held against what it promises.
+void checkSlabFits(const VolumeInfo& info, std::int64_t slices) {
+  const double wanted = 2 * double(info.dims.x) * double(info.dims.y) * double(slices) * double(sizeof(float));
+  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  if (wanted <= memory) return;
+  std::ostringstream text;
+  text << std::setprecision(4) << info.name << ": dims: two slabs of " << info.dims.x << " x " << info.dims.y << " x "
+       << slices << " voxels take " << wanted / 0x1p30 << " GiB, more than this machine's memory of "
+       << memory / 0x1p30;
+  throw IoError(text.str());
+}
+
 }  // namespace
 
 BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options) {
@@ -66,6 +80,7 @@ BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options) {
   BuiltGrid built{emptyGrid(info, options, rule.background()), {}};
   const std::int64_t sliceVoxels = info.dims.x * info.dims.y;
   const std::int64_t slabSlices = std::max<std::int64_t>(kSlabVoxels / sliceVoxels / kEdge, 1) * kEdge;
+  checkSlabFits(info, std::min(slabSlices, info.dims.z));
 
   SlabBuilder builder(info.dims, rule);
   SparseTally tally;

@@ -136,6 +136,9 @@ TEST_CASE("Failed conversions exit 1 with one line and leave nothing behind", "[
   failing.check("info broken.vdb", 1, "truncated or corrupt");
   failing.check("info short.raw", 1, "expected a .vdb file");
   failing.check("info none.vdb", 1, "no such file");
+  // No file says how much there is: what would not fit is refused before it is asked for.
+  failing.check("convert /dev/zero --dims 1000000 1000000 8 --type u8 -o x.vdb", 1,
+                "/dev/zero: dims: two slabs of 1000000 x 1000000 x 8 voxels take ");
 }
 
 TEST_CASE("Wrong usage exits 2", "[tools]") {
@@ -149,7 +152,7 @@ TEST_CASE("Wrong usage exits 2", "[tools]") {
   failing.check("convert v.raw -o o.vdb --dims 4 0 6 --type u8", 2, "dims: expected each from 1");
   failing.check("convert v.raw -o o.vdb --dims 4 -5 6 --type u8", 2, "dims: expected each from 1");
   failing.check("convert v.raw -o o.vdb --dims 4 5 6 --type u12", 2, "u12");
-  failing.check("convert v.raw -o o.nvdb --dims 4 5 6 --type u8", 2, "ends in .vdb");
+  failing.check("convert v.raw -o o.mha --dims 4 5 6 --type u8", 2, "ends in .vdb, .nvdb, .mhd or .nrrd");
   failing.check(start + "--spacing 1 0 1", 2, "spacing: expected positive");
   failing.check(start + "--spacing 1 nan 1", 2, "spacing: expected positive");
   failing.check(start + "--bits-stored 9", 2, "bits stored: expected 1 to 8");

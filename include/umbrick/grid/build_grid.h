@@ -64,7 +64,7 @@ struct BuiltGrid {
 /// The losses are kept in the metadata of the grid: error_max and error_rms, of tolerance and rounding apart
 /// (error_max_tolerance, ...), error_max_to_float, clipped_voxels, clipped_max_change and storage, each where it is not
 /// 0. For a grid that had them already the sums are kept, which bound the errors since the first source.
-/// @throw IoError          the source fails
+/// @throw IoError          the source fails, or two of its slabs are larger than the machine's memory
 /// @throw InvalidArgument  tolerance, step or maxError negative, a limit not finite, values that half floats cannot
 /// hold, or a transform
 ///                         that OpenVDB refuses (voxels of less than 3e-15 cubed world units)
