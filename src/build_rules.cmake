@@ -21,12 +21,31 @@ function(umbrick_flags target)
   endif()
 endfunction()
 
-# A room: its sources become part of the library.
-#   umbrick_room(core SOURCES a.cpp b.cpp)
+# Keeps sources of a target from its precompiled header. That holds OpenVDB, which files that see it compile twice as
+# fast with; those that do not would load it for nothing, which takes longer than they do.
+function(umbrick_without_openvdb target)
+  set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
+# Lets a program share the library's precompiled header. @param ARGN  its sources that do not include OpenVDB
+function(umbrick_reuse_openvdb target)
+  target_precompile_headers(${target} REUSE_FROM umbrick)
+  target_compile_options(${target} PRIVATE -fPIC)  # as the library: the compiler takes the header only then
+  if(ARGN)
+    umbrick_without_openvdb(${target} ${ARGN})
+  endif()
+endfunction()
+
+# A room: its sources become part of the library. Those that include OpenVDB, through headers or not, stand apart.
+#   umbrick_room(core SOURCES a.cpp b.cpp OPENVDB c.cpp)
 function(umbrick_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "SOURCES;OPENVDB" ${ARGN})
   list(TRANSFORM ROOM_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
-  target_sources(umbrick PRIVATE ${ROOM_SOURCES})
+  list(TRANSFORM ROOM_OPENVDB PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
+  target_sources(umbrick PRIVATE ${ROOM_SOURCES} ${ROOM_OPENVDB})
+  if(ROOM_SOURCES)
+    umbrick_without_openvdb(umbrick ${ROOM_SOURCES})
+  endif()
 endfunction()
 
 # Text files that become part of the library: writes a .cpp that defines
@@ -49,6 +68,7 @@ function(umbrick_embed function)
   set_source_files_properties(${output} TARGET_DIRECTORY umbrick PROPERTIES GENERATED TRUE)
   add_dependencies(umbrick umbrick_${function})
   target_sources(umbrick PRIVATE ${output})
+  umbrick_without_openvdb(umbrick ${output})
 endfunction()
 
 # A library without a CMake package: sets PREFIX_INCLUDE_DIR and PREFIX_LIBRARY, or says which Debian package has it.

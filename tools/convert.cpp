@@ -26,6 +26,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/grid_listing.h"
 #include "umbrick/grid/source_filters.h"
 #include "umbrick/grid/verify.h"
 #include "umbrick/ingest/open_volume.h"

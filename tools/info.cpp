@@ -16,7 +16,6 @@
 namespace umbrick::tools {
 namespace {
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 struct InfoOptions {
   fs::path input;
@@ -25,41 +24,41 @@ struct InfoOptions {
 };
 
 template <class Vector>
-json array(const Vector& v) {
-  return json::array({v.x, v.y, v.z});
+nlohmann::json array(const Vector& v) {
+  return nlohmann::json::array({v.x, v.y, v.z});
 }
 
-json numberOrText(const std::string& text) {
-  const json number = json::parse(text, nullptr, /*allow_exceptions=*/false);
-  return number.is_number() ? number : json(text);
+nlohmann::json numberOrText(const std::string& text) {
+  const nlohmann::json number = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  return number.is_number() ? number : nlohmann::json(text);
 }
 
-json toJson(const GridSummary& grid) {
+nlohmann::json toJson(const GridSummary& grid) {
   const glm::i64vec3 dims = grid.activeBox.extent();
-  json out{{"name", grid.label},
-           {"type", grid.valueType},
-           {"scalar", grid.scalar},
-           {"readable", grid.readable},
-           {"saved_as_half", grid.savedAsHalf},
-           {"class", grid.gridClass},
-           {"dims", array(dims)},
-           {"active_voxels", grid.activeVoxels},
-           {"active_tiles", grid.activeTiles},
-           {"leaves", grid.leaves},
-           {"background", numberOrText(grid.background)},
-           {"transform", grid.transformType},
-           {"voxel_size", array(grid.voxelSize)},
-           {"memory_bytes", grid.memoryBytes},
-           {"file_bytes", grid.fileBytes},
-           {"metadata", grid.metadata}};
+  nlohmann::json out{{"name", grid.label},
+                     {"type", grid.valueType},
+                     {"scalar", grid.scalar},
+                     {"readable", grid.readable},
+                     {"saved_as_half", grid.savedAsHalf},
+                     {"class", grid.gridClass},
+                     {"dims", array(dims)},
+                     {"active_voxels", grid.activeVoxels},
+                     {"active_tiles", grid.activeTiles},
+                     {"leaves", grid.leaves},
+                     {"background", numberOrText(grid.background)},
+                     {"transform", grid.transformType},
+                     {"voxel_size", array(grid.voxelSize)},
+                     {"memory_bytes", grid.memoryBytes},
+                     {"file_bytes", grid.fileBytes},
+                     {"metadata", grid.metadata}};
   if (!grid.activeBox.empty()) {
     out["index_box"] = {{"min", array(grid.activeBox.min)}, {"max", array(grid.activeBox.max)}};
     out["world_bounds"] = {{"min", array(grid.worldBounds.min)}, {"max", array(grid.worldBounds.max)}};
   }
   if (grid.indexToWorld) {
-    json rows = json::array();
+    nlohmann::json rows = nlohmann::json::array();
     for (int row = 0; row < 4; ++row) {
-      json entries = json::array();
+      nlohmann::json entries = nlohmann::json::array();
       for (int column = 0; column < 4; ++column) entries.push_back((*grid.indexToWorld)[column][row]);
       rows.push_back(entries);
     }
@@ -74,8 +73,8 @@ json toJson(const GridSummary& grid) {
   return out;
 }
 
-json toJson(const fs::path& path, const FileSummary& file) {
-  json grids = json::array();
+nlohmann::json toJson(const fs::path& path, const FileSummary& file) {
+  nlohmann::json grids = nlohmann::json::array();
   for (const GridSummary& grid : file.grids) grids.push_back(toJson(grid));
   return {{"file", path.string()},        {"file_bytes", file.fileBytes},
           {"file_version", file.version}, {"library_version", file.libraryVersion},
@@ -155,7 +154,7 @@ void print(const GridSummary& grid) {
 int info(const InfoOptions& options) {
   const FileSummary file = summariseFile(options.input, options.bins);
   if (options.json) {
-    std::cout << toJson(options.input, file).dump(2, ' ', false, json::error_handler_t::replace) << '\n';
+    std::cout << toJson(options.input, file).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
     return 0;
   }
   std::cout << options.input.string() << ": " << file.fileBytes << " bytes, file version " << file.version

@@ -116,7 +116,10 @@ std::string methodNames() {
 
 std::string printedList(const std::vector<int>& values) {
   std::string text;
-  for (const int value : values) text += (text.empty() ? "" : " ") + std::to_string(value);
+  for (const int value : values) {
+    if (!text.empty()) text += ' ';
+    text += std::to_string(value);
+  }
   return text;
 }
 

@@ -12,6 +12,7 @@
 #include "grid/slab_builder.h"
 #include "grid/sparse_rule.h"
 #include "umbrick/core/error.h"
+#include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
 namespace {

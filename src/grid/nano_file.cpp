@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "grid/vdb_check.h"
+#include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
 namespace {

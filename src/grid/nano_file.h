@@ -1,11 +1,11 @@
 // NanoVDB files (.nvdb) as OpenVDB grids. NanoVDB itself is seen by the .cpp file alone.
 #pragma once
-#include <openvdb/openvdb.h>
-
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
 

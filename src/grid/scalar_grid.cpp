@@ -1,3 +1,5 @@
+#include "umbrick/grid/float_grid.h"
+#include "umbrick/grid/grid_listing.h"
 #include "umbrick/grid/scalar_grid.h"
 
 #include <openvdb/tree/LeafManager.h>

@@ -10,6 +10,7 @@
 #include "grid/sparse_rule.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
 namespace {

@@ -5,6 +5,7 @@
 #include "support/test_grids.h"
 #include "umbrick/brick/brick_grid.h"
 #include "umbrick/core/error.h"
+#include "umbrick/grid/float_grid.h"
 
 using namespace umbrick;
 

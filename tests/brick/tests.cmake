@@ -1,1 +1,1 @@
-umbrick_tests(brick brick_voxels_test.cpp brick_ranges_test.cpp)
+umbrick_tests(brick OPENVDB brick_voxels_test.cpp brick_ranges_test.cpp)

@@ -8,6 +8,8 @@
 #include "support/temporary_folder.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/float_grid.h"
+#include "umbrick/grid/grid_listing.h"
 #include "umbrick/grid/scalar_grid.h"
 #include "umbrick/grid/summary.h"
 

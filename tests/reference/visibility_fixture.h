@@ -1,6 +1,7 @@
 // How much of the light arrives: media, views and options for the tests of it.
 #pragma once
 #include "reference/reference_fixture.h"
+#include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "shade/hard_case.h"
+#include "umbrick/grid/float_grid.h"
 
 using namespace umbrick;
 

@@ -8,6 +8,7 @@
 #include "shade/hard_case.h"
 #include "support/complaint.h"
 #include "umbrick/core/error.h"
+#include "umbrick/grid/float_grid.h"
 
 using namespace umbrick;
 using Catch::Contains;

@@ -8,6 +8,7 @@
 #include "support/closed_forms.h"
 #include "support/complaint.h"
 #include "umbrick/core/error.h"
+#include "umbrick/grid/float_grid.h"
 #include "umbrick/scene/lights.h"
 
 using namespace umbrick;

@@ -8,6 +8,7 @@
 #include "support/test_grids.h"
 #include "tools/program.h"
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/float_grid.h"
 #include "umbrick/image/exr.h"
 
 using namespace umbrick;

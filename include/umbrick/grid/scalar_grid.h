@@ -4,16 +4,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/mat4x4.hpp>
+#include <memory>
 #include <string>
-#include <vector>
 
 #include "umbrick/core/box.h"
-#include "umbrick/grid/float_grid.h"
+#include "umbrick/grid/float_grid_fwd.h"
 
 namespace umbrick {
 
 struct ScalarGrid {
-  openvdb::FloatGrid::ConstPtr grid;
+  std::shared_ptr<const openvdb::FloatGrid> grid;  // include float_grid.h to look into it
   std::string name;
   double conversionError = 0;  // largest |stored - float| when the file held double or integers beyond 24 bits
 
@@ -32,20 +32,6 @@ struct ScalarGrid {
 /// @throw InvalidArgument  no such grid (lists those there are), not a scalar grid (names its type), or a transform
 ///                         that is not affine (frustum)
 ScalarGrid readScalarGrid(const std::filesystem::path& path, const std::string& selector = {});
-
-/// What a .vdb file holds, told without reading voxels.
-struct GridListing {
-  struct Row {
-    std::string
-        label;         // what readScalarGrid takes: the name, with "[k]" behind it when several share it or it is empty
-    std::string type;  // "float", "vec3s", ...
-    bool scalar = false;
-  };
-  std::vector<Row> grids;
-  openvdb::MetaMap metadata;  // of the file
-};
-/// @throw IoError
-GridListing listGrids(const std::filesystem::path& path);
 
 /// As readScalarGrid, but takes any transform: to copy a grid, not to render it.
 ScalarGrid readScalarGridAnyTransform(const std::filesystem::path& path, const std::string& selector);
