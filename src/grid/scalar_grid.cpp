@@ -1,6 +1,6 @@
+#include "umbrick/grid/scalar_grid.h"
 #include "umbrick/grid/float_grid.h"
 #include "umbrick/grid/grid_listing.h"
-#include "umbrick/grid/scalar_grid.h"
 
 #include <openvdb/tree/LeafManager.h>
 #include <tbb/parallel_reduce.h>
