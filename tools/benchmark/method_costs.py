@@ -3,7 +3,7 @@
     method_costs.py scene.json --umbrick build/release/tools/umbrick --work /tmp/benchmark --through 314.5 [--size 256x256 ...]
 
 Costs are CPU time (user and system) of a frame, the difference of a run of many frames and a run of one, over that of `emission`
-in 256 slices: other load on the machine hardly touches them. `--through` is how many voxels deep the volume is along the view
+in 256 slices, which takes turns with them: other load on the machine hardly touches them. `--through` is how many voxels deep the volume is along the view
 axis: a row of the table in N slices has slices N times closer. Errors are the RMSE of linear premultiplied RGB against
 `umbrick reference` (made once, kept in the folder). Prints a table; writes costs.dat and, with Debian's gnuplot, costs.svg there.
 Options that it does not know go to every picture.
@@ -19,7 +19,7 @@ import sys
 DOS = [([n, "--method", "dos"], 0) for n in (64, 128, 256, 512, 1024)]
 DOS_2 = [([n, "--method", "dos", "--algorithm", "2"], 1) for n in (64, 128, 256, 512, 1024)]
 ORDINATES = [([n, "--method", "ordinates", "--directions", k, "--segments", s], 2)
-             for n, k, s in ((16, 4, 1), (16, 4, 4), (32, 8, 4), (64, 8, 4), (64, 8, 8), (128, 16, 4), (256, 16, 2))]
+             for n, k, s in ((12, 4, 1), (16, 4, 1), (16, 4, 4), (24, 6, 2), (32, 8, 4), (64, 8, 4), (64, 8, 8), (128, 16, 4), (256, 16, 2))]
 TITLES = ["dos, Algorithm 3", "dos, Algorithm 2", "ordinates"]
 PLOT = """set terminal svg size 860,470 enhanced font 'sans,13' background '#ffffff'
 set output 'costs.svg'
@@ -65,12 +65,17 @@ def main():
     if not truth.exists():
         subprocess.run([arguments.umbrick, "reference", arguments.scene, *others, *cone, "--directions", arguments.directions,
                         "--tolerance", "2e-3", "-o", truth], check=True, stdout=subprocess.DEVNULL)
-    base = cost(256, ["--model", "emission"])
-    print(f"emission in 256 slices: {1000 * base:.0f} ms of CPU time")
+    def baseline():
+        return cost(256, ["--model", "emission"])
+
+    before = baseline()
+    print(f"emission in 256 slices: {1000 * before:.0f} ms of CPU time")
     print("| method | slices | options | cost | error |\n| --- | --- | --- | --- | --- |")
     series = [[], [], []]
     for (slices, *options), method in DOS + DOS_2 + ORDINATES:
-        ratio = cost(slices, [*cone, *options]) / base
+        own, after = cost(slices, [*cone, *options]), baseline()
+        ratio, before = 2 * own / (before + after), after
+        seconds(slices, [*cone, *options], 1)
         compared = subprocess.run([arguments.umbrick, "compare", picture, truth, "--layer", "RGBA", "--json"],
                                   stdout=subprocess.PIPE, check=True)
         error = json.loads(compared.stdout)["layers"][0]["rmse_rgb"]
