@@ -57,6 +57,7 @@ struct ConvertOptions {
   fs::path mask;
   std::string maskType = "u8";
   std::optional<std::array<int, 6>> crop;  // first and last voxel
+  ProgressBar* bar = nullptr;
 };
 
 bool isVdb(const fs::path& path) {
@@ -146,6 +147,12 @@ void findBackground(ConvertOptions& options) {
   printBackground(mode);
 }
 
+// The source is about to be read from its beginning to its end.
+void beginPass(const ConvertOptions& options, const char* what, const VolumeInfo& info) {
+  const double voxels = double(info.dims.x) * double(info.dims.y) * double(info.dims.z);
+  options.bar->begin(what + (' ' + options.input.filename().string()), voxels * voxelBytes(info.type));
+}
+
 struct Converted {
   ConvertOptions options;  // of this input, its background found
   BuiltGrid built;
@@ -159,6 +166,7 @@ Converted buildVolume(ConvertOptions options) {
   if (options.background == "auto") findBackground(options);
   Converted converted;
   const auto source = openFiltered(options, true, &converted.leftOut);
+  beginPass(options, "converting", source->info());
   converted.built = buildGrid(*source, options.build);
   if (!options.unit.empty()) converted.built.grid->insertMeta("value_unit", openvdb::StringMetadata(options.unit));
   converted.type = source->info().type;
@@ -190,8 +198,9 @@ Outcome convertVolumes(const ConvertOptions& options) {
     outcome.bytesIn += one.bytesIn;
     if (!options.verify) continue;
     const ScalarGrid back = readScalarGrid(options.output.path, build.name);
-    if (!printVerified(verifyGrid(*openFiltered(one.options), *back.grid, build), one.built.report))
-      outcome.good = false;
+    const auto source = openFiltered(one.options);
+    beginPass(one.options, "verifying", source->info());
+    if (!printVerified(verifyGrid(*source, *back.grid, build), one.built.report)) outcome.good = false;
   }
   return outcome;
 }
@@ -266,6 +275,7 @@ int convert(ConvertOptions options) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
   const StopRequest stop;
   ProgressBar bar("converting");
+  options.bar = &bar;
   options.build.progress = [&](double share) {
     if (stop.requested()) throw Error(options.output.path.string() + ": interrupted before it was written");
     bar.show(share);
