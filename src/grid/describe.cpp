@@ -26,6 +26,13 @@ void addTo(openvdb::FloatGrid& grid, const char* key, double value) {
   if (value > 0) grid.insertMeta(key, openvdb::DoubleMetadata(value));
 }
 
+void countIn(openvdb::FloatGrid& grid, const char* key, std::uint64_t voxels) {
+  auto sum = static_cast<std::int64_t>(voxels);
+  if (const auto before = grid.getMetadata<openvdb::Int64Metadata>(key)) sum += before->value();
+  grid.removeMeta(key);
+  if (sum > 0) grid.insertMeta(key, openvdb::Int64Metadata(sum));
+}
+
 }  // namespace
 
 void describe(openvdb::FloatGrid& grid, const SparseTally& tally, const BuildOptions& options, BuildReport& report) {
@@ -53,7 +60,7 @@ void describe(openvdb::FloatGrid& grid, const SparseTally& tally, const BuildOpt
   addTo(grid, "error_max_rounding", report.rounding.max);
   addTo(grid, "error_rms_rounding", report.rounding.rms);
   addTo(grid, "error_max_to_float", report.conversionError);
-  addTo(grid, "clipped_voxels", static_cast<double>(report.clippedVoxels));
+  countIn(grid, "clipped_voxels", report.clippedVoxels);
   addTo(grid, "clipped_max_change", report.maxClipChange);
   grid.removeMeta("storage");
   grid.insertMeta("storage", openvdb::StringMetadata(report.storage));
