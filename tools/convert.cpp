@@ -6,18 +6,17 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "command.h"
+#include "convert_grids.h"
 #include "convert_report.h"
 #include "formats.h"
 #include "grid_names.h"
@@ -26,7 +25,9 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/grid/build_grid.h"
-#include "umbrick/grid/grid_listing.h"
+#include "umbrick/grid/grid_filters.h"
+#include "umbrick/grid/read_back.h"
+#include "umbrick/grid/scalar_grid.h"
 #include "umbrick/grid/source_filters.h"
 #include "umbrick/grid/verify.h"
 #include "umbrick/ingest/open_volume.h"
@@ -59,15 +60,6 @@ struct ConvertOptions {
   std::optional<std::array<int, 6>> crop;  // first and last voxel
   ProgressBar* bar = nullptr;
 };
-
-bool isVdb(const fs::path& path) {
-  if (path.extension() == ".vdb" || path.extension() == ".nvdb") return true;
-  if (formatOfName(path) || !fs::is_regular_file(path)) return false;
-  char magic[8]{};
-  std::ifstream(path, std::ios::binary).read(magic, sizeof magic);
-  const std::string_view first(magic, sizeof magic);
-  return first.starts_with(" BDV") || first == "NanoVDB0";
-}
 
 std::unique_ptr<VoxelSource> openInput(const ConvertOptions& options) {
   OpenOptions open;
@@ -102,12 +94,6 @@ IndexBox cropBox(const ConvertOptions& options) {
   return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
 }
 
-// How a conversion went.
-struct Outcome {
-  std::int64_t bytesIn = 0, bytesOut = 0;
-  bool good = true;
-};
-
 // Sources are streams: what wants to see the voxels twice opens them again.
 void expectFile(const ConvertOptions& options, const std::string& option) {
   if (fs::exists(options.input) && !fs::is_regular_file(options.input) && !fs::is_directory(options.input))
@@ -133,8 +119,12 @@ std::unique_ptr<VoxelSource> openMask(const ConvertOptions& options) {
 std::unique_ptr<VoxelSource> openFiltered(const ConvertOptions& options, bool masked = true,
                                           std::uint64_t* leftOut = nullptr) {
   auto source = openInput(options);
-  if (masked && !options.mask.empty())
-    source = maskSource(std::move(source), openMask(options), options.build.background.value_or(0), leftOut);
+  if (masked && !options.mask.empty()) {
+    auto mask = holdsGrids(options.mask)
+                    ? gridSource(options.mask.string(), readScalarGrid(options.mask).grid, source->info().dims)
+                    : openMask(options);
+    source = maskSource(std::move(source), std::move(mask), options.build.background.value_or(0), leftOut);
+  }
   if (options.crop) source = cropSource(std::move(source), cropBox(options));
   return source;
 }
@@ -189,61 +179,50 @@ Outcome convertVolumes(const ConvertOptions& options) {
     all.push_back(buildVolume(one));
     grids.push_back(all.back().built.grid);
   }
+  std::vector<VerifyReport> seen;
+  const NanoCheck check = [&](const fs::path& written, const std::vector<QuantiseError>& quantised) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const ConvertOptions& one = all[i].options;
+      BuildReport& report = all[i].built.report;
+      if (!quantised.empty()) addQuantising(report, quantised[i], /*activeOnly=*/false);
+      if (!options.verify) continue;
+      const auto back = readBack(written, *grids[i], i);
+      const auto source = openFiltered(one);
+      beginPass(one, "verifying", source->info());
+      seen.push_back(verifyGrid(*source, *back, one.build, report.quantising.max));
+      checkVerified(options.output.path, one.build.name, seen.back(), report);
+    }
+  };
   Outcome outcome;
-  outcome.bytesOut = writeOutput(options.output, grids, {}, all.front().type);
-  for (const Converted& one : all) {
-    const BuildOptions& build = one.options.build;
-    printReport(build.name, one.built.report, /*dense=*/true);
-    if (!options.mask.empty()) printMasked(one.leftOut);
-    outcome.bytesIn += one.bytesIn;
-    if (!options.verify) continue;
-    const ScalarGrid back = readScalarGrid(options.output.path, build.name);
-    const auto source = openFiltered(one.options);
-    beginPass(one.options, "verifying", source->info());
-    if (!printVerified(verifyGrid(*source, *back.grid, build), one.built.report)) outcome.good = false;
+  outcome.bytesOut = writeOutput(options.output, grids, {}, all.front().type, check);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    printReport(all[i].options.build.name, all[i].built.report, /*dense=*/true);
+    if (!options.mask.empty()) printMasked(all[i].leftOut);
+    if (options.verify) printVerified(seen[i]);
+    outcome.bytesIn += all[i].bytesIn;
   }
   return outcome;
 }
 
-Outcome convertVdb(const ConvertOptions& options) {
-  const auto refuse = [&](bool given, const char* option) {
-    if (given) throw UsageError(options.input.string() + ": " + option + " is for volumes, not for .vdb");
+// What of the options is for a file of grids.
+GridInput gridInput(const ConvertOptions& options) {
+  const auto refuse = [&](bool given, const char* option, const char* why) {
+    if (given) throw UsageError(options.input.string() + ": " + option + " is for volumes: " + why);
   };
-  refuse(options.verify, "--verify");
-  refuse(options.background == "auto", "--background auto");
-  refuse(!options.mask.empty(), "--mask");
-  refuse(options.crop.has_value(), "--crop");
-  refuse(!options.names.empty(), "--name");
-  refuse(!options.units.empty(), "--unit");
-  const GridListing listing = listGrids(options.input);
-  std::vector<std::string> selected;
-  for (const GridListing::Row& row : listing.grids) {
-    if (!options.allGrids) break;
-    if (row.scalar)
-      selected.push_back(row.label);
-    else
-      std::cerr << options.input.string() << ": grid \"" << row.label
-                << "\" is left out: expected a scalar grid, found " << row.type << '\n';
-  }
-  if (!options.allGrids) selected.push_back(options.gridName);
-  if (selected.empty()) throw InvalidArgument(options.input.string() + ": no scalar grid to convert");
-
-  std::vector<openvdb::FloatGrid::ConstPtr> grids;
-  std::vector<std::pair<std::string, BuildReport>> reports;
-  for (const std::string& selector : selected) {
-    const ScalarGrid source = readScalarGridAnyTransform(options.input, selector);
-    const bool levelSet = source.grid->getGridClass() == openvdb::GRID_LEVEL_SET;
-    if (levelSet &&
-        (options.build.background || options.build.clipBelow || options.build.clipAbove || options.build.tolerance > 0))
-      std::cerr << options.input.string() << ": grid \"" << selector
-                << "\" is a level set: --background, --tolerance, --threshold and --range do not apply to it\n";
-    const BuiltGrid built = sparsifyGrid(source, options.build);
-    grids.push_back(built.grid);
-    reports.emplace_back(selector, built.report);
-  }
-  const std::int64_t bytesOut = writeOutput(options.output, grids, listing.metadata, std::nullopt);
-  for (const auto& [label, report] : reports) printReport(label, report, /*dense=*/false);
-  return {static_cast<std::int64_t>(fs::file_size(options.input)), bytesOut};
+  refuse(options.background == "auto", "--background auto", "a grid states its background; give a number to change it");
+  refuse(!options.names.empty(), "--name", "grids have names");
+  refuse(!options.units.empty(), "--unit", "grids keep their metadata");
+  GridInput input{options.input, {}, options.build, {}, {}, options.verify};
+  if (!options.allGrids) input.grid = options.gridName;
+  if (options.crop) input.crop = cropBox(options);
+  if (options.mask.empty()) return input;
+  input.mask = [&options] {
+    if (holdsGrids(options.mask)) return readScalarGrid(options.mask);
+    BuildOptions asItIs;
+    asItIs.name = options.mask.string();
+    return ScalarGrid{buildGrid(*openMask(options), asItIs).grid, asItIs.name};
+  };
+  return input;
 }
 
 // What the options that name values say, as the library takes it.
@@ -264,12 +243,21 @@ void setLimits(ConvertOptions& options) {
   options.build.clipAbove = high;
 }
 
+// Half of the error is for what is left out and merged, half for what is quantised: left-out voxels in leaves are both.
+void setQuantising(ConvertOptions& options) {
+  const std::string& quantise = options.output.quantise;
+  std::optional<float>& maxError = options.build.maxError;
+  if (quantise == "n" && !maxError) throw UsageError("--quantise n: expected a --max-error to keep, found none");
+  if (quantise.empty() || !maxError) return;
+  if (quantise != "n")
+    throw UsageError("--quantise " + quantise + ": expected no --max-error, which only --quantise n can keep");
+  options.build.tolerance = options.output.quantiseError = *maxError / 2;
+  maxError.reset();
+}
+
 int convert(ConvertOptions options) {
   const Stopwatch stopwatch;
   checkOutput(options.output, options.inputs);
-  if (options.verify && options.output.path.extension() != ".vdb")
-    throw UsageError(options.output.path.string() + ": --verify reads a .vdb back, not a " +
-                     options.output.path.extension().string());
   std::optional<tbb::global_control> limit;
   if (options.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
@@ -281,6 +269,7 @@ int convert(ConvertOptions options) {
     bar.show(share);
   };
   setLimits(options);
+  setQuantising(options);
   const bool raw = !options.dims.empty() || !options.type.empty();
   bool vdb = false;
   for (const fs::path& input : options.inputs) {
@@ -289,15 +278,15 @@ int convert(ConvertOptions options) {
         extension == ".vdb" || extension == ".nvdb" ? std::optional<std::string>(extension) : formatOfName(input);
     if (raw && named)
       throw UsageError(input.string() + ": --dims and --type are for headerless raw, not for " + *named);
-    vdb = vdb || (!raw && isVdb(input));
+    vdb = vdb || (!raw && holdsGrids(input));
     if (vdb && options.inputs.size() > 1)
-      throw UsageError(input.string() + ": expected volumes where there are several inputs, found a .vdb");
+      throw UsageError(input.string() + ": expected volumes where there are several inputs, found a file of grids");
   }
   options.input = options.inputs.front();
-  const Outcome outcome = vdb ? convertVdb(options) : convertVolumes(options);
+  const Outcome outcome = vdb ? convertGrids(gridInput(options), options.output) : convertVolumes(options);
   std::cout << options.output.path.string() << ": " << outcome.bytesIn << " bytes in, " << outcome.bytesOut
             << " bytes out, " << std::lround(stopwatch.elapsedMs()) << " ms\n";
-  return outcome.good ? 0 : 1;
+  return 0;
 }
 
 }  // namespace
@@ -305,7 +294,8 @@ int convert(ConvertOptions options) {
 Command addConvert(CLI::App& app) {
   const auto options = std::make_shared<ConvertOptions>();
   CLI::App* command = app.add_subcommand(
-      "convert", "Turn volumes of many formats or a .vdb into a sparse .vdb or another format; prints what was lost.");
+      "convert",
+      "Turn volumes of many formats, a .vdb or a .nvdb into a sparse .vdb or another format; prints what was lost.");
   const CLI::Validator finite = finiteNumber();
   command
       ->add_option("input", options->inputs,
@@ -322,9 +312,15 @@ Command addConvert(CLI::App& app) {
   command->add_option("--codec", options->output.codec, "of a .vdb: blosc, zip or none [blosc]")
       ->check(CLI::IsMember({"blosc", "zip", "none"}));
   command
-      ->add_option("--name", options->names,
-                   "name of the grid, once for each input (not for .vdb) [density; of several, the stems of the file "
-                   "names]")
+      ->add_option("--quantise", options->output.quantise,
+                   "of a .nvdb: bits of a value, between the smallest and the largest of its leaf: 4, 8, 16, or n, in "
+                   "each leaf as few as keep --max-error; the loss is measured and printed [32-bit floats]")
+      ->check(CLI::IsMember({"4", "8", "16", "n"}));
+  command
+      ->add_option(
+          "--name", options->names,
+          "name of the grid, once for each volume; not for .vdb and .nvdb, whose grids have names [density; of "
+          "several, the stems of the file names]")
       ->allow_extra_args(false);
   command
       ->add_option("--unit", options->units,
@@ -332,7 +328,7 @@ Command addConvert(CLI::App& app) {
                    "[none]")
       ->allow_extra_args(false);
   command->add_option("--grid", options->gridName,
-                      "of a .vdb: only this grid, \"name\" or \"name[1]\" [all scalar ones]");
+                      "of a .vdb or .nvdb: only this grid, \"name\" or \"name[1]\" [all scalar ones]");
   command->add_option(
       "--series", options->series,
       "of a DICOM folder: the UID of a series, or its number in the list that is printed [the only one]");
@@ -341,7 +337,7 @@ Command addConvert(CLI::App& app) {
   command
       ->add_option("--background", options->background,
                    "value of what is left out, grid units; auto: the value that most voxels on the faces of the volume "
-                   "have, for which the input is read once before [0, or that of the .vdb]")
+                   "have, for which the input is read once before [0, or that of the .vdb or .nvdb]")
       ->check(autoOrFinite);
   CLI::Option* tolerance =
       command
@@ -363,15 +359,17 @@ Command addConvert(CLI::App& app) {
                    "lowest and highest value that stay, both included; the rest becomes background, grid units [all]")
       ->check(finite)
       ->excludes(threshold, clipBelow);
-  command->add_option("--mask", options->mask,
-                      "a volume of the same size and place: voxels where it is 0 become background; headerless raw has "
-                      "the same --dims");
+  command->add_option(
+      "--mask", options->mask,
+      "a volume of the same size and place, or a .vdb: voxels where it is 0 become background; headerless "
+      "raw has the same --dims");
   command->add_option("--mask-type", options->maskType, "of a voxel of a headerless mask, as --type")
       ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "i64", "u64", "f16", "f32", "f64"}))
       ->capture_default_str();
   command->add_option(
       "--crop", options->crop,
-      "only the voxels from x0 y0 z0 to x1 y1 z1, both included; they stay where they are in the world");
+      "only the voxels from x0 y0 z0 to x1 y1 z1, both included; they stay where they are in the world; of a .vdb or "
+      ".nvdb by its indices");
   CLI::Option* half = command->add_flag("--half", options->build.half, "save 16-bit floats; their error counts");
   CLI::Option* step = command
                           ->add_option("--step", options->build.step,
@@ -381,11 +379,12 @@ Command addConvert(CLI::App& app) {
   command
       ->add_option("--max-error", options->build.maxError,
                    "no voxel that is kept or left out by tolerance is off by more, grid units: picks tolerance, half "
-                   "floats and steps")
+                   "floats and steps, or with --quantise n tolerance and bits")
       ->check(nonNegativeNumber())
       ->excludes(tolerance, half, step);
   command->add_flag("--verify", options->verify,
-                    "read the written file back and compare it with the input; exit 1 if it is worse than stated");
+                    "read the file back before it takes its name and compare it with the input; if it is worse than "
+                    "stated, exit 1 and write nothing");
 
   command
       ->add_option("--threads", options->threads, "that build leaves; one more reads [0: as many as there are cores]")

@@ -27,7 +27,7 @@ std::uint32_t compressionOf(VdbCodec codec) {
 }  // namespace
 
 void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
-                const openvdb::MetaMap& metadata, VdbCodec codec) {
+                const openvdb::MetaMap& metadata, VdbCodec codec, const WrittenCheck& check) {
   openvdb::initialize();
   PendingFile pending(path);
   try {
@@ -43,6 +43,7 @@ void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::Fl
   } catch (const openvdb::Exception& error) {
     throw IoError(path.string() + ": cannot write: " + error.what());
   }
+  if (check) check(pending.path());
   pending.commit();
 }
 
