@@ -11,14 +11,6 @@ double rootMean(double squares, std::uint64_t voxels) {
   return voxels > 0 ? std::sqrt(squares / static_cast<double>(voxels)) : 0.0;
 }
 
-std::string storageText(const BuildOptions& options) {
-  std::ostringstream text;
-  text.precision(9);
-  text << (options.half ? "half" : "float");
-  if (options.step > 0) text << ", steps of " << options.step;
-  return text.str();
-}
-
 // Errors of one conversion after the other add up at most; both norms obey the triangle inequality.
 void addTo(openvdb::FloatGrid& grid, const char* key, double value) {
   if (const auto before = grid.getMetadata<openvdb::DoubleMetadata>(key)) value += before->value();
@@ -34,6 +26,14 @@ void countIn(openvdb::FloatGrid& grid, const char* key, std::uint64_t voxels) {
 }
 
 }  // namespace
+
+std::string storageText(const BuildOptions& options) {
+  std::ostringstream text;
+  text.precision(9);
+  text << (options.half ? "half" : "float");
+  if (options.step > 0) text << ", steps of " << options.step;
+  return text.str();
+}
 
 void describe(openvdb::FloatGrid& grid, const SparseTally& tally, const BuildOptions& options, BuildReport& report) {
   const openvdb::FloatTree& tree = grid.tree();
