@@ -1,11 +1,15 @@
 #include "convert_grids.h"
 
+#include <algorithm>
 #include <fstream>
+#include <future>
 #include <iostream>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "command.h"
+#include "convert_isosurface.h"
 #include "convert_report.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/grid_filters.h"
@@ -55,6 +59,68 @@ void warnOfLevelSet(const GridInput& input, const std::string& label, const open
               << "\" is a level set: --background, --tolerance, --threshold and --range do not apply to it\n";
 }
 
+// A file and its grids.
+struct GridFile {
+  GridInput input;
+  GridListing listing;
+  std::vector<std::string> labels;
+  std::vector<ScalarGrid> grids;       // those that are read already
+  std::vector<std::uint64_t> leftOut;  // by the mask
+};
+
+GridFile openGrids(GridInput input) {
+  GridFile file;
+  file.listing = listGrids(input.path);
+  file.labels = selectedGrids(input, file.listing);
+  file.leftOut.resize(file.labels.size());
+  file.input = std::move(input);
+  return file;
+}
+
+// What became of the grids of a file.
+struct GridResult {
+  std::vector<BuildReport> reports;
+  std::vector<IsosurfaceReport> surfaces;  // where those are asked for
+  std::vector<VerifyReport> seen;          // where that is
+  std::int64_t bytes = 0;
+};
+
+GridResult convertFile(GridFile& file, const GridOutput& output) {
+  const GridInput& input = file.input;
+  const std::vector<std::string>& labels = file.labels;
+  GridResult result;
+  std::vector<openvdb::FloatGrid::ConstPtr> grids;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const ScalarGrid source =
+        file.grids.empty() ? readFiltered(input, labels[i], &file.leftOut[i]) : std::exchange(file.grids[i], {});
+    warnOfLevelSet(input, labels[i], *source.grid);
+    BuiltGrid built = sparsifyGrid(source, input.build);
+    if (input.isosurface) result.surfaces.push_back(replaceByIsosurface(input.path, *input.isosurface, built));
+    grids.push_back(built.grid);
+    result.reports.push_back(built.report);
+  }
+  const NanoCheck check = [&](const fs::path& written, const std::vector<QuantiseError>& quantised) {
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+      BuildReport& report = result.reports[i];
+      if (!quantised.empty()) addQuantising(report, quantised[i], /*activeOnly=*/true);
+      if (!input.verify) continue;
+      const auto back = readBack(written, *grids[i], i);
+      result.seen.push_back(verifyGrid(readFiltered(input, labels[i]), *back, input.build, report.quantising.max));
+      checkVerified(output.path, labels[i], result.seen.back(), report);
+    }
+  };
+  result.bytes = writeOutput(output, grids, file.listing.metadata, std::nullopt, check);
+  return result;
+}
+
+// Opened, and its grids read.
+GridFile readGrids(const GridInput& input) {
+  GridFile file = openGrids(input);
+  for (std::size_t i = 0; i < file.labels.size(); ++i)
+    file.grids.push_back(readFiltered(input, file.labels[i], &file.leftOut[i]));
+  return file;
+}
+
 }  // namespace
 
 bool holdsGrids(const fs::path& path) {
@@ -67,35 +133,42 @@ bool holdsGrids(const fs::path& path) {
 }
 
 Outcome convertGrids(const GridInput& input, const GridOutput& output) {
-  const GridListing listing = listGrids(input.path);
-  const std::vector<std::string> labels = selectedGrids(input, listing);
-  std::vector<openvdb::FloatGrid::ConstPtr> grids;
-  std::vector<BuildReport> reports;
-  std::vector<std::uint64_t> leftOut(labels.size());
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    const ScalarGrid source = readFiltered(input, labels[i], &leftOut[i]);
-    warnOfLevelSet(input, labels[i], *source.grid);
-    const BuiltGrid built = sparsifyGrid(source, input.build);
-    grids.push_back(built.grid);
-    reports.push_back(built.report);
+  GridFile file = openGrids(input);
+  const GridResult result = convertFile(file, output);
+  for (std::size_t i = 0; i < file.labels.size(); ++i) {
+    if (input.isosurface)
+      printIsosurface(file.labels[i], input.isosurface->value, result.surfaces[i]);
+    else
+      printReport(file.labels[i], result.reports[i], /*dense=*/false);
+    if (input.mask) printMasked(file.leftOut[i]);
+    if (input.verify) printVerified(result.seen[i]);
   }
-  std::vector<VerifyReport> seen;
-  const NanoCheck check = [&](const fs::path& written, const std::vector<QuantiseError>& quantised) {
-    for (std::size_t i = 0; i < grids.size(); ++i) {
-      if (!quantised.empty()) addQuantising(reports[i], quantised[i], /*activeOnly=*/true);
-      if (!input.verify) continue;
-      const auto back = readBack(written, *grids[i], i);
-      seen.push_back(verifyGrid(readFiltered(input, labels[i]), *back, input.build, reports[i].quantising.max));
-      checkVerified(output.path, labels[i], seen.back(), reports[i]);
-    }
+  return {static_cast<std::int64_t>(fs::file_size(input.path)), result.bytes};
+}
+
+Outcome convertGridFrames(const std::vector<FrameFiles>& frames, const GridOutput& output,
+                          const std::function<GridInput(std::size_t)>& input, ProgressBar& bar) {
+  const auto read = [&](std::size_t i) {
+    return std::async(std::launch::async, [&, i] { return readGrids(input(i)); });
   };
-  Outcome outcome{static_cast<std::int64_t>(fs::file_size(input.path)), 0};
-  outcome.bytesOut = writeOutput(output, grids, listing.metadata, std::nullopt, check);
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    printReport(labels[i], reports[i], /*dense=*/false);
-    if (input.mask) printMasked(leftOut[i]);
-    if (input.verify) printVerified(seen[i]);
-  }
+  Outcome outcome;
+  std::future<GridFile> next = read(0);
+  forFrames(frames, [&](std::size_t i) {
+    GridFile file = next.get();
+    if (i + 1 < frames.size()) next = read(i + 1);
+    bar.begin("converting " + frames[i].input.filename().string());
+    file.input.build.progress(0);
+    GridOutput one = output;
+    one.path = frames[i].output;
+    const GridResult result = convertFile(file, one);
+    bar.clear();
+    std::optional<double> levelSetError;
+    for (const IsosurfaceReport& surface : result.surfaces)
+      levelSetError = std::max(levelSetError.value_or(0), surface.maxError);
+    printFrame(frames[i], result.reports, result.bytes, levelSetError, file.input.verify ? ", verified" : "");
+    outcome.bytesIn += static_cast<std::int64_t>(fs::file_size(frames[i].input));
+    outcome.bytesOut += result.bytes;
+  });
   return outcome;
 }
 

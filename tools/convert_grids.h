@@ -6,8 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "convert_sequence.h"
 #include "grid_output.h"
 #include "umbrick/core/box.h"
+#include "umbrick/grid/isosurface.h"
 #include "umbrick/grid/scalar_grid.h"
 
 namespace umbrick::tools {
@@ -19,6 +21,7 @@ struct GridInput {
   std::function<ScalarGrid()> mask;  // opens it; empty where there is none
   std::optional<IndexBox> crop;
   bool verify = false;
+  std::optional<IsosurfaceOptions> isosurface;
 };
 
 /// How a conversion went.
@@ -31,5 +34,10 @@ bool holdsGrids(const std::filesystem::path& path);
 
 /// Writes them and prints what was lost. @throw UsageError  @throw Error  as the readers and writers do
 Outcome convertGrids(const GridInput& input, const GridOutput& output);
+
+/// One file for each frame, told in one line. The next one is read while the grids of one are made sparse and written.
+/// @param input   of a frame, given its place in the sequence
+Outcome convertGridFrames(const std::vector<FrameFiles>& frames, const GridOutput& output,
+                          const std::function<GridInput(std::size_t)>& input, ProgressBar& bar);
 
 }  // namespace umbrick::tools

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "umbrick/core/error.h"
+#include "umbrick/grid/float_grid.h"
 
 namespace umbrick::tools {
 
@@ -46,6 +47,28 @@ void printBackground(const BorderMode& mode) {
 }
 
 void printMasked(std::uint64_t voxels) { std::cout << "  masked          " << voxels << " voxels\n"; }
+
+void printResampled(const ResampleReport& report) {
+  char line[256];
+  const glm::dvec3& s = report.spacing;
+  const auto count = [](std::int64_t voxels) { return static_cast<long long>(voxels); };
+  std::snprintf(line, sizeof line, "%lld x %lld x %lld voxels to %lld x %lld x %lld, %.9g x %.9g x %.9g apart",
+                count(report.dimsBefore.x), count(report.dimsBefore.y), count(report.dimsBefore.z),
+                count(report.dimsAfter.x), count(report.dimsAfter.y), count(report.dimsAfter.z), s.x, s.y, s.z);
+  std::cout << "  resampled       " << line << '\n';
+  std::snprintf(line, sizeof line, "%.9g at most, RMS %.9g; integral %.9g before, %.9g after", report.max, report.rms,
+                report.integralBefore, report.integralAfter);
+  std::cout << "    changes       " << line << '\n';
+}
+
+void describeResampling(openvdb::FloatGrid& grid, const ResampleReport& report) {
+  const glm::dvec3& s = report.spacing;
+  grid.insertMeta("resample_spacing", openvdb::Vec3DMetadata({s.x, s.y, s.z}));
+  grid.insertMeta("resample_error_max", openvdb::DoubleMetadata(report.max));
+  grid.insertMeta("resample_error_rms", openvdb::DoubleMetadata(report.rms));
+  grid.insertMeta("resample_integral_before", openvdb::DoubleMetadata(report.integralBefore));
+  grid.insertMeta("resample_integral_after", openvdb::DoubleMetadata(report.integralAfter));
+}
 
 void printVerified(const VerifyReport& seen) {
   char line[256];

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/resample.h"
 #include "umbrick/grid/source_filters.h"
 #include "umbrick/grid/verify.h"
 
@@ -19,6 +20,11 @@ void printBackground(const BorderMode& mode);
 
 /// @param voxels  that a mask made background
 void printMasked(std::uint64_t voxels);
+
+void printResampled(const ResampleReport& report);
+/// Keeps the same in the metadata of the grid: resample_spacing, resample_error_max and _rms, resample_integral_before
+/// and _after.
+void describeResampling(openvdb::FloatGrid& grid, const ResampleReport& report);
 
 /// What reading the written grid back has shown.
 void printVerified(const VerifyReport& seen);

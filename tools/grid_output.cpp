@@ -25,6 +25,10 @@ NanoOptions nanoOptions(const GridOutput& output) {
 
 }  // namespace
 
+VdbCodec codecOf(const GridOutput& output) {
+  return output.codec == "zip" ? VdbCodec::zip : output.codec == "none" ? VdbCodec::none : VdbCodec::blosc;
+}
+
 void checkOutput(const GridOutput& output, const std::vector<fs::path>& inputs) {
   const fs::path& path = output.path;
   if (path.extension() != ".vdb" && path.extension() != ".nvdb" && !isDense(path))
@@ -61,10 +65,7 @@ std::int64_t writeOutput(const GridOutput& output, const std::vector<openvdb::Fl
     writeNanoVdb(path, grids, nanoOptions(output), check);
   } else {
     if (!metadata["creator"]) metadata.insertMeta("creator", openvdb::StringMetadata("umbrick " UMBRICK_VERSION));
-    const VdbCodec codec = output.codec == "zip"    ? VdbCodec::zip
-                           : output.codec == "none" ? VdbCodec::none
-                                                    : VdbCodec::blosc;
-    writeGrids(path, grids, metadata, codec, exact);
+    writeGrids(path, grids, metadata, codecOf(output), exact);
   }
   const auto bytes = static_cast<std::int64_t>(fs::file_size(path));
   return path.extension() == ".mhd" ? bytes + static_cast<std::int64_t>(fs::file_size(voxelsOf(path))) : bytes;

@@ -18,6 +18,9 @@ struct GridOutput {
   float quantiseError = 0;     // at most, of "n", grid units
 };
 
+/// What codec names; blosc where it is empty.
+VdbCodec codecOf(const GridOutput& output);
+
 /// To be asked before anything is read.
 /// @throw UsageError  another extension, a codec for another format than .vdb, quantised values for another one than
 ///                    .nvdb, several inputs for a format that holds one grid, or an output that would take the place of

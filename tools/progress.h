@@ -28,6 +28,8 @@ class ProgressBar {
   void begin(std::string label, double bytes = 0);
   /// @param share  of the pass that is done, in [0, 1]
   void show(double share);
+  /// Takes the bar away, so that something can be printed.
+  void clear();
 
  private:
   std::string label_;
