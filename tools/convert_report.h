@@ -1,9 +1,11 @@
 // What umbrick convert prints about a grid that it built.
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/resample.h"
 #include "umbrick/grid/source_filters.h"
 #include "umbrick/grid/verify.h"
 
@@ -19,8 +21,16 @@ void printBackground(const BorderMode& mode);
 /// @param voxels  that a mask made background
 void printMasked(std::uint64_t voxels);
 
-/// What reading the written grid back has shown, on stdout, and a complaint on stderr where that is worse than stated.
-/// @return whether it is not
-bool printVerified(const VerifyReport& seen, const BuildReport& stated);
+void printResampled(const ResampleReport& report);
+/// Keeps the same in the metadata of the grid: resample_spacing, resample_error_max and _rms, resample_integral_before
+/// and _after.
+void describeResampling(openvdb::FloatGrid& grid, const ResampleReport& report);
+
+/// What reading the written grid back has shown.
+void printVerified(const VerifyReport& seen);
+
+/// @throw Error  that is worse than stated
+void checkVerified(const std::filesystem::path& output, const std::string& label, const VerifyReport& seen,
+                   const BuildReport& stated);
 
 }  // namespace umbrick::tools

@@ -12,7 +12,22 @@ bool isDense(const fs::path& path) { return path.extension() == ".mhd" || path.e
 // The file beside a .mhd.
 fs::path voxelsOf(fs::path path) { return path.replace_extension(".raw"); }
 
+NanoOptions nanoOptions(const GridOutput& output) {
+  NanoOptions options;
+  options.values = output.quantise == "4"    ? NanoValues::bits4
+                   : output.quantise == "8"  ? NanoValues::bits8
+                   : output.quantise == "16" ? NanoValues::bits16
+                   : output.quantise == "n"  ? NanoValues::adaptive
+                                             : NanoValues::float32;
+  options.maxError = output.quantiseError;
+  return options;
+}
+
 }  // namespace
+
+VdbCodec codecOf(const GridOutput& output) {
+  return output.codec == "zip" ? VdbCodec::zip : output.codec == "none" ? VdbCodec::none : VdbCodec::blosc;
+}
 
 void checkOutput(const GridOutput& output, const std::vector<fs::path>& inputs) {
   const fs::path& path = output.path;
@@ -20,6 +35,8 @@ void checkOutput(const GridOutput& output, const std::vector<fs::path>& inputs) 
     throw UsageError(path.string() + ": expected an output file that ends in .vdb, .nvdb, .mhd or .nrrd");
   if (!output.codec.empty() && path.extension() != ".vdb")
     throw UsageError(path.string() + ": --codec is for .vdb, not for " + path.extension().string());
+  if (!output.quantise.empty() && path.extension() != ".nvdb")
+    throw UsageError(path.string() + ": --quantise is for .nvdb, not for " + path.extension().string());
   if (isDense(path) && inputs.size() > 1)
     throw UsageError(path.string() + ": expected one input for " + path.extension().string() + ", found " +
                      std::to_string(inputs.size()));
@@ -34,23 +51,21 @@ void checkOutput(const GridOutput& output, const std::vector<fs::path>& inputs) 
 }
 
 std::int64_t writeOutput(const GridOutput& output, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
-                         openvdb::MetaMap metadata, std::optional<VoxelType> type) {
+                         openvdb::MetaMap metadata, std::optional<VoxelType> type, const NanoCheck& check) {
   const fs::path& path = output.path;
+  const WrittenCheck exact = [&](const fs::path& written) { check(written, {}); };
   if (isDense(path)) {
     if (grids.size() != 1)
       throw UsageError(path.string() + ": expected one grid for " + path.extension().string() + ", found " +
                        std::to_string(grids.size()));
     DenseOptions dense;
     dense.type = type;
-    writeDense(path, *grids.front(), dense);
+    writeDense(path, *grids.front(), dense, exact);
   } else if (path.extension() == ".nvdb") {
-    writeNanoVdb(path, grids);
+    writeNanoVdb(path, grids, nanoOptions(output), check);
   } else {
     if (!metadata["creator"]) metadata.insertMeta("creator", openvdb::StringMetadata("umbrick " UMBRICK_VERSION));
-    const VdbCodec codec = output.codec == "zip"    ? VdbCodec::zip
-                           : output.codec == "none" ? VdbCodec::none
-                                                    : VdbCodec::blosc;
-    writeGrids(path, grids, metadata, codec);
+    writeGrids(path, grids, metadata, codecOf(output), exact);
   }
   const auto bytes = static_cast<std::int64_t>(fs::file_size(path));
   return path.extension() == ".mhd" ? bytes + static_cast<std::int64_t>(fs::file_size(voxelsOf(path))) : bytes;

@@ -1,4 +1,4 @@
-// umbrick info: what is in a .vdb file.
+// umbrick info: what is in a .vdb or .nvdb file.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -76,9 +76,12 @@ nlohmann::json toJson(const GridSummary& grid) {
 nlohmann::json toJson(const fs::path& path, const FileSummary& file) {
   nlohmann::json grids = nlohmann::json::array();
   for (const GridSummary& grid : file.grids) grids.push_back(toJson(grid));
-  return {{"file", path.string()},        {"file_bytes", file.fileBytes},
-          {"file_version", file.version}, {"library_version", file.libraryVersion},
-          {"metadata", file.metadata},    {"grids", grids}};
+  return {{"file", path.string()},
+          {"file_bytes", file.fileBytes},
+          {"file_version", numberOrText(file.version)},
+          {"library_version", file.libraryVersion},
+          {"metadata", file.metadata},
+          {"grids", grids}};
 }
 
 template <class Vector>
@@ -169,8 +172,8 @@ int info(const InfoOptions& options) {
 
 Command addInfo(CLI::App& app) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = app.add_subcommand("info", "Describe every grid of a .vdb file.");
-  command->add_option("file", options->input, "a .vdb file")->required();
+  CLI::App* command = app.add_subcommand("info", "Describe every grid of a .vdb or .nvdb (NanoVDB) file.");
+  command->add_option("file", options->input, "a .vdb or .nvdb file")->required();
   command->add_option("--bins", options->bins, "of the histogram of the active values")
       ->check(CLI::Range(1, 65536))
       ->capture_default_str();

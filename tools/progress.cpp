@@ -45,8 +45,18 @@ bool StopRequest::requested() const { return stopRequested != 0; }
 
 ProgressBar::ProgressBar(std::string label) : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) == 1) {}
 
-ProgressBar::~ProgressBar() {
+ProgressBar::~ProgressBar() { clear(); }
+
+void ProgressBar::clear() {
   if (drawn_) std::fputs("\r\033[K", stderr);
+  drawn_ = false;
+}
+
+void ProgressBar::begin(std::string label, double bytes) {
+  label_ = std::move(label);
+  bytes_ = bytes;
+  start_ = Stopwatch();
+  shownMs_ = -1e9;
 }
 
 void ProgressBar::show(double share) {
@@ -58,8 +68,11 @@ void ProgressBar::show(double share) {
   const int filled = static_cast<int>(share * width);
   const std::string bar =
       std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(width - filled), '.');
+  std::string rate;
+  if (bytes_ > 0 && elapsed > 0) rate = std::to_string(std::lround(share * bytes_ / elapsed / 1000)) + " MB/s  ";
   const std::string left = share > 0 ? minutes(elapsed / 1000 * (1 - share) / share) + " left" : "";
-  std::fprintf(stderr, "\r\033[K%s [%s] %3.0f %%  %s", label_.c_str(), bar.c_str(), 100 * share, left.c_str());
+  std::fprintf(stderr, "\r\033[K%s [%s] %3.0f %%  %s%s", label_.c_str(), bar.c_str(), 100 * share, rate.c_str(),
+               left.c_str());
   std::fflush(stderr);
 }
 

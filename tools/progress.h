@@ -23,13 +23,18 @@ class ProgressBar {
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
-  /// @param share  done, in [0, 1]
+  /// Another pass of the job begins: its share, its rate and the time left count from here.
+  /// @param bytes  that it reads in all, unpacked; 0: no rate is shown
+  void begin(std::string label, double bytes = 0);
+  /// @param share  of the pass that is done, in [0, 1]
   void show(double share);
+  /// Takes the bar away, so that something can be printed.
+  void clear();
 
  private:
   std::string label_;
   Stopwatch start_;
-  double shownMs_ = -1e9;
+  double bytes_ = 0, shownMs_ = -1e9;
   bool terminal_, drawn_ = false;
 };
 

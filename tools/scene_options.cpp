@@ -148,7 +148,7 @@ void applyClipping(const SceneOptions& options, Scene& scene) {
 std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
   const auto options = std::make_shared<SceneOptions>();
   SceneOptions& o = *options;
-  command.add_option("input", o.input, ".vdb file, or .json scene")->required();
+  command.add_option("input", o.input, ".vdb or .nvdb file, or .json scene")->required();
   command.add_option("--grid", o.grid,
                      "grid of the file: name, or name[1] for the second of that name [the only one, or density]");
 

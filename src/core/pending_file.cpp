@@ -38,27 +38,36 @@ PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
 
 PendingFile::~PendingFile() {
   std::error_code ignored;
-  if (!committed_) fs::remove(temporary_, ignored);
+  if (!kept_) fs::remove(temporary_, ignored);
 }
 
-void PendingFile::commit() {
+void PendingFile::write(std::string_view text) {
+  std::ofstream out(temporary_, std::ios::binary);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  if (!out)
+    throw IoError(target_.string() + ": cannot write " + std::to_string(text.size()) +
+                  " bytes: " + std::strerror(errno));
+}
+
+void PendingFile::flush() {
   const int file = open(temporary_.c_str(), O_RDONLY);
   const bool flushed = file >= 0 && fsync(file) == 0;
   if (file >= 0) close(file);
   if (!flushed) throw IoError(target_.string() + ": cannot write: " + std::strerror(errno));
+}
+
+void PendingFile::commit() {
+  flush();
   std::error_code error;
   fs::rename(temporary_, target_, error);
   if (error) throw IoError(target_.string() + ": cannot write: " + error.message());
-  committed_ = true;
+  kept_ = true;
 }
 
 void writeTextFile(const fs::path& path, std::string_view text) {
   PendingFile pending(path);
-  std::ofstream out(pending.path(), std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  if (!out)
-    throw IoError(path.string() + ": cannot write " + std::to_string(text.size()) + " bytes: " + std::strerror(errno));
+  pending.write(text);
   pending.commit();
 }
 

@@ -1,11 +1,9 @@
 #include "umbrick/grid/build_grid.h"
 
 #include <openvdb/tools/Prune.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <future>
-#include <iomanip>
 #include <memory>
 #include <sstream>
 
@@ -16,9 +14,6 @@
 
 namespace umbrick {
 namespace {
-
-constexpr std::int64_t kEdge = Leaf::DIM;                    // 8 voxels
-constexpr std::int64_t kSlabVoxels = std::int64_t(1) << 21;  // enough work for all cores, little enough for caches
 
 openvdb::math::Transform::Ptr makeTransform(const std::string& name, const glm::dmat4& indexToWorld) {
   using namespace openvdb::math;
@@ -60,18 +55,6 @@ openvdb::FloatGrid::Ptr emptyGrid(const VolumeInfo& info, const BuildOptions& op
   return grid;
 }
 
-// A header may promise slices of any size, and packed files cannot be held against what it promises.
-void checkSlabFits(const VolumeInfo& info, std::int64_t slices) {
-  const double wanted = 2 * double(info.dims.x) * double(info.dims.y) * double(slices) * double(sizeof(float));
-  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
-  if (wanted <= memory) return;
-  std::ostringstream text;
-  text << std::setprecision(4) << info.name << ": dims: two slabs of " << info.dims.x << " x " << info.dims.y << " x "
-       << slices << " voxels take " << wanted / 0x1p30 << " GiB, more than this machine's memory of "
-       << memory / 0x1p30;
-  throw IoError(text.str());
-}
-
 }  // namespace
 
 BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options) {
@@ -80,17 +63,16 @@ BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options) {
   const SparseRule rule(info.name, options, 0);
   BuiltGrid built{emptyGrid(info, options, rule.background()), {}};
   const std::int64_t sliceVoxels = info.dims.x * info.dims.y;
-  const std::int64_t slabSlices = std::max<std::int64_t>(kSlabVoxels / sliceVoxels / kEdge, 1) * kEdge;
-  checkSlabFits(info, std::min(slabSlices, info.dims.z));
+  const std::int64_t atOnce = slabSlices(info.dims);
+  checkSlabFits(info, std::min(atOnce, info.dims.z));
 
   SlabBuilder builder(info.dims, rule);
   SparseTally tally;
   Slab slab(source), next(source);
-  built.report.conversionError = slab.read(0, slabSlices);
+  built.report.conversionError = slab.read(0, atOnce);
   while (slab.slices() > 0) {
     // The next slab is read while the leaves of this one are built.
-    auto reading =
-        std::async(std::launch::async, [&] { return next.read(slab.firstSlice() + slab.slices(), slabSlices); });
+    auto reading = std::async(std::launch::async, [&] { return next.read(slab.firstSlice() + slab.slices(), atOnce); });
     tally.add(builder.addTo(built.grid->tree(), slab));
     built.report.conversionError = std::max(built.report.conversionError, reading.get());
     slab.swap(next);

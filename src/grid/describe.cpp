@@ -11,14 +11,6 @@ double rootMean(double squares, std::uint64_t voxels) {
   return voxels > 0 ? std::sqrt(squares / static_cast<double>(voxels)) : 0.0;
 }
 
-std::string storageText(const BuildOptions& options) {
-  std::ostringstream text;
-  text.precision(9);
-  text << (options.half ? "half" : "float");
-  if (options.step > 0) text << ", steps of " << options.step;
-  return text.str();
-}
-
 // Errors of one conversion after the other add up at most; both norms obey the triangle inequality.
 void addTo(openvdb::FloatGrid& grid, const char* key, double value) {
   if (const auto before = grid.getMetadata<openvdb::DoubleMetadata>(key)) value += before->value();
@@ -26,7 +18,22 @@ void addTo(openvdb::FloatGrid& grid, const char* key, double value) {
   if (value > 0) grid.insertMeta(key, openvdb::DoubleMetadata(value));
 }
 
+void countIn(openvdb::FloatGrid& grid, const char* key, std::uint64_t voxels) {
+  auto sum = static_cast<std::int64_t>(voxels);
+  if (const auto before = grid.getMetadata<openvdb::Int64Metadata>(key)) sum += before->value();
+  grid.removeMeta(key);
+  if (sum > 0) grid.insertMeta(key, openvdb::Int64Metadata(sum));
+}
+
 }  // namespace
+
+std::string storageText(const BuildOptions& options) {
+  std::ostringstream text;
+  text.precision(9);
+  text << (options.half ? "half" : "float");
+  if (options.step > 0) text << ", steps of " << options.step;
+  return text.str();
+}
 
 void describe(openvdb::FloatGrid& grid, const SparseTally& tally, const BuildOptions& options, BuildReport& report) {
   const openvdb::FloatTree& tree = grid.tree();
@@ -53,7 +60,7 @@ void describe(openvdb::FloatGrid& grid, const SparseTally& tally, const BuildOpt
   addTo(grid, "error_max_rounding", report.rounding.max);
   addTo(grid, "error_rms_rounding", report.rounding.rms);
   addTo(grid, "error_max_to_float", report.conversionError);
-  addTo(grid, "clipped_voxels", static_cast<double>(report.clippedVoxels));
+  countIn(grid, "clipped_voxels", report.clippedVoxels);
   addTo(grid, "clipped_max_change", report.maxClipChange);
   grid.removeMeta("storage");
   grid.insertMeta("storage", openvdb::StringMetadata(report.storage));

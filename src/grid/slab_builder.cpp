@@ -2,18 +2,24 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <iomanip>
 #include <limits>
 #include <span>
+#include <sstream>
 #include <type_traits>
+
+#include "umbrick/core/error.h"
 
 namespace umbrick {
 namespace {
 
-constexpr int kEdge = Leaf::DIM;  // 8 voxels
+constexpr int kEdge = Leaf::DIM;                             // 8 voxels
+constexpr std::int64_t kSlabVoxels = std::int64_t(1) << 21;  // enough work for all cores, little enough for caches
 
 // The background as it is stored; nothing where the type cannot hold it, so that no voxel is equal to it.
 template <class T>
@@ -59,6 +65,22 @@ class RowTest {
 };
 
 }  // namespace
+
+std::int64_t slabSlices(const glm::i64vec3& dims) {
+  return std::max<std::int64_t>(kSlabVoxels / (dims.x * dims.y) / kEdge, 1) * kEdge;
+}
+
+// A header may promise slices of any size, and packed files cannot be held against what it promises.
+void checkSlabFits(const VolumeInfo& info, std::int64_t slices) {
+  const double wanted = 2 * double(info.dims.x) * double(info.dims.y) * double(slices) * double(sizeof(float));
+  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  if (wanted <= memory) return;
+  std::ostringstream text;
+  text << std::setprecision(4) << info.name << ": dims: two slabs of " << info.dims.x << " x " << info.dims.y << " x "
+       << slices << " voxels take " << wanted / 0x1p30 << " GiB, more than this machine's memory of "
+       << memory / 0x1p30;
+  throw IoError(text.str());
+}
 
 double Slab::read(std::int64_t firstSlice, std::int64_t atMost) {
   const glm::i64vec3& dims = source_.info().dims;

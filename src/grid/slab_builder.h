@@ -13,6 +13,12 @@
 
 namespace umbrick {
 
+/// How many slices of a volume make a slab: layers of leaves.
+std::int64_t slabSlices(const glm::i64vec3& dims);
+
+/// @throw IoError  two slabs of so many slices do not fit into the machine's memory
+void checkSlabFits(const VolumeInfo& info, std::int64_t slices);
+
 /// One layer or more of leaves: the slices [firstSlice, firstSlice + slices), x fastest, as the source stores them
 /// where it can tell, else as floats. Its memory is kept from one slab to the next.
 class Slab {

@@ -81,6 +81,9 @@ SparseTally sparsifyTree(openvdb::FloatTree& tree, const SparseRule& rule);
 /// @throw InvalidArgument  when the tally met a value too large for half floats
 void checkTally(const std::string& name, const SparseTally& tally);
 
+/// "float" or "half", with ", steps of ..." behind it.
+std::string storageText(const BuildOptions& options);
+
 /// Fills in what the grid holds and what the tally lost, in the report and in the metadata of the grid.
 /// @param report  its voxels, conversionError and backgroundChange are set
 void describe(openvdb::FloatGrid& grid, const SparseTally& tally, const BuildOptions& options, BuildReport& report);

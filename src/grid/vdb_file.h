@@ -34,7 +34,8 @@ class VdbFile : private openvdb::io::Archive {
   const std::filesystem::path& path() const { return path_; }
   const std::vector<Entry>& entries() const { return entries_; }
   std::int64_t fileBytes() const { return std::int64_t(file_.bytes().size()); }
-  std::uint32_t version() const { return fileVersion(); }
+  /// Of the file format, that of NanoVDB for a .nvdb file.
+  std::string version() const { return nano_.empty() ? std::to_string(fileVersion()) : nano_; }
   /// Of the library; "NanoVDB 32.4" for a .nvdb file.
   std::string writtenBy() const { return nano_.empty() ? openvdb::io::Archive::version() : "NanoVDB " + nano_; }
   const openvdb::MetaMap& metadata() const { return metadata_; }

@@ -1,5 +1,6 @@
 #include "umbrick/grid/verify.h"
 
+#include <openvdb/tree/LeafManager.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -27,8 +28,9 @@ struct Seen {
 
 class Verifier {
  public:
-  Verifier(const openvdb::FloatGrid& grid, const BuildOptions& options)
-      : tree_(grid.tree()),
+  Verifier(const openvdb::FloatGrid& grid, const BuildOptions& options, double backgroundError)
+      : background_(grid.background()),
+        backgroundError_(backgroundError),
         clipBelow_(options.clipBelow.value_or(-std::numeric_limits<float>::infinity())),
         clipAbove_(options.clipAbove.value_or(std::numeric_limits<float>::infinity())) {}
 
@@ -48,16 +50,24 @@ class Verifier {
           const float source = voxels[((z - firstSlice) * dims.y + y) * dims.x + x];
           const float stored = leaf ? leaf->getValue(at) : tile;
           seen.active += leaf ? leaf->isValueOn(at) : tileOn;
-          if (!std::isfinite(source) || source < clipBelow_ || source > clipAbove_)
-            seen.wrongly += stored != tree_.background();
-          else
-            seen.error.add(std::abs(static_cast<double>(source) - static_cast<double>(stored)));
+          compare(source, stored, 1, seen);
         }
     return seen;
   }
 
+  /// @param voxels  that the values stand for
+  void compare(float source, float stored, std::uint64_t voxels, Seen& seen) const {
+    if (!std::isfinite(source) || source < clipBelow_ || source > clipAbove_)
+      seen.wrongly += difference(stored, background_) <= backgroundError_ ? 0 : voxels;
+    else
+      seen.error.add(difference(source, stored), static_cast<double>(voxels));
+  }
+
  private:
-  const openvdb::FloatTree& tree_;
+  static double difference(float a, float b) { return std::abs(static_cast<double>(a) - static_cast<double>(b)); }
+
+  float background_;
+  double backgroundError_;
   float clipBelow_, clipAbove_;
 };
 
@@ -69,11 +79,12 @@ bool VerifyReport::honours(const BuildReport& stated) const {
          beyond == 0;
 }
 
-VerifyReport verifyGrid(VoxelSource& source, const openvdb::FloatGrid& grid, const BuildOptions& options) {
+VerifyReport verifyGrid(VoxelSource& source, const openvdb::FloatGrid& grid, const BuildOptions& options,
+                        double backgroundError) {
   const glm::i64vec3 dims = source.info().dims;
   const std::int64_t leavesX = (dims.x + kEdge - 1) / kEdge, leavesY = (dims.y + kEdge - 1) / kEdge;
   const std::int64_t slabSlices = std::max<std::int64_t>(kSlabVoxels / (dims.x * dims.y) / kEdge, 1) * kEdge;
-  const Verifier verifier(grid, options);
+  const Verifier verifier(grid, options, backgroundError);
   Seen seen;
   std::vector<float> slab;
   for (std::int64_t first = 0; first < dims.z; first += slabSlices) {
@@ -101,6 +112,53 @@ VerifyReport verifyGrid(VoxelSource& source, const openvdb::FloatGrid& grid, con
   VerifyReport report;
   report.voxels = static_cast<std::uint64_t>(dims.x * dims.y) * static_cast<std::uint64_t>(dims.z);
   report.error = {seen.error.max, std::sqrt(seen.error.squares / static_cast<double>(report.voxels))};
+  report.wrongly = seen.wrongly;
+  report.beyond = grid.activeVoxelCount() - seen.active;
+  return report;
+}
+
+VerifyReport verifyGrid(const ScalarGrid& source, const openvdb::FloatGrid& grid, const BuildOptions& asked,
+                        double backgroundError) {
+  BuildOptions options = asked;
+  // Level sets are rounded only.
+  if (source.grid->getGridClass() == openvdb::GRID_LEVEL_SET) options.clipBelow = options.clipAbove = std::nullopt;
+  const Verifier verifier(grid, options, backgroundError);
+  const openvdb::tree::LeafManager<const openvdb::FloatTree> leaves(source.grid->tree());
+  Seen seen = tbb::parallel_deterministic_reduce(
+      leaves.leafRange(64), Seen{},
+      [&](const auto& range, Seen sum) {
+        const auto access = grid.getConstAccessor();
+        for (auto leaf = range.begin(); leaf; ++leaf)
+          for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
+            float stored = 0;
+            sum.active += access.probeValue(voxel.getCoord(), stored);
+            verifier.compare(*voxel, stored, 1, sum);
+          }
+        return sum;
+      },
+      [](Seen a, const Seen& b) {
+        a.add(b);
+        return a;
+      });
+  const auto access = grid.getConstAccessor();
+  auto tile = source.grid->tree().cbeginValueOn();
+  tile.setMaxDepth(openvdb::FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    const auto compare = [&](const openvdb::Coord& at, std::uint64_t voxels) {
+      float stored = 0;
+      seen.active += access.probeValue(at, stored) ? voxels : 0;
+      verifier.compare(*tile, stored, voxels, seen);
+    };
+    // One voxel tells of all where the other grid has a tile too, or a larger one.
+    if (access.getValueDepth(tile.getCoord()) <= static_cast<int>(tile.getDepth()))
+      compare(tile.getCoord(), tile.getVoxelCount());
+    else
+      for (auto voxel = tile.getBoundingBox().begin(); voxel; ++voxel) compare(*voxel, 1);
+  }
+  VerifyReport report;
+  report.voxels = source.grid->activeVoxelCount();
+  report.error = {seen.error.max,
+                  report.voxels > 0 ? std::sqrt(seen.error.squares / static_cast<double>(report.voxels)) : 0.0};
   report.wrongly = seen.wrongly;
   report.beyond = grid.activeVoxelCount() - seen.active;
   return report;

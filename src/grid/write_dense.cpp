@@ -15,6 +15,7 @@
 
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
+#include "umbrick/core/pending_pair.h"
 #include "umbrick/grid/write_volume.h"
 
 namespace umbrick {
@@ -116,7 +117,7 @@ std::string nrrdHeader(const openvdb::FloatGrid& grid, const DenseBox& box, cons
   return out + "encoding: raw\nendian: little\n\n";
 }
 
-std::string metaImageHeader(const DenseBox& box, const Place& place, const fs::path& voxels) {
+std::string metaImageHeader(const DenseBox& box, const Place& place, const std::string& voxels) {
   const char* type = withType(box.type, [](auto zero) {
     using T = decltype(zero);
     if constexpr (std::is_same_v<T, float>) return "MET_FLOAT";
@@ -134,7 +135,7 @@ std::string metaImageHeader(const DenseBox& box, const Place& place, const fs::p
          text(direction[0], " ") + ' ' + text(direction[1], " ") + ' ' + text(direction[2], " ") +
          "\nOffset = " + text(place.origin, " ") +
          "\nCenterOfRotation = 0 0 0\nElementSpacing = " + text(spacing, " ") + "\nDimSize = " + sizes(box.dims) +
-         "\nElementType = " + type + "\nElementDataFile = " + voxels.filename().string() + '\n';
+         "\nElementType = " + type + "\nElementDataFile = " + voxels + '\n';
 }
 
 // One layer of leaves after the other, so that a box larger than memory can be written.
@@ -157,11 +158,11 @@ void writeVoxels(std::ostream& out, const openvdb::FloatGrid& grid, const DenseB
 }
 
 // @param fill  writes the file
-void writeWhole(const fs::path& path, PendingFile& pending, const std::function<void(std::ostream&)>& fill) {
+void writeWhole(const fs::path& path, const fs::path& pending, const std::function<void(std::ostream&)>& fill) {
   try {
     std::ofstream out;
     out.exceptions(std::ios::failbit | std::ios::badbit);
-    out.open(pending.path(), std::ios::binary | std::ios::trunc);
+    out.open(pending, std::ios::binary | std::ios::trunc);
     fill(out);
     out.close();
   } catch (const std::ios_base::failure&) {
@@ -171,7 +172,8 @@ void writeWhole(const fs::path& path, PendingFile& pending, const std::function<
 
 }  // namespace
 
-DenseBox writeDense(const fs::path& path, const openvdb::FloatGrid& grid, const DenseOptions& options) {
+DenseBox writeDense(const fs::path& path, const openvdb::FloatGrid& grid, const DenseOptions& options,
+                    const WrittenCheck& check) {
   const bool nrrd = path.extension() == ".nrrd";
   if (!nrrd && path.extension() != ".mhd")
     throw InvalidArgument(path.string() + ": expected a name that ends in .nrrd or .mhd");
@@ -194,21 +196,22 @@ DenseBox writeDense(const fs::path& path, const openvdb::FloatGrid& grid, const 
     throw InvalidArgument(message.str());
   }
   const Place place = placeOf(path, grid, active.min());
-  PendingFile pending(path);
   if (nrrd) {
-    writeWhole(path, pending, [&](std::ostream& out) {
+    PendingFile pending(path);
+    writeWhole(path, pending.path(), [&](std::ostream& out) {
       out << nrrdHeader(grid, box, place);
       writeVoxels(out, grid, box);
     });
+    if (check) check(pending.path());
+    pending.commit();
   } else {
-    fs::path voxels = path;
-    voxels.replace_extension(".raw");
-    PendingFile pendingVoxels(voxels);
-    writeWhole(voxels, pendingVoxels, [&](std::ostream& out) { writeVoxels(out, grid, box); });
-    writeWhole(path, pending, [&](std::ostream& out) { out << metaImageHeader(box, place, voxels); });
-    pendingVoxels.commit();
+    const fs::path voxels = fs::path(path).replace_extension(".raw");
+    PendingPair pending(path, voxels);
+    writeWhole(voxels, pending.dataPath(), [&](std::ostream& out) { writeVoxels(out, grid, box); });
+    pending.writeHeader([&](const std::string& name) { return metaImageHeader(box, place, name); });
+    if (check) check(pending.headerPath());
+    pending.commit();
   }
-  pending.commit();
   return box;
 }
 

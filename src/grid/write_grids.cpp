@@ -1,10 +1,10 @@
 #include <openvdb/io/Archive.h>
-#include <openvdb/io/Compression.h>
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 
+#include "grid/vdb_codec.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
 #include "umbrick/grid/build_grid.h"
@@ -18,16 +18,10 @@ class Writer : public openvdb::io::Archive {
   using Archive::write;
 };
 
-std::uint32_t compressionOf(VdbCodec codec) {
-  if (codec == VdbCodec::none) return openvdb::io::COMPRESS_NONE;
-  const bool blosc = codec == VdbCodec::blosc && openvdb::io::Archive::hasBloscCompression();
-  return blosc ? openvdb::io::COMPRESS_BLOSC : openvdb::io::COMPRESS_ZIP;
-}
-
 }  // namespace
 
 void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
-                const openvdb::MetaMap& metadata, VdbCodec codec) {
+                const openvdb::MetaMap& metadata, VdbCodec codec, const WrittenCheck& check) {
   openvdb::initialize();
   PendingFile pending(path);
   try {
@@ -35,7 +29,7 @@ void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::Fl
     out.exceptions(std::ios::failbit | std::ios::badbit);
     out.open(pending.path(), std::ios::binary | std::ios::trunc);
     Writer writer;
-    writer.setCompression(compressionOf(codec) | openvdb::io::COMPRESS_ACTIVE_MASK);
+    writer.setCompression(compressionOf(codec));
     writer.write(out, openvdb::GridCPtrVec(grids.begin(), grids.end()), /*seekable=*/true, metadata);
     out.close();
   } catch (const std::ios_base::failure&) {
@@ -43,6 +37,7 @@ void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::Fl
   } catch (const openvdb::Exception& error) {
     throw IoError(path.string() + ": cannot write: " + error.what());
   }
+  if (check) check(pending.path());
   pending.commit();
 }
 

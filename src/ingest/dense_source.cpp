@@ -9,6 +9,12 @@
 #include "umbrick/core/error.h"
 
 namespace umbrick {
+namespace {
+
+constexpr std::size_t kPieceVoxels = std::size_t(1) << 20;  // that are decoded at once
+constexpr std::int64_t kMostExtra = std::int64_t(1) << 24;  // bytes behind the last voxel that are looked at
+
+}  // namespace
 
 std::optional<std::int64_t> volumeBytes(const glm::i64vec3& dims, VoxelType type) {
   std::int64_t bytes = voxelBytes(type);
@@ -66,11 +72,21 @@ DenseSource::DenseSource(VolumeInfo info, VoxelLayout layout, std::unique_ptr<By
   if (const auto rescale = describeRescale(layout)) info_.metadata["rescale"] = *rescale;
 }
 
+// In pieces, so that no second slab is held, and none at all is touched for voxels that are only promised.
 double DenseSource::readSlab(std::int64_t count, std::span<float> out) {
   assert(std::ssize(out) == info_.dims.x * info_.dims.y * count);
-  slab_.resize(out.size() * static_cast<std::size_t>(voxelBytes(info_.type)));
-  readBytes(count, slab_);
-  return decodeVoxels(layout_, slab_, out);
+  const auto width = static_cast<std::size_t>(voxelBytes(info_.type));
+  double error = 0;
+  std::size_t got = 0;
+  for (std::size_t first = 0; first < out.size() && got == first * width; first += kPieceVoxels) {
+    const auto part = out.subspan(first, std::min(kPieceVoxels, out.size() - first));
+    piece_.resize(part.size() * width);
+    const std::size_t read = bytes_->read(piece_);
+    got += read;
+    if (read == piece_.size()) error = std::max(error, decodeVoxels(layout_, piece_, part));
+  }
+  advance(count, static_cast<std::int64_t>(got));
+  return error;
 }
 
 void DenseSource::skipSlices(std::int64_t count) {
@@ -93,12 +109,8 @@ std::optional<VoxelType> DenseSource::storedType() const {
 }
 
 void DenseSource::readStored(std::int64_t count, std::span<std::byte> out) {
-  readBytes(count, out);
-  normaliseVoxels(layout_, out);
-}
-
-void DenseSource::readBytes(std::int64_t count, std::span<std::byte> out) {
   advance(count, static_cast<std::int64_t>(bytes_->read(out)));
+  normaliseVoxels(layout_, out);
 }
 
 // `got` bytes of the next `count` slices are behind us.
@@ -113,9 +125,11 @@ void DenseSource::advance(std::int64_t count, std::int64_t got) {
 }
 
 void DenseSource::checkEnd() {
-  const std::int64_t extra = bytes_->skip(std::numeric_limits<std::int64_t>::max());
+  // What is unpacked or comes out of a pipe may never end: the message need not say by how much it is too long.
+  const std::int64_t extra = bytes_->skip(kMostExtra);
   if (extra > 0)
     throw IoError(info_.name + ": expected " + describeBytes(info_) + ", found " +
+                  (extra == kMostExtra ? "at least " : "") +
                   std::to_string(*volumeBytes(info_.dims, info_.type) + extra) + hint_);
 }
 

@@ -39,14 +39,13 @@ class DenseSource : public VoxelSource {
   void readStored(std::int64_t count, std::span<std::byte> out) override;
 
  private:
-  void readBytes(std::int64_t count, std::span<std::byte> out);
   void advance(std::int64_t count, std::int64_t got);
   void checkEnd();
 
   VoxelLayout layout_;
   std::unique_ptr<ByteStream> bytes_;
   std::string hint_;
-  std::vector<std::byte> slab_;
+  std::vector<std::byte> piece_;
   std::int64_t slicesRead_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "ingest/dicom_file.h"
 
 #include <gdcmImageReader.h>
+#include <gdcmSequenceOfFragments.h>
 #include <gdcmSequenceOfItems.h>
 #include <gdcmTrace.h>
 
@@ -14,6 +15,7 @@
 #include "ingest/byte_stream.h"
 #include "ingest/dicom_structure.h"
 #include "ingest/header_text.h"
+#include "ingest/jpeg_check.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -182,6 +184,28 @@ void readSeries(const Tags& tags, DicomFile& file) {
   file.seriesNumber = integer(tags.text(Tag(0x0020, 0x0011))).value_or(0);
 }
 
+// One JPEG stream for each frame, or all fragments of the only one.
+void checkJpeg(const DicomFile& file, const gdcm::DataElement& pixels) {
+  const gdcm::SequenceOfFragments* fragments = pixels.GetSequenceOfFragments();
+  if (!fragments) return;
+  const std::size_t count = fragments->GetNumberOfFragments();
+  if (file.frames.size() != 1 && file.frames.size() != count) return;
+  std::vector<std::byte> stream;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (file.frames.size() != 1) stream.clear();
+    if (const gdcm::ByteValue* bytes = fragments->GetFragment(i).GetByteValue()) {
+      const auto* first = reinterpret_cast<const std::byte*>(bytes->GetPointer());
+      stream.insert(stream.end(), first, first + std::size_t(bytes->GetLength()));
+    }
+    if ((file.frames.size() == 1 && i + 1 < count) || stream.size() < 2 || stream[0] != std::byte(0xff) ||
+        stream[1] != std::byte(0xd8))
+      continue;
+    if (const auto damage = jpegDamage(stream))
+      throw IoError(file.path.string() + ": PixelData: frame " + std::to_string(file.frames.size() == 1 ? 1 : i + 1) +
+                    ": expected a whole JPEG, found: " + *damage);
+  }
+}
+
 // Runs `read`, whose GDCM prints nothing meanwhile and whose exceptions become ours.
 template <class Read>
 auto quietly(const fs::path& path, const Read& read) {
@@ -275,6 +299,10 @@ std::vector<std::byte> readDicomPixels(const DicomFile& file, std::size_t first,
   }
   assert(first == 0 && count == file.frames.size());
   return quietly(file.path, [&] {
+    // Before the image reader, which unpacks as it reads and gives a JPEG that it cannot to another program.
+    gdcm::Reader packed;
+    packed.SetFileName(file.path.c_str());
+    if (packed.Read()) checkJpeg(file, packed.GetFile().GetDataSet().GetDataElement(Tag(0x7fe0, 0x0010)));
     gdcm::ImageReader reader;
     reader.SetFileName(file.path.c_str());
     const std::int64_t expected = frameBytes * static_cast<std::int64_t>(count);

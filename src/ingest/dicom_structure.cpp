@@ -129,11 +129,14 @@ class Walker {
 
   // From behind the head of an element to behind its value.
   void skip(const Element& element, std::int64_t end, int depth) {
-    const bool sequence = std::string_view(element.kind.data(), 2) == "SQ";
+    const std::string_view kind(element.kind.data(), 2);
+    const bool sequence = kind == "SQ";
     if (element.length == kUndefined) {
+      if (explicit_ && !sequence && kind != "UN" && kind != "OB" && kind != "OW")
+        fail("a length, which SQ, UN, OB and OW alone can do without", "none for " + std::string(kind));
       // Without a kind only sequences may be so; an unknown kind holds a sequence without kinds.
       const bool was = explicit_;
-      if (std::string_view(element.kind.data(), 2) == "UN") explicit_ = false;
+      if (kind == "UN") explicit_ = false;
       walkItems(end, true, depth + 1, element.tag == kPixels);
       explicit_ = was;
       return;

@@ -125,6 +125,34 @@ std::optional<NumberType> numberType(hid_t dataset) {
   return NumberType{found, found == f16 ? f32 : found};  // libhdf5 widens halves, exactly
 }
 
+// What a type that is not read is, in the words of those who write such files.
+std::string typeText(hid_t dataset) {
+  const Handle type(H5Dget_type(dataset), H5Tclose);
+  const std::string bits = std::to_string(8 * H5Tget_size(type.get())) + " bits";
+  switch (H5Tget_class(type.get())) {
+    case H5T_INTEGER:
+      return "an integer of " + bits;
+    case H5T_FLOAT:
+      return "a float of " + bits;
+    case H5T_ENUM:
+      return "an enumeration, which is not read; bool of h5py and PyTables is one: store it as uint8";
+    case H5T_STRING:
+      return "text";
+    case H5T_BITFIELD:
+      return "a bit field of " + bits;
+    case H5T_COMPOUND:
+      return "a compound; complex numbers are stored so";
+    case H5T_REFERENCE:
+      return "references";
+    case H5T_ARRAY:
+      return "an array in each voxel";
+    case H5T_VLEN:
+      return "a sequence of its own length in each voxel";
+    default:
+      return "another type";
+  }
+}
+
 hid_t memoryType(VoxelType type) {
   switch (type) {
     case VoxelType::u8:
@@ -152,13 +180,19 @@ hid_t memoryType(VoxelType type) {
 
 struct Found {
   std::vector<std::string> volumes;  // of three axes and numbers
+  std::string other;                 // the first one of three axes whose type is not read, and that type
 };
 
 herr_t onObject(hid_t file, const char* name, const H5O_info_t* info, void* user) {
   if (info->type != H5O_TYPE_DATASET) return 0;
   const Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
-  if (dataset.good() && axesOf(shapeOf(dataset.get())) == 3 && numberType(dataset.get()))
-    static_cast<Found*>(user)->volumes.push_back(std::string("/") + name);
+  if (!dataset.good() || axesOf(shapeOf(dataset.get())) != 3) return 0;
+  auto& found = *static_cast<Found*>(user);
+  const std::string path = std::string("/") + name;
+  if (numberType(dataset.get()))
+    found.volumes.push_back(path);
+  else if (found.other.empty())
+    found.other = path + " holds " + typeText(dataset.get());
   return 0;
 }
 
@@ -172,7 +206,10 @@ std::string onlyVolume(const fs::path& path, hid_t file) {
     list += (i == 0 ? "" : ", ") + found.volumes[i];
   if (found.volumes.size() > kMaxListed) list += ", ...";
   throw IoError(path.string() + ": expected one dataset of three axes, or its name as in " + path.filename().string() +
-                ":/name, found " + (list.empty() ? "none" : list));
+                ":/name, found " +
+                (!list.empty()         ? list
+                 : found.other.empty() ? "none"
+                                       : "none of numbers: " + found.other));
 }
 
 // Chunks are unpacked whole, so those of one layer are kept until the slabs have passed them.
@@ -254,7 +291,9 @@ std::unique_ptr<VoxelSource> openHdf5(const fs::path& path) {
   if (!dataset.good()) throw IoError(info.name + ": expected a dataset, found: " + complaint());
 
   const auto type = numberType(dataset.get());
-  if (!type) throw IoError(info.name + ": expected integers of 8 to 64 bits or floats of 16 to 64, found another type");
+  if (!type)
+    throw IoError(info.name + ": type: expected integers of 8 to 64 bits or floats of 16 to 64, found " +
+                  typeText(dataset.get()));
   const std::vector<hsize_t> shape = shapeOf(dataset.get());
   const std::size_t axes = axesOf(shape);
   if (axes < 2 || axes > 3)

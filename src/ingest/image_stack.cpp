@@ -16,6 +16,7 @@
 #include "ingest/provenance.h"
 #include "ingest/slice_image.h"
 #include "umbrick/core/error.h"
+#include "umbrick/ingest/frame_sequence.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;
@@ -61,26 +62,15 @@ bool beforeByNumbers(const std::string& a, const std::string& b) {
 }
 
 // All numbers there are, which must follow each other.
-std::vector<fs::path> numberedFiles(const fs::path& path, const NamePattern& pattern) {
-  std::vector<std::int64_t> numbers;
-  for (const fs::path& file : filesOf(path.parent_path())) {
-    const std::string name = file.filename().string();
-    if (name.size() <= pattern.before.size() + pattern.after.size() || !name.starts_with(pattern.before) ||
-        !name.ends_with(pattern.after))
-      continue;
-    const std::string_view digits = trimmed(std::string_view(name).substr(
-        pattern.before.size(), name.size() - pattern.before.size() - pattern.after.size()));
-    if (const auto number = integer(digits); number && *number >= 0 && pattern.name(*number) == name)
-      numbers.push_back(*number);
-  }
-  std::sort(numbers.begin(), numbers.end());
-  if (numbers.empty()) throw IoError(path.string() + ": expected files of that pattern, found none");
+std::vector<fs::path> numberedFiles(const fs::path& path) {
+  const std::vector<Frame> files = listFrames(path);
   std::vector<fs::path> out;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (i > 0 && numbers[i] != numbers[i - 1] + 1)
-      throw IoError(path.string() + ": expected a file for each number from " + std::to_string(numbers.front()) +
-                    " to " + std::to_string(numbers.back()) + ", found no " + pattern.name(numbers[i - 1] + 1));
-    out.push_back(path.parent_path() / pattern.name(numbers[i]));
+  for (const Frame& file : files) {
+    if (!out.empty() && file.number != files[out.size() - 1].number + 1)
+      throw IoError(path.string() + ": expected a file for each number from " + std::to_string(files.front().number) +
+                    " to " + std::to_string(files.back().number) + ", found no " +
+                    framePath(path, files[out.size() - 1].number + 1).filename().string());
+    out.push_back(file.path);
   }
   return out;
 }
@@ -89,7 +79,7 @@ std::vector<fs::path> slicesOf(const fs::path& path) {
   std::error_code ignored;
   const std::string name = path.filename().string();
   if (fs::is_regular_file(path, ignored)) return {path};
-  if (const auto pattern = namePattern(name)) return numberedFiles(path, *pattern);
+  if (namePattern(name)) return numberedFiles(path);
   std::vector<fs::path> out;
   const bool folder = fs::is_directory(path, ignored);
   if (!folder && !hasGlob(name)) checkedFileSize(path);

@@ -67,6 +67,7 @@ std::unique_ptr<VoxelSource> openRaw(const fs::path& path, const RawOptions& opt
                   std::to_string(std::max<std::int64_t>(size - options.headerBytes, 0)) +
                   (size - options.headerBytes > expected ? kHint : ""));
   }
+  if (packing == Packing::gzip) checkDeflateRatio(path, info, size);
   auto bytes = openPacked(path, packing);
   if (const std::int64_t skipped = bytes->skip(options.headerBytes); skipped < options.headerBytes)
     throw IoError(info.name + ": expected a header of " + std::to_string(options.headerBytes) + " bytes, found " +

@@ -12,11 +12,15 @@
 #include <vector>
 
 #include "umbrick/core/error.h"
+#include "umbrick/ingest/dicom_volume.h"
+#include "umbrick/ingest/hdf5_volume.h"
+#include "umbrick/ingest/image_stack.h"
 #include "umbrick/ingest/metaimage_volume.h"
 #include "umbrick/ingest/nifti_volume.h"
 #include "umbrick/ingest/npy_volume.h"
 #include "umbrick/ingest/nrrd_volume.h"
 #include "umbrick/ingest/raw_volume.h"
+#include "umbrick/ingest/vtk_volume.h"
 #include "umbrick/optics/transfer_function.h"
 #include "umbrick/scene/scene.h"
 
@@ -34,7 +38,8 @@ inline void readAll(VoxelSource& source) {
 /// What a target makes of a file of that content. `path` is where the content lies.
 using Target = std::function<void(const std::filesystem::path& path, std::string_view content)>;
 
-inline Target volumeTarget(std::unique_ptr<VoxelSource> (*open)(const std::filesystem::path&)) {
+template <class Open>
+Target volumeTarget(Open open) {
   return [open](const std::filesystem::path& path, std::string_view) { readAll(*open(path)); };
 }
 
@@ -46,10 +51,13 @@ struct NamedTarget {
 
 inline std::map<std::string, NamedTarget> targets() {
   return {
+      {"dicom", {".dcm", volumeTarget([](const std::filesystem::path& path) { return openDicom(path); })}},
+      {"hdf5", {".h5", volumeTarget(openHdf5)}},
       {"metaimage", {".mha", volumeTarget(openMetaImage)}},
       {"nifti", {".nii", volumeTarget(openNifti)}},
       {"npy", {".npy", volumeTarget(openNpy)}},
       {"nrrd", {".nrrd", volumeTarget(openNrrd)}},
+      {"png", {".png", volumeTarget(openImageStack)}},
       {"raw",
        {".raw",
         // The first bytes choose the options, the rest is the file.
@@ -65,11 +73,19 @@ inline std::map<std::string, NamedTarget> targets() {
           if (byte(7) % 2 != 0) options.bitsStored = byte(7) / 2;
           readAll(*openRaw(path, options));
         }}},
+      {"tiff", {".tif", volumeTarget(openImageStack)}},
+      {"vti", {".vti", volumeTarget(openVti)}},
+      {"vtk", {".vtk", volumeTarget(openLegacyVtk)}},
       {"scene", {".json", [](const auto&, std::string_view content) { parseScene(content, "scene.json"); }}},
       {"transfer",
        {".json", [](const auto&, std::string_view content) { parseTransferFunction(content, "transfer.json"); }}},
   };
 }
+
+/// Files of grids, "nvdb" and "vdb", in grid_targets.cpp, since OpenVDB takes minutes to compile for fuzzing. They are
+/// too large for libFuzzer to change to the point: what it gives are changes, of five bytes each, a place and the byte
+/// there, to a good file, which is made when it is first asked for.
+std::map<std::string, NamedTarget> gridTargets();
 
 /// @throw what a reader must not throw
 inline void runTarget(const Target& target, const std::filesystem::path& path, std::string_view content) {

@@ -181,6 +181,8 @@ TEST_CASE("A grid with tiles, a background and inactive values is made sparse wi
   CHECK(built.report.activeVoxels == 1024);
   CHECK(built.report.activeTiles == 2);
   CHECK(built.report.clippedVoxels == 1);
+  CHECK(built.grid->metaValue<std::int64_t>("clipped_voxels") == 1);
+  CHECK(sparsifyGrid({built.grid, "again"}, options).grid->metaValue<std::int64_t>("clipped_voxels") == 1);
   CHECK(built.report.maxClipChange == std::abs(double(0.1f) - 0.25));
   CHECK(built.report.maxError == double(0.3f) - 0.25);
   CHECK(built.grid->tree().getValue(Coord(5, 5, 5)) == 0.25f);

@@ -55,6 +55,7 @@ TEST_CASE("A NanoVDB file is the grid that it was made of, in every codec", "[gr
       CHECK(read.grid->indexToWorld(point) == expected->indexToWorld(point));
   }
   CHECK(summariseFile(file.path).libraryVersion == "NanoVDB 32.4");
+  CHECK(summariseFile(file.path).version == "32.4");
 }
 
 TEST_CASE("Broken NanoVDB files are refused and never crash", "[grid]") {

@@ -245,6 +245,29 @@ TEST_CASE("DICOM voxels are the same in every transfer syntax", "[ingest]") {
   checkVoxels(*openVolume(path), 1);
 }
 
+// GDCM fills such a picture up with grey.
+TEST_CASE("A JPEG whose codes end early or are left over is refused", "[ingest]") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "v.dcm";
+  const std::string good = readBytes(UMBRICK_FUZZ_CORPUS "/dicom/seed-jpeg");
+  writeBytes(path, good);
+  CHECK(readVolume(*openVolume(path)).size() == 64);
+  const std::size_t scan = good.find("\xff\xda") + 10, end = good.rfind("\xff\xd9");
+  REQUIRE(scan < end);
+  for (std::size_t at = scan; at + 1 < end; ++at) {
+    CAPTURE(at);
+    std::string cut = good;
+    cut.replace(at, 2, "\xff\xd9");
+    writeBytes(path, cut);
+    CHECK_THROWS_WITH(readVolume(*openVolume(path)),
+                      Contains("v.dcm: PixelData: frame 1: expected a whole JPEG, found"));
+  }
+  std::string marker = good;
+  marker.replace(scan + 1, 2, "\xff\xd3");
+  writeBytes(path, marker);
+  CHECK_THROWS_WITH(readVolume(*openVolume(path)), Contains("expected a whole JPEG"));
+}
+
 TEST_CASE("DICOM bits above the stored ones are masked off", "[ingest]") {
   const DicomFolder files;
   Elements flagged = slice(0, glm::dvec3(0)).number(0x28, 0x101, 12).number(0x28, 0x102, 11).number(0x28, 0x103, 0);

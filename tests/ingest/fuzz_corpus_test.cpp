@@ -10,15 +10,18 @@ namespace fs = std::filesystem;
 
 TEST_CASE("Readers make a result or an Error of every file that fuzzing has kept", "[ingest]") {
   const TemporaryFolder folder;
-  for (const auto& [name, target] : fuzz::targets()) {
+  auto targets = fuzz::targets();
+  targets.merge(fuzz::gridTargets());
+  for (const auto& [name, target] : targets) {
     std::size_t files = 0;
     for (const auto& entry : fs::directory_iterator(fs::path(UMBRICK_FUZZ_CORPUS) / name)) {
       INFO(entry.path());
       const fs::path path = folder.path() / (name + std::to_string(files++) + target.extension);
       fs::copy_file(entry.path(), path);
-      CHECK_NOTHROW(fuzz::runTarget(target.run, path, readBytes(path)));
+      const std::string content = readBytes(path);
+      CHECK_NOTHROW(fuzz::runTarget(target.run, path, content));
       // The seeds are good: each is read to its end.
-      if (entry.path().filename().string().starts_with("seed")) CHECK_NOTHROW(target.run(path, readBytes(path)));
+      if (entry.path().filename().string().starts_with("seed")) CHECK_NOTHROW(target.run(path, content));
     }
     CHECK(files > 0);
   }

@@ -96,11 +96,21 @@ TEST_CASE("What is no volume in an HDF5 file is refused with both values", "[ing
   file.add("/over", {3000000000, 3000000000, 3000000000}, H5T_STD_U8LE, H5T_NATIVE_INT, std::vector<int>{}, {1, 8, 8});
   file.refused(":/line", "shape: expected two or three axes, found \"6\"");
   file.refused(":/many", "shape: expected two or three axes, found \"2 x 2 x 2 x 2\"");
-  file.refused(":/text", "found another type");
-  file.refused(":/opaque", "found another type");
+  file.refused(":/text", "type: expected integers of 8 to 64 bits or floats of 16 to 64, found text");
+  file.refused(":/opaque", "found references");
   file.refused(":/huge", "can fill, found \"1 x 2000000000 x 2000000000\"");
   file.refused(":/over", "each from 1 to 2147483647 and less than 2^63 bytes");
   file.refused(":/none", "expected a dataset, found");
+}
+
+TEST_CASE("A bool or enum dataset of HDF5 is refused in words, named or not", "[ingest]") {
+  const Hdf5File file;
+  const hid_t type = H5Tenum_create(H5T_NATIVE_INT8);  // as h5py stores bool
+  for (signed char value = 0; value < 2; ++value) H5Tenum_insert(type, value ? "TRUE" : "FALSE", &value);
+  file.add("/mask", {2, 2, 2}, type, type, std::vector<signed char>(8, 1));
+  H5Tclose(type);
+  file.refused(":/mask", "type: expected integers of 8 to 64 bits or floats of 16 to 64, found an enumeration, which");
+  file.refused("", "found none of numbers: /mask holds an enumeration, which is not read; bool of h5py");
 }
 
 TEST_CASE("Truncated HDF5 files are refused", "[ingest]") {

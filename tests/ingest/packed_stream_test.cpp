@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <memory>
 #include <numeric>
 
 #include "support/files.h"
@@ -6,10 +7,23 @@
 #include "support/read_volume.h"
 #include "support/temporary_folder.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/stopwatch.h"
 #include "umbrick/ingest/raw_volume.h"
 
 using namespace umbrick;
 using Catch::Contains;
+
+namespace {
+
+// Opens a file as 2^33 bytes and reads one slice of them, of 2^25 voxels.
+void readPromised(const std::filesystem::path& path) {
+  const auto source = openRaw(path, RawOptions{{1 << 13, 1 << 12, 1 << 5}, VoxelType::f64});
+  constexpr std::size_t kVoxels = std::size_t(1) << 25;
+  const auto untouched = std::make_unique_for_overwrite<float[]>(kVoxels);
+  source->readSlab(1, {untouched.get(), kVoxels});
+}
+
+}  // namespace
 
 TEST_CASE("Every packing gives the same voxels, also in several parts, and says where damage is", "[ingest]") {
   const TemporaryFolder folder;
@@ -37,6 +51,11 @@ TEST_CASE("Every packing gives the same voxels, also in several parts, and says 
     CHECK_THROWS_WITH(readVolume(*openRaw(path, options)), Contains("= 48000 bytes, found 48001"));
     writeBytes(path, pack(half1));
     CHECK_THROWS_WITH(readVolume(*openRaw(path, options)), Contains("= 48000 bytes, found 20001"));
+    const std::size_t memory = peakMemoryBytes();
+    CHECK_THROWS_WITH(readPromised(path), Contains("= 8589934592 bytes, found "));
+    CHECK(peakMemoryBytes() < memory + (std::size_t(1) << 26));
+    writeBytes(path, pack(std::string((1 << 24) + 48001, 'x')));
+    CHECK_THROWS_WITH(readVolume(*openRaw(path, options)), Contains("= 48000 bytes, found at least 16825216"));
     std::string damaged = packed;
     damaged[damaged.size() / 2] ^= 0x55;
     writeBytes(path, damaged);

@@ -158,7 +158,7 @@ TEST_CASE("Wrong usage exits 2", "[tools]") {
   failing.check(start + "--bits-stored 9", 2, "bits stored: expected 1 to 8");
   failing.check(start + "--range 3 2", 2, "expected the lower limit first, found 3 2");
   failing.check(start + "--half --max-error 1", 2, "--max-error");
-  failing.check("convert v.vdb --mask m.raw -o o.vdb", 2, "--mask is for volumes");
+  failing.check("convert v.vdb --name n -o o.vdb", 2, "--name is for volumes");
   failing.check("convert /dev/null -o o.vdb --dims 1 1 1 --type u8 --background auto", 2, "found a pipe");
   failing.check(start + "--tolerance -1", 2, "--tolerance");
   failing.check(start + "--background nan", 2, "--background");

@@ -68,6 +68,16 @@ TEST_CASE("An interrupted conversion says so, fails and leaves nothing", "[tools
   CHECK(filesIn(folder) == 2);
 }
 
+TEST_CASE("A terminal is shown the share, the rate and the time left, each pass by itself", "[tools]") {
+  const TemporaryFolder folder;
+  const std::string command = "'" UMBRICK_PROGRAM "' convert /dev/zero --dims 4000 4000 4000 --type u8 -o a.vdb";
+  // script(1) gives the program a terminal and writes down what appears there.
+  CHECK(runBy(folder, "script -q -e -c \"timeout --preserve-status -s INT 1 " + command + "\" seen;", "--help") == 0);
+  const std::string seen = readBytes(folder.path() / "seen");
+  CHECK_THAT(seen, Catch::Matches("[^]*converting zero \\[#*[.]*\\] +[0-9]+ %  [0-9]+ MB/s  [0-9:]+ left[^]*"));
+  CHECK_THAT(seen, Contains("a.vdb: interrupted before it was written"));
+}
+
 TEST_CASE("The number of threads does not change a file's content", "[tools]") {
   const TemporaryFolder folder;
   REQUIRE(runProgram(folder, kHead + "--tolerance 20 --threads 1 -o a.vdb").status == 0);

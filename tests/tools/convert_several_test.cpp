@@ -69,7 +69,7 @@ TEST_CASE("Inputs that cannot stand beside each other are refused in one line, a
   check("a.nrrd a.b.nrrd --name n", 2, "expected one for each of 2 inputs, found 1");
   check("a.nrrd a.b.nrrd --name n --name n", 2, "found \"n\" for both a.nrrd and a.b.nrrd");
   check("a.nrrd --unit K --unit C", 2, "for each of 1 inputs, found 2");
-  check("a.nrrd '" UMBRICK_ASSETS "/densityAndHeat.vdb'", 2, "found a .vdb");
+  check("a.nrrd '" UMBRICK_ASSETS "/densityAndHeat.vdb'", 2, "found a file of grids");
   check("a.nrrd short.nrrd", 1, "short.nrrd: ");
   check("a.nrrd missing.nrrd", 1, "missing.nrrd: no such file");
 }

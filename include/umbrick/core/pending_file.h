@@ -1,6 +1,7 @@
 // A file that appears whole or not at all: written beside its name, then renamed.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <string_view>
 
 namespace umbrick {
@@ -16,14 +17,23 @@ class PendingFile {
   PendingFile& operator=(const PendingFile&) = delete;
 
   const std::filesystem::path& path() const { return temporary_; }
+  /// Writes the whole file. @throw IoError
+  void write(std::string_view text);
+  /// What was written is on the disk when this returns. @throw IoError
+  void flush();
   /// Flushes the written file to the disk and renames it to the target.
   /// @throw IoError  nothing was written, or the rename failed
   void commit();
+  /// Leaves the temporary file where it is.
+  void keep() { kept_ = true; }
 
  private:
   std::filesystem::path target_, temporary_;
-  bool committed_ = false;
+  bool kept_ = false;
 };
+
+/// Is given a file that is written but has not taken its name. What it throws leaves what stood there untouched.
+using WrittenCheck = std::function<void(const std::filesystem::path& written)>;
 
 /// Writes a whole text file through a PendingFile. @throw IoError
 void writeTextFile(const std::filesystem::path& path, std::string_view text);

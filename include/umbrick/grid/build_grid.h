@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "umbrick/core/pending_file.h"
 #include "umbrick/grid/float_grid.h"
 #include "umbrick/grid/scalar_grid.h"
 #include "umbrick/ingest/voxel_source.h"
@@ -45,6 +46,7 @@ struct BuildReport {
   double rmsError = 0;        // root of the mean square of the same, over all voxels looked at
   double activeRmsError = 0;  // over the voxels that are active after
   Loss tolerance, rounding;   // parts of it: left out or merged; step and half
+  Loss quantising;            // part of it, added to the others as a bound: by a file that quantises (writeNanoVdb)
   std::string storage = "float";  // "float" or "half", with ", steps of ..." behind it
   double conversionError = 0;  // largest error of the step to 32-bit float, before; add both for a bound of the total
   std::uint64_t clippedVoxels = 0;  // below clipBelow or above clipAbove, and not background already
@@ -80,8 +82,9 @@ BuiltGrid sparsifyGrid(const ScalarGrid& grid, const BuildOptions& options = {})
 enum class VdbCodec { blosc, zip, none };
 
 /// Writes grids to a new .vdb file, whole or not at all; inactive values are left out.
-/// @throw IoError  not writable, disk full
+/// @throw IoError  not writable, disk full; what `check` throws
 void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
-                const openvdb::MetaMap& metadata = {}, VdbCodec codec = VdbCodec::blosc);
+                const openvdb::MetaMap& metadata = {}, VdbCodec codec = VdbCodec::blosc,
+                const WrittenCheck& check = {});
 
 }  // namespace umbrick

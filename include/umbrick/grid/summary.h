@@ -1,4 +1,4 @@
-// What is in a .vdb file, grid by grid: the facts that `umbrick info` prints.
+// What is in a .vdb or .nvdb file, grid by grid: the facts that `umbrick info` prints.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -42,8 +42,8 @@ struct GridSummary {
 
 struct FileSummary {
   std::int64_t fileBytes = 0;
-  std::uint32_t version = 0;   // of the file format
-  std::string libraryVersion;  // of the OpenVDB that wrote it
+  std::string version;         // of the file format: "224", or "32.4" of NanoVDB
+  std::string libraryVersion;  // of the OpenVDB that wrote it; "NanoVDB 32.4" for a .nvdb file
   std::map<std::string, std::string> metadata;
   std::vector<GridSummary> grids;
 };

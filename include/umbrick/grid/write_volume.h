@@ -2,19 +2,47 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <vector>
 
+#include "umbrick/grid/build_grid.h"
 #include "umbrick/grid/float_grid.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
 
-/// Writes grids to a new .nvdb file of NanoVDB 10, uncompressed 32-bit floats, whole or not at all.
+/// How NanoVDB stores the values of a leaf: as 32-bit floats, or in so many bits each between the smallest and the
+/// largest of the leaf's 512 values. adaptive: each leaf in as few of 1, 2, 4, 8 and 16 as keep maxError.
+enum class NanoValues { float32, bits4, bits8, bits16, adaptive };
+
+struct NanoOptions {
+  NanoValues values = NanoValues::float32;
+  float maxError = 0;  // of adaptive, grid units
+};
+
+/// |grid - file| of what was quantised: all values of leaves, inactive ones too, which are not exact either. Tiles and
+/// background are.
+struct QuantiseError {
+  double max = 0;                         // grid units
+  double squares = 0, activeSquares = 0;  // sums: of all values in leaves, of the active ones
+};
+
+/// Adds that to what was lost before: the sums bound both errors.
+/// @param activeOnly  the report is about the active voxels of a grid, not about all of a dense volume
+void addQuantising(BuildReport& report, const QuantiseError& error, bool activeOnly);
+
+/// A WrittenCheck that is also told the errors of the grids.
+using NanoCheck = std::function<void(const std::filesystem::path& written, const std::vector<QuantiseError>& errors)>;
+
+/// Writes grids to a new .nvdb file of NanoVDB 32.4, unpacked, whole or not at all. It keeps no metadata but the name.
+/// @return the error of each grid, as measured; 0 for 32-bit floats
 /// @throw IoError          not writable, disk full
-/// @throw InvalidArgument  a grid that NanoVDB cannot hold
-void writeNanoVdb(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids);
+/// @throw InvalidArgument  a grid that NanoVDB cannot hold, or one for which 16 bits a value do not keep maxError
+std::vector<QuantiseError> writeNanoVdb(const std::filesystem::path& path,
+                                        const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
+                                        const NanoOptions& options = {}, const NanoCheck& check = {});
 
 struct DenseOptions {
   /// Stored if it is one of u8, i8, u16, i16, u32 and i32 and holds every value of the grid exactly; else f32.
@@ -29,10 +57,10 @@ struct DenseBox {
 };
 
 /// Writes the box of the active voxels with what is in it, whole or not at all, as a .nrrd, or as a .mhd beside a .raw
-/// of the same stem. The place of the voxels is that of the grid, rotation and shear included.
+/// of the same stem (PendingPair). The place of the voxels is that of the grid, rotation and shear included.
 /// @throw IoError          not writable, disk full
 /// @throw InvalidArgument  no active voxel, a box beyond maxBytes, a transform that is not affine, another extension
-DenseBox writeDense(const std::filesystem::path& path, const openvdb::FloatGrid& grid,
-                    const DenseOptions& options = {});
+DenseBox writeDense(const std::filesystem::path& path, const openvdb::FloatGrid& grid, const DenseOptions& options = {},
+                    const WrittenCheck& check = {});
 
 }  // namespace umbrick

@@ -1,0 +1,25 @@
+// Volumes in numbered files: the frames of a sequence.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace umbrick {
+
+struct Frame {
+  std::int64_t number = 0;
+  std::filesystem::path path;
+};
+
+/// True where the name has one %d, %4d or %04d and nothing is called just that. Folders do not count, nor does what
+/// stands behind the name of an HDF5 file: "run/file_%04d.h5:/density" is a pattern.
+bool isFramePattern(const std::filesystem::path& path);
+
+/// The path of one frame. @pre isFramePattern(pattern), but for a file that is called so
+std::filesystem::path framePath(const std::filesystem::path& pattern, std::int64_t number);
+
+/// The files and folders there are of a pattern, in ascending order; numbers may be missing.
+/// @throw IoError  none, or a folder that cannot be read  @throw InvalidArgument  not a pattern
+std::vector<Frame> listFrames(const std::filesystem::path& pattern);
+
+}  // namespace umbrick

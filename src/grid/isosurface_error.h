@@ -1,0 +1,16 @@
+// How far a level set is from the surface that it stands for.
+#pragma once
+#include <functional>
+#include <glm/mat4x4.hpp>
+
+#include "umbrick/grid/float_grid.h"
+#include "umbrick/grid/isosurface.h"
+
+namespace umbrick {
+
+/// Sets crossings, maxError and rmsError.
+/// @param toLevelSet  from indices of the volume to indices of the level set
+void measureIsosurface(const openvdb::FloatTree& volume, float value, const openvdb::FloatGrid& levelSet,
+                       const glm::dmat4& toLevelSet, IsosurfaceReport& report);
+
+}  // namespace umbrick

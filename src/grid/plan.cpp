@@ -1,0 +1,225 @@
+#include "umbrick/grid/plan.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <ostream>
+#include <set>
+#include <streambuf>
+#include <vector>
+
+#include "grid/layer_sample.h"
+#include "grid/slab_builder.h"
+#include "grid/sparse_rule.h"
+#include "grid/vdb_codec.h"
+#include "umbrick/core/error.h"
+#include "umbrick/grid/float_grid.h"
+
+namespace umbrick {
+namespace {
+
+using Node = openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType;  // 128^3 voxels
+using UpperNode = openvdb::FloatTree::RootNodeType::ChildNodeType;            // 4096^3 voxels
+
+constexpr std::int64_t kEdge = Leaf::DIM;  // slices in a layer
+constexpr std::int64_t kNodeLayers = Node::DIM / kEdge;
+constexpr std::int64_t kFewestLayers = 5;
+constexpr std::size_t kLeavesPacked = 128;  // of a layer
+constexpr double kHeadBytes = 2000;         // of a .vdb: names, metadata, transform
+
+// Takes bytes and keeps their number.
+class CountingBuffer : public std::streambuf {
+ public:
+  std::int64_t bytes = 0;
+
+ protected:
+  int overflow(int c) override {
+    ++bytes;
+    return c == traits_type::eof() ? 0 : c;
+  }
+  std::streamsize xsputn(const char*, std::streamsize count) override {
+    bytes += count;
+    return count;
+  }
+};
+
+// What was seen of one layer.
+struct Layer {
+  std::int64_t slices = 0;
+  double activeVoxels = 0, leaves = 0, packedBytes = 0;  // packedBytes: of its leaves
+  std::vector<Leaf> kept;                                // some of them
+};
+
+// Which nodes there are above the leaves, and in how many layers each was met.
+class NodeCensus {
+ public:
+  void add(const openvdb::FloatTree& tree, std::int64_t layer) {
+    ++layersOf_[layer / kNodeLayers];
+    for (auto node = tree.cbeginNode(); node; ++node) {
+      if (node.getLevel() == 1) ++nodes_[node.getCoord()];
+      if (node.getLevel() == 2) uppers_.insert(node.getCoord());
+    }
+  }
+  double uppers() const { return static_cast<double>(uppers_.size()); }
+  /// How often a layer of leaves misses a node that another one of the same node has met is how many may be unmet.
+  Estimate nodes(bool all) const {
+    double once = 0, looked = 0;
+    for (const auto& [origin, layers] : nodes_) {
+      if (layersOf_.at(origin.z() / Node::DIM) < 2) continue;
+      ++looked;
+      once += layers == 1;
+    }
+    const auto count = static_cast<double>(nodes_.size());
+    const double share = looked > 0 ? once / looked : 0.5;
+    return {count, all ? 0 : count * share};
+  }
+
+ private:
+  std::map<std::int64_t, int> layersOf_;  // layers read of each layer of nodes
+  std::map<openvdb::Coord, int> nodes_;
+  std::set<openvdb::Coord> uppers_;
+};
+
+std::int64_t layersToRead(const VolumeInfo& info, std::int64_t layers, const PlanOptions& plan) {
+  if (!(plan.share > 0) || plan.share > 1)
+    throw InvalidArgument(info.name + ": plan: expected a share in (0, 1], found " + std::to_string(plan.share));
+  const double voxels = double(info.dims.x) * double(info.dims.y) * double(info.dims.z);
+  if (voxels <= double(plan.wholeVoxels)) return layers;
+  return std::min(layers, std::max(std::int64_t{std::lround(plan.share * double(layers))}, kFewestLayers));
+}
+
+Layer surveyLayer(const openvdb::FloatTree& tree, std::int64_t slices) {
+  Layer layer;
+  layer.slices = slices;
+  layer.activeVoxels = static_cast<double>(tree.activeVoxelCount());
+  const std::size_t leaves = tree.leafCount();
+  layer.leaves = static_cast<double>(leaves);
+  const std::size_t stride = std::max<std::size_t>((leaves + kLeavesPacked - 1) / kLeavesPacked, 1);
+  std::size_t i = 0;
+  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
+    if (i++ % stride == stride / 2) layer.kept.push_back(*leaf);
+  return layer;
+}
+
+// How the values are stored: with a largest error that hangs on all of them.
+BuildOptions storageOf(const std::vector<Layer>& layers, const BuildOptions& options, float background) {
+  if (!options.maxError) return options;
+  openvdb::FloatTree tree(background);
+  for (const Layer& layer : layers)
+    for (const Leaf& leaf : layer.kept) tree.addLeaf(new Leaf(leaf));
+  return storageWithin(tree, options);
+}
+
+// Packs what was kept of a layer; leaves that become tiles on the way are none.
+void packLayer(Layer& layer, const SparseRule& rule, bool again, std::uint32_t compression) {
+  if (layer.kept.empty()) return;
+  const float background = rule.background();
+  CountingBuffer buffer;
+  std::ostream out(&buffer);
+  openvdb::io::setDataCompression(out, compression);
+  openvdb::io::setGridBackgroundValuePtr(out, &background);
+  double leaves = 0;
+  for (Leaf& leaf : layer.kept) {
+    if (again) {
+      LeafVoxels voxels;
+      std::copy_n(leaf.buffer().data(), Leaf::SIZE, voxels.value);
+      voxels.active = leaf.valueMask();
+      SparseTally ignored;
+      if (rule.apply(voxels, ignored)) continue;
+      std::copy_n(voxels.value, Leaf::SIZE, leaf.buffer().data());
+      leaf.setValueMask(voxels.active);
+    }
+    ++leaves;
+    leaf.writeTopology(out, rule.half());
+    leaf.writeBuffers(out, rule.half());
+  }
+  const double scale = layer.leaves / static_cast<double>(layer.kept.size());
+  layer.leaves = scale * leaves;
+  layer.packedBytes = scale * static_cast<double>(buffer.bytes);
+}
+
+std::vector<double> column(const std::vector<Layer>& layers, double Layer::*field) {
+  std::vector<double> out;
+  for (const Layer& layer : layers) out.push_back(layer.*field);
+  return out;
+}
+
+Estimate sum(const Estimate& a, double scaleA, const Estimate& b, double scaleB, double more) {
+  return {scaleA * a.value + scaleB * b.value + more, std::hypot(scaleA * a.uncertainty, scaleB * b.uncertainty)};
+}
+
+// The slabs that the grid is built from: one at hand, one being read, and one more where values are converted.
+double slabBytes(const VoxelSource& source) {
+  const VolumeInfo& info = source.info();
+  const double voxels = double(info.dims.x * info.dims.y) * double(std::min(slabSlices(info.dims), info.dims.z));
+  if (const auto stored = source.storedType()) return voxels * 2 * voxelBytes(*stored);
+  return voxels * (2 * sizeof(float) + static_cast<std::size_t>(voxelBytes(info.type)));
+}
+
+}  // namespace
+
+GridPlan planGrid(VoxelSource& source, const BuildOptions& options, const PlanOptions& plan) {
+  openvdb::initialize();
+  const VolumeInfo info = source.info();
+  checkSlabFits(info, std::min(kEdge, info.dims.z));
+  const SparseRule rule(info.name, options, 0);
+  GridPlan out;
+  out.voxels = static_cast<std::uint64_t>(info.dims.x * info.dims.y) * static_cast<std::uint64_t>(info.dims.z);
+  out.layers = (info.dims.z + kEdge - 1) / kEdge;
+  out.layersRead = layersToRead(info, out.layers, plan);
+  out.peakBytes.value = slabBytes(source);
+
+  SlabBuilder builder(info.dims, rule);
+  SparseTally tally;
+  Slab slab(source);
+  NodeCensus census;
+  std::vector<Layer> layers;
+  std::int64_t position = 0;
+  for (std::int64_t k = 0; k < out.layersRead; ++k) {
+    const std::int64_t layer = (2 * k + 1) * out.layers / (2 * out.layersRead);
+    if (layer * kEdge > position) source.skipSlices(layer * kEdge - position);
+    slab.read(layer * kEdge, kEdge);
+    position = layer * kEdge + slab.slices();
+    openvdb::FloatTree tree(rule.background());
+    tally.add(builder.addTo(tree, slab));
+    census.add(tree, layer);
+    layers.push_back(surveyLayer(tree, slab.slices()));
+    out.voxelsRead += static_cast<std::uint64_t>(slab.slices() * info.dims.x * info.dims.y);
+    if (options.progress) options.progress(double(position) / double(info.dims.z));
+  }
+  checkTally(info.name, tally);
+  const BuildOptions stored = storageOf(layers, options, rule.background());
+  const SparseRule finalRule(info.name, stored, rule.background());
+  for (Layer& layer : layers) packLayer(layer, finalRule, options.maxError.has_value(), compressionOf(plan.codec));
+
+  const auto layerLeaves =
+      static_cast<double>(((info.dims.x + kEdge - 1) / kEdge) * ((info.dims.y + kEdge - 1) / kEdge));
+  const double layerVoxels = double(info.dims.x) * double(info.dims.y) * kEdge;
+  const auto totalOfLayers = [&](double Layer::*field, double most) {
+    return totalOf(column(layers, field), static_cast<double>(out.layers), most);
+  };
+  out.storage = storageText(stored);
+  out.activeVoxels = totalOfLayers(&Layer::activeVoxels, layerVoxels);
+  // The last layer may have fewer slices: voxels are of slices, leaves of layers.
+  std::int64_t slices = 0;
+  for (const Layer& layer : layers) slices += layer.slices;
+  out.activeVoxels.value *= double(info.dims.z) / double(out.layers) * double(out.layersRead) / double(slices);
+  // Leaves may hide where nothing was met, but not where all is constant.
+  const double hidden = out.activeVoxels.value > 0 ? 0 : layerLeaves;
+  out.leaves = totalOfLayers(&Layer::leaves, hidden);
+  const auto leafBytes = static_cast<double>(Leaf().memUsage());
+  const Estimate nodes = census.nodes(out.layersRead == out.layers);
+  const Estimate packed = totalOfLayers(&Layer::packedBytes, hidden * leafBytes);
+  out.gridBytes = sum(out.leaves, leafBytes, nodes, sizeof(Node), census.uppers() * sizeof(UpperNode));
+  // Of a node there are two masks and a byte; what tiles it has packs well.
+  out.fileBytes = sum(packed, 1, nodes, 2 * Node::NUM_VALUES / 8 + 1,
+                      census.uppers() * (2 * UpperNode::NUM_VALUES / 8 + 1) + kHeadBytes);
+  out.peakBytes.value += out.gridBytes.value;
+  out.peakBytes.uncertainty = out.gridBytes.uncertainty;
+  return out;
+}
+
+}  // namespace umbrick

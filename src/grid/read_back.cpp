@@ -1,0 +1,69 @@
+#include "umbrick/grid/read_back.h"
+
+#include <string>
+#include <vector>
+
+#include "grid/misplaced.h"
+#include "umbrick/core/error.h"
+#include "umbrick/grid/grid_listing.h"
+#include "umbrick/grid/scalar_grid.h"
+#include "umbrick/ingest/open_volume.h"
+
+namespace umbrick {
+namespace fs = std::filesystem;
+namespace {
+
+using openvdb::Coord;
+using openvdb::FloatGrid;
+
+FloatGrid::ConstPtr readDense(const fs::path& file, const FloatGrid& written) {
+  const openvdb::CoordBBox box = written.evalActiveVoxelBoundingBox();
+  const auto source = openVolume(file);
+  const VolumeInfo& info = source->info();
+  const glm::i64vec3 dims(box.dim().x(), box.dim().y(), box.dim().z());
+  if (info.dims != dims) throw IoError(info.name + ": dims: expected those of the active voxels, found others");
+  const FloatGrid::Ptr grid = written.deepCopy();
+  openvdb::Mat4d map;
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row) map(column, row) = info.indexToWorld[column][row];
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(map));
+  grid->transform().preTranslate(-box.min().asVec3d());
+  auto access = grid->getAccessor();
+  std::vector<float> slice(static_cast<std::size_t>(dims.x * dims.y));
+  for (int z = 0; z < dims.z; ++z) {
+    source->readSlab(1, slice);
+    auto value = slice.begin();
+    for (int y = 0; y < dims.y; ++y)
+      for (int x = 0; x < dims.x; ++x, ++value) {
+        const Coord at = box.min().offsetBy(x, y, z);
+        if (access.getValue(at) != *value) access.setValue(at, *value);
+      }
+  }
+  return grid;
+}
+
+}  // namespace
+
+FloatGrid::ConstPtr readBack(const fs::path& file, const FloatGrid& written, std::size_t index) {
+  const std::string extension = file.extension().string();
+  FloatGrid::ConstPtr found;
+  if (extension == ".nrrd" || extension == ".mhd") {
+    found = readDense(file, written);
+  } else {
+    const GridListing listing = listGrids(file);
+    if (index >= listing.grids.size())
+      throw IoError(file.string() + ": expected " + std::to_string(index + 1) + " grids or more, found " +
+                    std::to_string(listing.grids.size()));
+    found = readScalarGridAnyTransform(file, listing.grids[index].label).grid;
+  }
+  const std::string name = file.string() + ": grid \"" + written.getName() + '"';
+  if (found->background() != written.background())
+    throw IoError(name + ": background: expected " + std::to_string(written.background()) + ", found " +
+                  std::to_string(found->background()));
+  if (const auto other = misplacedCorner(written, *found, 1e-6))
+    throw IoError(name + ": place of voxel " + vectorText(other->voxel) + ": expected " + vectorText(other->expected) +
+                  ", found " + vectorText(other->found));
+  return found;
+}
+
+}  // namespace umbrick

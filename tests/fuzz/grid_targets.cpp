@@ -1,0 +1,51 @@
+#include <fstream>
+#include <map>
+
+#include "fuzz/readers.h"
+#include "support/files.h"
+#include "umbrick/grid/scalar_grid.h"
+#include "umbrick/grid/write_volume.h"
+
+namespace umbrick::fuzz {
+namespace {
+
+// Leaves, a tile and a background; in the format that the extension says.
+std::string goodFile(const std::filesystem::path& path) {
+  openvdb::initialize();
+  const auto grid = openvdb::FloatGrid::create(0.5f);
+  grid->setName("density");
+  grid->insertMeta("note", openvdb::StringMetadata("text"));
+  for (int i = 0; i < 24; ++i) grid->tree().setValue({i, 3 * i % 7, 5}, static_cast<float>(i));
+  grid->tree().addTile(1, {0, 64, 0}, 2, true);
+  if (path.extension() == ".vdb") {
+    writeGrids(path, {grid}, {}, VdbCodec::none);
+  } else {
+    NanoOptions options;
+    options.values = NanoValues::adaptive;
+    options.maxError = 0.1f;
+    writeNanoVdb(path, {grid}, options);
+  }
+  return readBytes(path);
+}
+
+void patchedGrid(const std::filesystem::path& path, std::string_view changes) {
+  static std::map<std::string, std::string> good;
+  std::string& bytes = good[path.extension().string()];
+  if (bytes.empty()) bytes = goodFile(path);
+  std::string patched = bytes;
+  for (std::size_t i = 0; i + 5 <= changes.size(); i += 5) {
+    std::size_t place = 0;
+    for (std::size_t k = 0; k < 4; ++k) place = place << 8 | static_cast<unsigned char>(changes[i + k]);
+    patched[place % patched.size()] = changes[i + 4];
+  }
+  writeBytes(path, patched);
+  readScalarGrid(path);
+}
+
+}  // namespace
+
+std::map<std::string, NamedTarget> gridTargets() {
+  return {{"nvdb", {".nvdb", patchedGrid}}, {"vdb", {".vdb", patchedGrid}}};
+}
+
+}  // namespace umbrick::fuzz
