@@ -108,10 +108,10 @@ std::vector<FrameFiles> findFrames(const ConvertOptions& options) {
     throw UsageError(input->string() + ": expected one input where frames are numbered, found " +
                      std::to_string(inputs.size()));
   const auto asked = range.empty() ? std::nullopt : std::optional(parseRange(range));
-  const std::vector<Frame> all = listFrames(*input);
+  const std::vector<NumberedFile> all = listFrames(*input);
   const FrameRange wanted = asked.value_or(FrameRange{all.front().number, all.back().number});
   std::vector<FrameFiles> frames;
-  for (const Frame& frame : all)
+  for (const NumberedFile& frame : all)
     if (wanted.contains(frame.number)) frames.push_back({frame.number, frame.path, framePath(output, frame.number)});
   if (frames.empty()) throw IoError(input->string() + ": expected frames of " + range + ", found none");
   if (images) checkImages(frames.front());

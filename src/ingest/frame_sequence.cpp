@@ -42,12 +42,12 @@ fs::path framePath(const fs::path& pattern, std::int64_t number) {
   return names ? names->path(names->pattern.name(number)) : pattern;
 }
 
-std::vector<Frame> listFrames(const fs::path& path) {
+std::vector<NumberedFile> listFrames(const fs::path& path) {
   const auto names = parse(path);
   if (!names)
     throw InvalidArgument(path.string() + ": expected a name with one %d or %04d, found " + path.filename().string());
   const NamePattern& pattern = names->pattern;
-  std::vector<Frame> frames;
+  std::vector<NumberedFile> frames;
   std::error_code error;
   for (const auto& each : fs::directory_iterator(names->folder.empty() ? "." : names->folder, error)) {
     const std::string name = each.path().filename().string();
@@ -61,7 +61,8 @@ std::vector<Frame> listFrames(const fs::path& path) {
   }
   if (error) throw IoError(names->folder.string() + ": cannot read: " + error.message());
   if (frames.empty()) throw IoError(path.string() + ": expected files of that pattern, found none");
-  std::sort(frames.begin(), frames.end(), [](const Frame& a, const Frame& b) { return a.number < b.number; });
+  std::sort(frames.begin(), frames.end(),
+            [](const NumberedFile& a, const NumberedFile& b) { return a.number < b.number; });
   return frames;
 }
 

@@ -63,9 +63,9 @@ bool beforeByNumbers(const std::string& a, const std::string& b) {
 
 // All numbers there are, which must follow each other.
 std::vector<fs::path> numberedFiles(const fs::path& path) {
-  const std::vector<Frame> files = listFrames(path);
+  const std::vector<NumberedFile> files = listFrames(path);
   std::vector<fs::path> out;
-  for (const Frame& file : files) {
+  for (const NumberedFile& file : files) {
     if (!out.empty() && file.number != files[out.size() - 1].number + 1)
       throw IoError(path.string() + ": expected a file for each number from " + std::to_string(files.front().number) +
                     " to " + std::to_string(files.back().number) + ", found no " +

@@ -22,7 +22,7 @@ TEST_CASE("Frames come in the order of their numbers, gaps and all", "[ingest]")
   CHECK(frames[1].number == 3);
   CHECK(frames[2].path == folder.path() / "f_0011.raw");
   CHECK(frames[3].number == 12345);
-  for (const Frame& frame : frames) CHECK(framePath(folder.path() / "f_%04d.raw", frame.number) == frame.path);
+  for (const NumberedFile& frame : frames) CHECK(framePath(folder.path() / "f_%04d.raw", frame.number) == frame.path);
   const auto plain = listFrames(folder.path() / "f_%d.raw");
   REQUIRE(plain.size() == 2);
   CHECK(plain[0].number == 3);

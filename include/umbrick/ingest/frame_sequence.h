@@ -6,7 +6,7 @@
 
 namespace umbrick {
 
-struct Frame {
+struct NumberedFile {
   std::int64_t number = 0;
   std::filesystem::path path;
 };
@@ -20,6 +20,6 @@ std::filesystem::path framePath(const std::filesystem::path& pattern, std::int64
 
 /// The files and folders there are of a pattern, in ascending order; numbers may be missing.
 /// @throw IoError  none, or a folder that cannot be read  @throw InvalidArgument  not a pattern
-std::vector<Frame> listFrames(const std::filesystem::path& pattern);
+std::vector<NumberedFile> listFrames(const std::filesystem::path& pattern);
 
 }  // namespace umbrick
