@@ -9,7 +9,6 @@ called by pyopenvdb on 32-bit floats that are in memory already, pruned, and nei
 Needs Debian's python3-numpy, python3-openvdb and python3-h5py, gzip, xz and zstd.
 """
 import argparse
-import os
 import pathlib
 import statistics
 import struct
@@ -87,14 +86,20 @@ def make_files(work, edge):
         "HDF5": ([f"{work}/v.h5:/plain"], raw), "HDF5, chunks, gzip": ([f"{work}/v.h5:/packed"], work / "v.raw.gz")}
 
 
+# A process counts the memory of the one it came from: this one is large.
+RUN = """import os, subprocess, sys, time
+begin = time.perf_counter()
+_, status, used = os.wait4(subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL).pid, 0)
+print(status, time.perf_counter() - begin, used.ru_maxrss / 1024)"""
+
+
 def run(command):
     """Seconds and peak MB."""
-    begin = time.perf_counter()
-    child = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-    _, status, used = os.wait4(child.pid, 0)
+    told = subprocess.run([sys.executable, "-c", RUN, *map(str, command)], stdout=subprocess.PIPE, check=True, text=True)
+    status, seconds, peak = map(float, told.stdout.split())
     if status:
         sys.exit(f"convert_formats.py: failed: {' '.join(map(str, command))}")
-    return time.perf_counter() - begin, used.ru_maxrss / 1024
+    return seconds, peak
 
 
 def copy_from_dense(floats):
