@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "grid/box_overlap.h"
+#include "grid/slab_builder.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -74,6 +75,7 @@ class ResampledSource : public VoxelSource {
         y_(overlapOf(source_->info(), 1, spacing.y)),
         z_(overlapOf(source_->info(), 2, spacing.z)),
         report_(report ? std::move(report) : std::make_shared<ResampleReport>()) {
+    checkSlabFits(source_->info(), 1);
     info_ = source_->info();
     info_.dims = {std::int64_t(x_.count()), std::int64_t(y_.count()), std::int64_t(z_.count())};
     info_.type = VoxelType::f32;

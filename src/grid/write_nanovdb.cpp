@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "umbrick/core/error.h"
@@ -39,7 +40,9 @@ QuantiseError errorOf(const FloatGrid& grid, const nanovdb::NanoGrid<Build>& sto
           const auto* other = access.probeLeaf(nanovdb::Coord(at.x(), at.y(), at.z()));
           if (!other) throw std::runtime_error("a leaf is missing");
           for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
-            const double difference = std::abs(double(leaf->getValue(i)) - double(other->getValue(i)));
+            const double off = std::abs(double(leaf->getValue(i)) - double(other->getValue(i)));
+            // Values too far apart for a step in 32 bits come back as NaN.
+            const double difference = std::isnan(off) ? std::numeric_limits<double>::infinity() : off;
             error.max = std::max(error.max, difference);
             error.squares += difference * difference;
             if (leaf->isValueOn(i)) error.activeSquares += difference * difference;
@@ -61,6 +64,9 @@ NanoGridData quantised(const FloatGrid& grid, float tolerance = 0) {
   convert.oracle().setTolerance(tolerance);
   NanoGridData out{convert(grid), {}};
   out.error = errorOf(grid, *out.handle.template grid<Build>());
+  if (!std::isfinite(out.error.max))
+    throw InvalidArgument("grid \"" + grid.getName() +
+                          "\": quantise: expected values of a leaf that differ by what a 32-bit float holds");
   return out;
 }
 
