@@ -35,20 +35,12 @@ std::vector<std::string> selectedGrids(const GridInput& input, const GridListing
   return selected;
 }
 
-// The grid as it is converted: masked, then cropped.
-ScalarGrid readFiltered(const GridInput& input, const std::string& label, std::uint64_t* leftOut = nullptr) {
-  ScalarGrid grid = readScalarGridAnyTransform(input.path, label);
-  if (!input.mask && !input.crop) return grid;
-  const auto part = grid.grid->deepCopy();
-  try {
-    const std::uint64_t masked = input.mask ? maskGrid(*part, *input.mask().grid) : 0;
-    if (leftOut) *leftOut = masked;
-    if (input.crop) cropGrid(*part, *input.crop);
-  } catch (const InvalidArgument& error) {
-    throw UsageError(input.path.string() + ": " + error.what());
-  }
-  grid.grid = part;
-  return grid;
+// What is wrong with a mask or a crop is wrong usage.
+template <class Filter>
+void filtering(const fs::path& input, const Filter& filter) try {
+  filter();
+} catch (const InvalidArgument& error) {
+  throw UsageError(input.string() + ": " + error.what());
 }
 
 void warnOfLevelSet(const GridInput& input, const std::string& label, const openvdb::FloatGrid& grid) {
@@ -63,6 +55,7 @@ void warnOfLevelSet(const GridInput& input, const std::string& label, const open
 struct GridFile {
   GridInput input;
   GridListing listing;
+  std::optional<ScalarGrid> mask;
   std::vector<std::string> labels;
   std::vector<ScalarGrid> grids;       // those that are read already
   std::vector<std::uint64_t> leftOut;  // by the mask
@@ -73,8 +66,24 @@ GridFile openGrids(GridInput input) {
   file.listing = listGrids(input.path);
   file.labels = selectedGrids(input, file.listing);
   file.leftOut.resize(file.labels.size());
+  if (input.mask) filtering(input.path, [&] { file.mask = input.mask(); });
   file.input = std::move(input);
   return file;
+}
+
+// The grid as it is converted: masked, then cropped.
+ScalarGrid readFiltered(const GridFile& file, std::size_t i, std::uint64_t* leftOut = nullptr) {
+  const GridInput& input = file.input;
+  ScalarGrid grid = readScalarGridAnyTransform(input.path, file.labels[i]);
+  if (!file.mask && !input.crop) return grid;
+  const auto part = grid.grid->deepCopy();
+  filtering(input.path, [&] {
+    const std::uint64_t masked = file.mask ? maskGrid(*part, *file.mask->grid) : 0;
+    if (leftOut) *leftOut = masked;
+    if (input.crop) cropGrid(*part, *input.crop);
+  });
+  grid.grid = part;
+  return grid;
 }
 
 // What became of the grids of a file.
@@ -92,7 +101,7 @@ GridResult convertFile(GridFile& file, const GridOutput& output) {
   std::vector<openvdb::FloatGrid::ConstPtr> grids;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const ScalarGrid source =
-        file.grids.empty() ? readFiltered(input, labels[i], &file.leftOut[i]) : std::exchange(file.grids[i], {});
+        file.grids.empty() ? readFiltered(file, i, &file.leftOut[i]) : std::exchange(file.grids[i], {});
     warnOfLevelSet(input, labels[i], *source.grid);
     BuiltGrid built = sparsifyGrid(source, input.build);
     if (input.isosurface) result.surfaces.push_back(replaceByIsosurface(input.path, *input.isosurface, built));
@@ -105,7 +114,7 @@ GridResult convertFile(GridFile& file, const GridOutput& output) {
       if (!quantised.empty()) addQuantising(report, quantised[i], /*activeOnly=*/true);
       if (!input.verify) continue;
       const auto back = readBack(written, *grids[i], i);
-      result.seen.push_back(verifyGrid(readFiltered(input, labels[i]), *back, input.build, report.quantising.max));
+      result.seen.push_back(verifyGrid(readFiltered(file, i), *back, input.build, report.quantising.max));
       checkVerified(output.path, labels[i], result.seen.back(), report);
     }
   };
@@ -116,8 +125,7 @@ GridResult convertFile(GridFile& file, const GridOutput& output) {
 // Opened, and its grids read.
 GridFile readGrids(const GridInput& input) {
   GridFile file = openGrids(input);
-  for (std::size_t i = 0; i < file.labels.size(); ++i)
-    file.grids.push_back(readFiltered(input, file.labels[i], &file.leftOut[i]));
+  for (std::size_t i = 0; i < file.labels.size(); ++i) file.grids.push_back(readFiltered(file, i, &file.leftOut[i]));
   return file;
 }
 

@@ -15,11 +15,15 @@ namespace umbrick::tools {
 namespace {
 namespace fs = std::filesystem;
 
+CLI::Validator voxelType() {
+  return CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "i64", "u64", "f16", "f32", "f64"});
+}
+
 void addRawOptions(CLI::App& command, const std::shared_ptr<ConvertOptions>& options) {
   const std::string raw = "Headerless raw";
   command.add_option("--dims", options->dims, "voxels along x (fastest), y and z")->expected(3)->group(raw);
   command.add_option("--type", options->type, "of a voxel: u8, i8, u16, i16, u32, i32, i64, u64, f16, f32, f64")
-      ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "i64", "u64", "f16", "f32", "f64"}))
+      ->check(voxelType())
       ->group(raw);
   command.add_option("--endian", options->endian, "little or big")
       ->check(CLI::IsMember({"little", "big"}))
@@ -173,7 +177,7 @@ void addConvertOptions(CLI::App& command, const std::shared_ptr<ConvertOptions>&
       "a volume of the same size and place, or a .vdb: voxels where it is 0 become background; headerless "
       "raw has the same --dims");
   command.add_option("--mask-type", options->maskType, "of a voxel of a headerless mask, as --type")
-      ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "i64", "u64", "f16", "f32", "f64"}))
+      ->check(voxelType())
       ->capture_default_str();
   command.add_option(
       "--crop", options->crop,

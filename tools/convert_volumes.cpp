@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <utility>
 
@@ -63,24 +64,24 @@ void build(VoxelSource& source, Converted& one) {
 }
 
 // Verifies the file before it takes its name, where that is asked for. @return bytes written
-std::int64_t write(const GridOutput& output, std::vector<Converted*> all) {
+std::int64_t write(const GridOutput& output, std::span<Converted> all) {
   std::vector<openvdb::FloatGrid::ConstPtr> grids;
-  for (const Converted* one : all) grids.push_back(one->built.grid);
+  for (const Converted& one : all) grids.push_back(one.built.grid);
   const NanoCheck check = [&](const fs::path& written, const std::vector<QuantiseError>& quantised) {
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const ConvertOptions& options = all[i]->options;
-      BuildReport& report = all[i]->built.report;
+      const ConvertOptions& options = all[i].options;
+      BuildReport& report = all[i].built.report;
       if (!quantised.empty()) addQuantising(report, quantised[i], /*activeOnly=*/false);
       if (!options.verify) continue;
       const auto back = readBack(written, *grids[i], i);
       ReadNotes again;
       const auto source = openFiltered(options, again);
       beginPass(options, "verifying", source->info());
-      all[i]->seen = verifyGrid(*source, *back, options.build, report.quantising.max);
-      checkVerified(output.path, options.build.name, *all[i]->seen, report);
+      all[i].seen = verifyGrid(*source, *back, options.build, report.quantising.max);
+      checkVerified(output.path, options.build.name, *all[i].seen, report);
     }
   };
-  return writeOutput(output, grids, {}, all.front()->type, check);
+  return writeOutput(output, grids, {}, all.front().type, check);
 }
 
 void print(const Converted& one) {
@@ -120,16 +121,14 @@ std::vector<ConvertOptions> optionsOfInputs(const ConvertOptions& options) {
 
 Outcome convertVolumes(const ConvertOptions& options) {
   std::vector<Converted> all;
-  std::vector<Converted*> places;
   for (const ConvertOptions& input : optionsOfInputs(options)) {
     auto [source, one] = openToConvert(input);
     if (one.background) printBackground(*one.background);
     build(*source, one);
     all.push_back(std::move(one));
   }
-  for (Converted& one : all) places.push_back(&one);
   Outcome outcome;
-  outcome.bytesOut = write(options.output, places);
+  outcome.bytesOut = write(options.output, all);
   options.bar->clear();
   for (const Converted& one : all) {
     print(one);
@@ -153,7 +152,7 @@ Outcome convertVolumeFrames(const ConvertOptions& options, const std::vector<Fra
     const auto source = ahead.next();
     Converted& one = opened[i];
     build(*source, one);
-    const std::int64_t bytes = write(one.options.output, {&one});
+    const std::int64_t bytes = write(one.options.output, {&one, 1});
     options.bar->clear();
     print(frames[i], one, bytes);
     outcome.bytesIn += one.bytesIn;

@@ -1,4 +1,4 @@
-// The matrix of a linear OpenVDB transform.
+// Matrices as glm and as OpenVDB have them.
 #pragma once
 #include <openvdb/math/Transform.h>
 
@@ -17,6 +17,14 @@ inline glm::dmat4 affineMatrix(const openvdb::math::Transform& transform) {
     for (int i = 0; i < 3; ++i) matrix[axis][i] = image[i];
   }
   return matrix;
+}
+
+/// The same matrix for OpenVDB, which multiplies rows from the left.
+inline openvdb::Mat4d rowMatrix(const glm::dmat4& matrix) {
+  openvdb::Mat4d out;
+  for (int axis = 0; axis < 4; ++axis)
+    for (int i = 0; i < 4; ++i) out(axis, i) = matrix[axis][i];
+  return out;
 }
 
 }  // namespace umbrick

@@ -7,6 +7,7 @@
 #include <memory>
 #include <sstream>
 
+#include "grid/affine_matrix.h"
 #include "grid/slab_builder.h"
 #include "grid/sparse_rule.h"
 #include "umbrick/core/error.h"
@@ -18,13 +19,10 @@ namespace {
 openvdb::math::Transform::Ptr makeTransform(const std::string& name, const glm::dmat4& indexToWorld) {
   using namespace openvdb::math;
   const glm::dmat4& m = indexToWorld;
-  Mat4d map;
+  const Mat4d map = rowMatrix(m);
   bool diagonal = true;
-  for (int axis = 0; axis < 4; ++axis)
-    for (int i = 0; i < 4; ++i) {
-      map(axis, i) = m[axis][i];
-      if (axis < 3 && i < 3 && axis != i && m[axis][i] != 0) diagonal = false;
-    }
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < 3; ++i) diagonal = diagonal && (axis == i || m[axis][i] == 0);
   // Programs that know only scale and translation can place the grid when it needs no more than that.
   const Vec3d scale(m[0][0], m[1][1], m[2][2]), origin(m[3][0], m[3][1], m[3][2]);
   try {

@@ -7,22 +7,13 @@
 namespace umbrick {
 namespace {
 
-double rootMean(double squares, std::uint64_t voxels) {
-  return voxels > 0 ? std::sqrt(squares / static_cast<double>(voxels)) : 0.0;
-}
-
 // Errors of one conversion after the other add up at most; both norms obey the triangle inequality.
-void addTo(openvdb::FloatGrid& grid, const char* key, double value) {
-  if (const auto before = grid.getMetadata<openvdb::DoubleMetadata>(key)) value += before->value();
+template <class Value>
+void addTo(openvdb::FloatGrid& grid, const char* key, Value value) {
+  using Metadata = openvdb::TypedMetadata<Value>;
+  if (const auto before = grid.getMetadata<Metadata>(key)) value += before->value();
   grid.removeMeta(key);
-  if (value > 0) grid.insertMeta(key, openvdb::DoubleMetadata(value));
-}
-
-void countIn(openvdb::FloatGrid& grid, const char* key, std::uint64_t voxels) {
-  auto sum = static_cast<std::int64_t>(voxels);
-  if (const auto before = grid.getMetadata<openvdb::Int64Metadata>(key)) sum += before->value();
-  grid.removeMeta(key);
-  if (sum > 0) grid.insertMeta(key, openvdb::Int64Metadata(sum));
+  if (value > 0) grid.insertMeta(key, Metadata(value));
 }
 
 }  // namespace
@@ -60,7 +51,7 @@ void describe(openvdb::FloatGrid& grid, const SparseTally& tally, const BuildOpt
   addTo(grid, "error_max_rounding", report.rounding.max);
   addTo(grid, "error_rms_rounding", report.rounding.rms);
   addTo(grid, "error_max_to_float", report.conversionError);
-  countIn(grid, "clipped_voxels", report.clippedVoxels);
+  addTo(grid, "clipped_voxels", static_cast<std::int64_t>(report.clippedVoxels));
   addTo(grid, "clipped_max_change", report.maxClipChange);
   grid.removeMeta("storage");
   grid.insertMeta("storage", openvdb::StringMetadata(report.storage));

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <vector>
 
+#include "grid/affine_matrix.h"
 #include "grid/isosurface_error.h"
 #include "grid/sparse_rule.h"
 #include "umbrick/core/error.h"
@@ -83,10 +84,7 @@ glm::dmat4 cubicPlace(const glm::dmat4& place) {
 
 openvdb::math::Transform::Ptr transformOf(const FloatGrid& volume, const glm::dmat4& before, const glm::dmat4& place) {
   if (place == before) return volume.transform().copy();
-  openvdb::math::Mat4d matrix;
-  for (int axis = 0; axis < 4; ++axis)
-    for (int i = 0; i < 4; ++i) matrix(axis, i) = place[axis][i];
-  return openvdb::math::Transform::createLinearTransform(matrix);
+  return openvdb::math::Transform::createLinearTransform(rowMatrix(place));
 }
 
 // Distances without a sign become negative where the volume has the value or more.

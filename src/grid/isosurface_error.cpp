@@ -97,7 +97,7 @@ void measureIsosurface(const openvdb::FloatTree& volume, float value, const open
   const double voxel = levelSet.voxelSize()[0];
   report.crossings = all.count;
   report.maxError = all.distance.max / voxel;
-  report.rmsError = all.count > 0 ? std::sqrt(all.distance.squares / double(all.count)) / voxel : 0;
+  report.rmsError = rootMean(all.distance.squares, all.count) / voxel;
 }
 
 }  // namespace umbrick

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "grid/affine_matrix.h"
 #include "grid/misplaced.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/grid_listing.h"
@@ -23,10 +24,7 @@ FloatGrid::ConstPtr readDense(const fs::path& file, const FloatGrid& written) {
   const glm::i64vec3 dims(box.dim().x(), box.dim().y(), box.dim().z());
   if (info.dims != dims) throw IoError(info.name + ": dims: expected those of the active voxels, found others");
   const FloatGrid::Ptr grid = written.deepCopy();
-  openvdb::Mat4d map;
-  for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row) map(column, row) = info.indexToWorld[column][row];
-  grid->setTransform(openvdb::math::Transform::createLinearTransform(map));
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(rowMatrix(info.indexToWorld)));
   grid->transform().preTranslate(-box.min().asVec3d());
   auto access = grid->getAccessor();
   std::vector<float> slice(static_cast<std::size_t>(dims.x * dims.y));

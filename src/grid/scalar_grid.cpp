@@ -1,6 +1,4 @@
 #include "umbrick/grid/scalar_grid.h"
-#include "umbrick/grid/float_grid.h"
-#include "umbrick/grid/grid_listing.h"
 
 #include <openvdb/tree/LeafManager.h>
 #include <tbb/parallel_reduce.h>
@@ -11,6 +9,8 @@
 #include "grid/affine_matrix.h"
 #include "grid/vdb_file.h"
 #include "umbrick/core/error.h"
+#include "umbrick/grid/float_grid.h"
+#include "umbrick/grid/grid_listing.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -24,6 +26,11 @@ struct LossSum {
     squares += other.squares;
   }
 };
+
+/// Of so many voxels; 0 of none.
+inline double rootMean(double squares, std::uint64_t voxels) {
+  return voxels > 0 ? std::sqrt(squares / static_cast<double>(voxels)) : 0.0;
+}
 
 /// The losses of some voxels; tallies add up in any order, squares up to rounding.
 struct SparseTally {

@@ -8,13 +8,13 @@
 #include <limits>
 #include <vector>
 
+#include "grid/slab_builder.h"
 #include "grid/sparse_rule.h"
 
 namespace umbrick {
 namespace {
 
 constexpr std::int64_t kEdge = Leaf::DIM;
-constexpr std::int64_t kSlabVoxels = std::int64_t(1) << 22;
 
 struct Seen {
   LossSum error;
@@ -25,6 +25,13 @@ struct Seen {
     active += other.active;
   }
 };
+
+VerifyReport reportOf(const Seen& seen, std::uint64_t voxels, const openvdb::FloatGrid& grid) {
+  return {voxels,
+          {seen.error.max, rootMean(seen.error.squares, voxels)},
+          seen.wrongly,
+          grid.activeVoxelCount() - seen.active};
+}
 
 class Verifier {
  public:
@@ -83,12 +90,12 @@ VerifyReport verifyGrid(VoxelSource& source, const openvdb::FloatGrid& grid, con
                         double backgroundError) {
   const glm::i64vec3 dims = source.info().dims;
   const std::int64_t leavesX = (dims.x + kEdge - 1) / kEdge, leavesY = (dims.y + kEdge - 1) / kEdge;
-  const std::int64_t slabSlices = std::max<std::int64_t>(kSlabVoxels / (dims.x * dims.y) / kEdge, 1) * kEdge;
+  const std::int64_t atOnce = slabSlices(dims);
   const Verifier verifier(grid, options, backgroundError);
   Seen seen;
   std::vector<float> slab;
-  for (std::int64_t first = 0; first < dims.z; first += slabSlices) {
-    const std::int64_t slices = std::min(slabSlices, dims.z - first);
+  for (std::int64_t first = 0; first < dims.z; first += atOnce) {
+    const std::int64_t slices = std::min(atOnce, dims.z - first);
     slab.resize(static_cast<std::size_t>(slices * dims.x * dims.y));
     source.readSlab(slices, slab);
     seen.add(tbb::parallel_deterministic_reduce(
@@ -109,12 +116,7 @@ VerifyReport verifyGrid(VoxelSource& source, const openvdb::FloatGrid& grid, con
         }));
     if (options.progress) options.progress(static_cast<double>(first) / static_cast<double>(dims.z));
   }
-  VerifyReport report;
-  report.voxels = static_cast<std::uint64_t>(dims.x * dims.y) * static_cast<std::uint64_t>(dims.z);
-  report.error = {seen.error.max, std::sqrt(seen.error.squares / static_cast<double>(report.voxels))};
-  report.wrongly = seen.wrongly;
-  report.beyond = grid.activeVoxelCount() - seen.active;
-  return report;
+  return reportOf(seen, static_cast<std::uint64_t>(dims.x * dims.y) * static_cast<std::uint64_t>(dims.z), grid);
 }
 
 VerifyReport verifyGrid(const ScalarGrid& source, const openvdb::FloatGrid& grid, const BuildOptions& asked,
@@ -155,13 +157,7 @@ VerifyReport verifyGrid(const ScalarGrid& source, const openvdb::FloatGrid& grid
     else
       for (auto voxel = tile.getBoundingBox().begin(); voxel; ++voxel) compare(*voxel, 1);
   }
-  VerifyReport report;
-  report.voxels = source.grid->activeVoxelCount();
-  report.error = {seen.error.max,
-                  report.voxels > 0 ? std::sqrt(seen.error.squares / static_cast<double>(report.voxels)) : 0.0};
-  report.wrongly = seen.wrongly;
-  report.beyond = grid.activeVoxelCount() - seen.active;
-  return report;
+  return reportOf(seen, source.grid->activeVoxelCount(), grid);
 }
 
 }  // namespace umbrick

@@ -11,6 +11,7 @@
 #include <limits>
 #include <sstream>
 
+#include "grid/sparse_rule.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
 #include "umbrick/grid/write_volume.h"
@@ -19,7 +20,6 @@ namespace umbrick {
 namespace {
 
 using openvdb::FloatGrid;
-using Leaf = openvdb::FloatTree::LeafNodeType;
 
 QuantiseError sum(QuantiseError a, const QuantiseError& b) {
   a.max = std::max(a.max, b.max);
@@ -104,13 +104,10 @@ NanoGridData toNano(const FloatGrid& grid, const NanoOptions& options) {
 }  // namespace
 
 void addQuantising(BuildReport& report, const QuantiseError& error, bool activeOnly) {
-  const auto rms = [](double squares, std::uint64_t voxels) {
-    return voxels > 0 ? std::sqrt(squares / static_cast<double>(voxels)) : 0.0;
-  };
-  report.quantising = {error.max, rms(activeOnly ? error.activeSquares : error.squares, report.voxels)};
+  report.quantising = {error.max, rootMean(activeOnly ? error.activeSquares : error.squares, report.voxels)};
   report.maxError += report.quantising.max;
   report.rmsError += report.quantising.rms;
-  report.activeRmsError += rms(error.activeSquares, report.activeVoxels);
+  report.activeRmsError += rootMean(error.activeSquares, report.activeVoxels);
 }
 
 std::vector<QuantiseError> writeNanoVdb(const std::filesystem::path& path,

@@ -1,9 +1,9 @@
 // What a conversion would make, without making it.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
 
 #include "tools/program.h"
+#include "tools/refusal.h"
 
 using namespace umbrick;
 using Catch::Contains;
@@ -39,12 +39,7 @@ TEST_CASE("Plans of what cannot be planned are wrong usage", "[tools]") {
   const TemporaryFolder folder;
   writeBytes(folder.path() / "v.raw", "abcdefgh");
   const auto refused = [&](const std::string& arguments, int status, const std::string& message) {
-    CAPTURE(arguments);
-    const ProgramResult result = runProgram(folder, "convert " + arguments);
-    CHECK(result.status == status);
-    CHECK_THAT(result.err, Contains(message));
-    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
-    CHECK(result.out.empty());
+    CHECK(expectRefusal(folder, "convert " + arguments, status, message).out.empty());
   };
   const std::string raw = " --dims 2 2 2 --type u8 ";
   refused("v.raw" + raw, 2, "--output is required");

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "tools/program.h"
+#include "tools/refusal.h"
 
 using namespace umbrick;
 using Catch::Contains;
@@ -31,12 +32,8 @@ TEST_CASE("A resampled volume says what it changed, keeps that, and verifies", "
 TEST_CASE("A spacing that cannot be resampled to is refused in one line", "[tools]") {
   const TemporaryFolder folder;
   writeBytes(folder.path() / "v.raw", "abcdefgh");
-  const auto refused = [&](const std::string& arguments, int status, const char* message) {
-    CAPTURE(arguments);
-    const ProgramResult result = runProgram(folder, "convert " + arguments + " -o o.vdb");
-    CHECK(result.status == status);
-    CHECK_THAT(result.err, Contains(message));
-    CHECK(filesIn(folder) == 1);
+  const auto refused = [&](const std::string& arguments, int status, const std::string& message) {
+    expectRefusal(folder, "convert " + arguments + " -o o.vdb", status, message);
   };
   const std::string raw = "v.raw --dims 2 2 2 --type u8 ";
   refused(raw + "--resample 1 2", 2, "--resample: expected one spacing or three, found 2");

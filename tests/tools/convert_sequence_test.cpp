@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tools/program.h"
+#include "tools/refusal.h"
 
 using namespace umbrick;
 namespace fs = std::filesystem;
@@ -112,14 +113,8 @@ TEST_CASE("Numbers on one side only, or in what cannot be frames, are wrong usag
       67);
   writeBytes(folder.path() / "s1.png", png);
   writeBytes(folder.path() / "s2.png", png);
-  const std::size_t before = filesIn(folder);
   const auto refused = [&](const std::string& arguments, int status, const std::string& message) {
-    CAPTURE(arguments);
-    const ProgramResult result = runProgram(folder, "convert " + arguments);
-    CHECK(result.status == status);
-    CHECK_THAT(result.err, Contains(message));
-    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
-    CHECK(filesIn(folder) == before);
+    expectRefusal(folder, "convert " + arguments, status, message);
   };
   refused("f_%03d.nrrd -o o.vdb", 2, "f_%03d.nrrd: expected an output with a number in its name too");
   refused("f_%03d.nrrd -o o_%s.vdb", 2, "such as out_%04d.vdb, found o_%s.vdb");

@@ -73,12 +73,12 @@ def main():
     print("| method | slices | options | cost | error |\n| --- | --- | --- | --- | --- |")
     series = [[], [], []]
     for (slices, *options), method in DOS + DOS_2 + ORDINATES:
-        own, after = cost(slices, [*cone, *options]), baseline()
-        ratio, before = 2 * own / (before + after), after
-        seconds(slices, [*cone, *options], 1)
+        own = cost(slices, [*cone, *options])
         compared = subprocess.run([arguments.umbrick, "compare", picture, truth, "--layer", "RGBA", "--json"],
                                   stdout=subprocess.PIPE, check=True)
         error = json.loads(compared.stdout)["layers"][0]["rmse_rgb"]
+        after = baseline()
+        ratio, before = 2 * own / (before + after), after
         series[method].append((ratio, error))
         print(f"| {TITLES[method]} | {slices} | {' '.join(map(str, options[2:]))} | {ratio:.2f} | {error:.4f} |", flush=True)
     (work / "costs.dat").write_text("\n\n".join("".join(f"{x} {y}\n" for x, y in points) for points in series))

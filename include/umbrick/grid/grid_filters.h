@@ -16,9 +16,9 @@ void cropGrid(openvdb::FloatGrid& grid, const IndexBox& box);
 
 /// Voxels stay active where an active voxel of the mask at the same index is not 0; all others become background.
 /// @return how many that are active are not thereafter
-/// @throw InvalidArgument  the mask's background is not 0, or it places a corner of the grid's active voxels further
-/// off
-///                         than a thousandth of a voxel; a level set
+/// @throw InvalidArgument  the mask's background is not 0; it places a corner of the grid's active voxels further off
+/// than
+///                         a thousandth of a voxel; a level set
 std::uint64_t maskGrid(openvdb::FloatGrid& grid, const openvdb::FloatGrid& mask);
 
 /// The voxels (0, 0, 0) to dims - 1 of a grid, active or not.
