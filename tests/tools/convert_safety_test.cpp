@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
+#include "tools/interrupt.h"
 #include "tools/program.h"
 
 using namespace umbrick;
@@ -60,22 +61,23 @@ TEST_CASE("A disk that is full leaves the old file and nothing beside it", "[too
 TEST_CASE("An interrupted conversion says so, fails and leaves nothing", "[tools]") {
   const TemporaryFolder folder;
   // Minutes of work.
-  CHECK(runBy(folder, "timeout --preserve-status -s INT 1",
-              "convert /dev/zero --dims 4000 4000 4000 --type u8 -o a.vdb") == 1);
-  const std::string err = readBytes(folder.path() / ".err");
-  CHECK_THAT(err, Contains("a.vdb: interrupted before it was written"));
-  CHECK(std::count(err.begin(), err.end(), '\n') == 1);
-  CHECK(filesIn(folder) == 2);
+  const ProgramResult result = interruptProgram(folder, "convert /dev/zero --dims 4000 4000 4000 --type u8 -o a.vdb");
+  CHECK(result.status == 1);
+  CHECK_THAT(result.err, Contains("a.vdb: interrupted before it was written"));
+  CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+  CHECK(filesIn(folder) == 0);
 }
 
 TEST_CASE("A terminal is shown the share, the rate and the time left, each pass by itself", "[tools]") {
   const TemporaryFolder folder;
-  const std::string command = "'" UMBRICK_PROGRAM "' convert /dev/zero --dims 4000 4000 4000 --type u8 -o a.vdb";
   // script(1) gives the program a terminal and writes down what appears there.
-  CHECK(runBy(folder, "script -q -e -c \"timeout --preserve-status -s INT 1 " + command + "\" seen;", "--help") == 0);
-  const std::string seen = readBytes(folder.path() / "seen");
-  CHECK_THAT(seen, Catch::Matches("[^]*converting zero \\[#*[.]*\\] +[0-9]+ %  [0-9]+ MB/s  [0-9:]+ left[^]*"));
-  CHECK_THAT(seen, Contains("a.vdb: interrupted before it was written"));
+  const auto seen = [&] { return bytesSoFar(folder.path() / "seen"); };
+  const ProgramResult result = interruptProgram(
+      folder, "convert /dev/zero --dims 4000 4000 4000 --type u8 -o a.vdb",
+      [&] { return seen().find(" left") != std::string::npos; }, "script -q -e -f -c 'sh .run' seen");
+  CHECK(result.status == 1);
+  CHECK_THAT(seen(), Catch::Matches("[^]*converting zero \\[#*[.]*\\] +[0-9]+ %  [0-9]+ MB/s  [0-9:]+ left[^]*"));
+  CHECK_THAT(seen(), Contains("a.vdb: interrupted before it was written"));
 }
 
 TEST_CASE("The number of threads does not change a file's content", "[tools]") {

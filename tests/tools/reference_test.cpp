@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/ball_workplace.h"
+#include "tools/interrupt.h"
 #include "umbrick/image/png.h"
 
 using namespace umbrick;
@@ -107,30 +108,21 @@ TEST_CASE("A standard error is reached, or the pixels that do not reach it are c
 
 TEST_CASE("An interrupted reference writes what is done, says so and fails", "[tools]") {
   const BallWorkplace at;
-  // Hours of work, interrupted after two seconds, also within a pixel.
-  const TemporaryFolder& folder = at.folder;
-  const std::string command = "cd '" + folder.path().string() +
-                              "' && timeout -s INT 2 '" UMBRICK_PROGRAM "' reference " + kVolume +
-                              "--model cone --integrator monte-carlo --samples 100000 --size 512x512 -o a.exr "
-                              "--stats s.json >.out 2>.err; echo $? >.status";
-  REQUIRE(std::system(command.c_str()) == 0);
-  // timeout itself reports 124 when it had to interrupt, whatever the program's own status.
-  CHECK_THAT(readBytes(folder.path() / ".status"), Contains("124"));
-  const std::string err = readBytes(folder.path() / ".err");
-  CHECK_THAT(err, Contains("stopped; the picture holds"));
-  CHECK(std::count(err.begin(), err.end(), '\n') == 1);
-  const ExrFile file = at.exr("a.exr");
-  CHECK(file.metadata.at("umbrick.complete") == "false");
-  const auto stats = nlohmann::json::parse(readBytes(folder.path() / "s.json"));
+  const std::size_t before = filesIn(at.folder);
+  // Hours of work.
+  const std::string hours = "reference " + kVolume + "--integrator monte-carlo ";
+  const ProgramResult result =
+      interruptProgram(at.folder, hours + "--model cone --samples 100000 --size 512x512 -o a.exr --stats s.json");
+  CHECK(result.status == 1);
+  CHECK_THAT(result.err, Contains("stopped; the picture holds"));
+  CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+  CHECK(at.exr("a.exr").metadata.at("umbrick.complete") == "false");
+  const nlohmann::json stats = at.json("s.json");
   CHECK(stats["complete"] == false);
   CHECK(stats["share_done"].get<double>() < 1);
-  // The program's own status.
-  const std::string preserved = "cd '" + folder.path().string() +
-                                "' && timeout --preserve-status -s INT 2 '" UMBRICK_PROGRAM "' reference " + kVolume +
-                                "--integrator monte-carlo --samples 1000000000 --size 2x2 -o b.exr "
-                                ">/dev/null 2>&1; echo $? >.status";
-  REQUIRE(std::system(preserved.c_str()) == 0);
-  CHECK(readBytes(folder.path() / ".status") == "1\n");
+  CHECK(filesIn(at.folder) == before + 2);
+  // Also within a pixel.
+  CHECK(interruptProgram(at.folder, hours + "--samples 1000000000 --size 2x2 -o b.exr").status == 1);
 }
 
 TEST_CASE("What the reference cannot do is one line and leaves no file", "[tools]") {

@@ -1,0 +1,67 @@
+// Interrupts the umbrick program while it works, as Ctrl-C does.
+#pragma once
+#include <signal.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <fstream>
+#include <functional>
+#include <future>
+#include <string>
+#include <thread>
+
+#include "tools/program.h"
+
+namespace umbrick {
+
+/// What is in a file so far; nothing where there is none yet.
+inline std::string bytesSoFar(const std::filesystem::path& file) {
+  return std::filesystem::exists(file) ? readBytes(file) : std::string();
+}
+
+/// Does a process handle SIGINT by itself? Until it does, an interrupt ends it as any other program.
+inline bool catchesInterrupt(pid_t pid) {
+  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("SigCgt:")) return (std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1) & 1) != 0;
+  return false;
+}
+
+/// Runs the program and interrupts it once it is prepared for that and `ready` holds. However slow the machine is, the
+/// interrupt comes neither before nor after the work if there is enough of that.
+/// @param shell  what runs the file .run, which becomes the program, in `folder`
+inline ProgramResult interruptProgram(
+    const TemporaryFolder& folder, const std::string& arguments,
+    const std::function<bool()>& ready = [] { return true; }, const std::string& shell = "sh .run") {
+  const auto in = [&](const char* name) { return folder.path() / name; };
+  writeBytes(in(".run"), "echo $$ >.pid\nexec '" UMBRICK_PROGRAM "' " + arguments + "\n");
+  const std::string command = "cd '" + folder.path().string() + "' && " + shell + " >.out 2>.err";
+  std::future<int> run = std::async(std::launch::async, [&] { return std::system(command.c_str()); });
+  const auto waitUntil = [&](const std::function<bool()>& condition) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    while (!condition() && std::chrono::steady_clock::now() < end)
+      if (run.wait_for(std::chrono::milliseconds(5)) == std::future_status::ready) break;
+    return condition();
+  };
+  pid_t pid = 0;
+  const bool started = waitUntil([&] {
+    const std::string text = bytesSoFar(in(".pid"));
+    if (text.ends_with('\n')) pid = std::stoi(text);
+    return pid > 0 && catchesInterrupt(pid);
+  });
+  const bool prepared = started && waitUntil(ready);
+  const bool ended = run.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  if (pid > 0 && !ended) ::kill(pid, prepared ? SIGINT : SIGKILL);
+  const int raw = run.get();
+  ProgramResult result;
+  result.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
+  result.out = readBytes(in(".out"));
+  result.err = readBytes(in(".err"));
+  for (const char* name : {".run", ".pid", ".out", ".err"}) std::filesystem::remove(in(name));
+  CAPTURE(arguments, result.err);
+  REQUIRE(prepared);
+  REQUIRE_FALSE(ended);
+  return result;
+}
+
+}  // namespace umbrick
