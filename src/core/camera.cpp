@@ -2,13 +2,13 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <string>
 
 #include "umbrick/core/error.h"
 
 namespace umbrick {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 
 bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -20,8 +20,9 @@ void checkNumbers(const Camera& camera) {
   if (camera.width < 1 || camera.height < 1)
     throw InvalidArgument("camera: size is " + std::to_string(camera.width) + " x " + std::to_string(camera.height) +
                           ", must be at least 1 x 1");
-  if (camera.projection == Projection::perspective && !(camera.fov > 0 && camera.fov < kPi))
-    throw InvalidArgument("camera: fov is " + print(camera.fov * 180 / kPi) + " degrees, must be in (0, 180)");
+  if (camera.projection == Projection::perspective && !(camera.fov > 0 && camera.fov < std::numbers::pi))
+    throw InvalidArgument("camera: fov is " + print(camera.fov * 180 / std::numbers::pi) +
+                          " degrees, must be in (0, 180)");
   if (camera.projection == Projection::orthographic && !(camera.viewHeight > 0 && std::isfinite(camera.viewHeight)))
     throw InvalidArgument("camera: view height is " + print(camera.viewHeight) + ", must be above 0");
   if (!(camera.nearDistance >= 0 && std::isfinite(camera.nearDistance)))

@@ -24,8 +24,7 @@ namespace {
 using Node = openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType;  // 128^3 voxels
 using UpperNode = openvdb::FloatTree::RootNodeType::ChildNodeType;            // 4096^3 voxels
 
-constexpr std::int64_t kEdge = Leaf::DIM;  // slices in a layer
-constexpr std::int64_t kNodeLayers = Node::DIM / kEdge;
+constexpr std::int64_t kNodeLayers = Node::DIM / kLeafEdge;  // a layer: as many slices as a leaf is high
 constexpr std::int64_t kFewestLayers = 5;
 constexpr std::size_t kLeavesPacked = 128;  // of a layer
 constexpr double kHeadBytes = 2000;         // of a .vdb: names, metadata, transform
@@ -164,11 +163,11 @@ double slabBytes(const VoxelSource& source) {
 GridPlan planGrid(VoxelSource& source, const BuildOptions& options, const PlanOptions& plan) {
   openvdb::initialize();
   const VolumeInfo info = source.info();
-  checkSlabFits(info, std::min(kEdge, info.dims.z));
+  checkSlabFits(info, std::min(kLeafEdge, info.dims.z));
   const SparseRule rule(info.name, options, 0);
   GridPlan out;
   out.voxels = static_cast<std::uint64_t>(info.dims.x * info.dims.y) * static_cast<std::uint64_t>(info.dims.z);
-  out.layers = (info.dims.z + kEdge - 1) / kEdge;
+  out.layers = (info.dims.z + kLeafEdge - 1) / kLeafEdge;
   out.layersRead = layersToRead(info, out.layers, plan);
   out.peakBytes.value = slabBytes(source);
 
@@ -180,9 +179,9 @@ GridPlan planGrid(VoxelSource& source, const BuildOptions& options, const PlanOp
   std::int64_t position = 0;
   for (std::int64_t k = 0; k < out.layersRead; ++k) {
     const std::int64_t layer = (2 * k + 1) * out.layers / (2 * out.layersRead);
-    if (layer * kEdge > position) source.skipSlices(layer * kEdge - position);
-    slab.read(layer * kEdge, kEdge);
-    position = layer * kEdge + slab.slices();
+    if (layer * kLeafEdge > position) source.skipSlices(layer * kLeafEdge - position);
+    slab.read(layer * kLeafEdge, kLeafEdge);
+    position = layer * kLeafEdge + slab.slices();
     openvdb::FloatTree tree(rule.background());
     tally.add(builder.addTo(tree, slab));
     census.add(tree, layer);
@@ -196,8 +195,8 @@ GridPlan planGrid(VoxelSource& source, const BuildOptions& options, const PlanOp
   for (Layer& layer : layers) packLayer(layer, finalRule, options.maxError.has_value(), compressionOf(plan.codec));
 
   const auto layerLeaves =
-      static_cast<double>(((info.dims.x + kEdge - 1) / kEdge) * ((info.dims.y + kEdge - 1) / kEdge));
-  const double layerVoxels = double(info.dims.x) * double(info.dims.y) * kEdge;
+      static_cast<double>(((info.dims.x + kLeafEdge - 1) / kLeafEdge) * ((info.dims.y + kLeafEdge - 1) / kLeafEdge));
+  const double layerVoxels = double(info.dims.x) * double(info.dims.y) * kLeafEdge;
   const auto totalOfLayers = [&](double Layer::*field, double most) {
     return totalOf(column(layers, field), static_cast<double>(out.layers), most);
   };

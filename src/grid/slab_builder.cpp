@@ -18,7 +18,6 @@
 namespace umbrick {
 namespace {
 
-constexpr int kEdge = Leaf::DIM;                             // 8 voxels
 constexpr std::int64_t kSlabVoxels = std::int64_t(1) << 21;  // enough work for all cores, little enough for caches
 
 // The background as it is stored; nothing where the type cannot hold it, so that no voxel is equal to it.
@@ -41,21 +40,21 @@ template <class T>
 class RowTest {
  public:
   explicit RowTest(T background) : background_(background) {
-    std::array<T, kEdge> row;
+    std::array<T, kLeafEdge> row;
     row.fill(background);
     std::memcpy(pattern_.data(), row.data(), sizeof row);
   }
 
   void include(const T* row, std::span<std::uint64_t> differs, std::int64_t dimX) const {
-    const std::int64_t whole = dimX / kEdge;
+    const std::int64_t whole = dimX / kLeafEdge;
     for (std::int64_t leaf = 0; leaf < whole; ++leaf) {
       std::array<std::uint64_t, sizeof(T)> words;
-      std::memcpy(words.data(), row + leaf * kEdge, sizeof words);
+      std::memcpy(words.data(), row + leaf * kLeafEdge, sizeof words);
       std::uint64_t bits = 0;
       for (std::size_t i = 0; i < words.size(); ++i) bits |= words[i] ^ pattern_[i];
       differs[static_cast<std::size_t>(leaf)] |= bits;
     }
-    for (std::int64_t x = whole * kEdge; x < dimX; ++x)
+    for (std::int64_t x = whole * kLeafEdge; x < dimX; ++x)
       differs[static_cast<std::size_t>(whole)] |= static_cast<std::uint64_t>(row[x] != background_);
   }
 
@@ -67,7 +66,7 @@ class RowTest {
 }  // namespace
 
 std::int64_t slabSlices(const glm::i64vec3& dims) {
-  return std::max<std::int64_t>(kSlabVoxels / (dims.x * dims.y) / kEdge, 1) * kEdge;
+  return std::max<std::int64_t>(kSlabVoxels / (dims.x * dims.y) / kLeafEdge, 1) * kLeafEdge;
 }
 
 // A header may promise slices of any size, and packed files cannot be held against what it promises.
@@ -99,11 +98,14 @@ double Slab::read(std::int64_t firstSlice, std::int64_t atMost) {
 }
 
 SlabBuilder::SlabBuilder(const glm::i64vec3& dims, const SparseRule& rule)
-    : dims_(dims), rule_(rule), leavesX_((dims.x + kEdge - 1) / kEdge), leavesY_((dims.y + kEdge - 1) / kEdge) {}
+    : dims_(dims),
+      rule_(rule),
+      leavesX_((dims.x + kLeafEdge - 1) / kLeafEdge),
+      leavesY_((dims.y + kLeafEdge - 1) / kLeafEdge) {}
 
 SparseTally SlabBuilder::addTo(openvdb::FloatTree& tree, const Slab& slab) {
   places_.clear();
-  places_.resize(static_cast<std::size_t>(leavesX_ * leavesY_ * ((slab.slices() + kEdge - 1) / kEdge)));
+  places_.resize(static_cast<std::size_t>(leavesX_ * leavesY_ * ((slab.slices() + kLeafEdge - 1) / kLeafEdge)));
   const SparseTally tally = [&] {
     switch (slab.type()) {
       case VoxelType::u8:
@@ -142,8 +144,8 @@ SparseTally SlabBuilder::build(const Slab& slab) {
           const std::size_t first = row * leavesX;
           if (test) {
             const openvdb::Coord at = origin(first, slab);
-            const std::int64_t endZ = std::min<std::int64_t>(at.z() + kEdge, slab.firstSlice() + slab.slices());
-            const std::int64_t endY = std::min<std::int64_t>(at.y() + kEdge, dims_.y);
+            const std::int64_t endZ = std::min<std::int64_t>(at.z() + kLeafEdge, slab.firstSlice() + slab.slices());
+            const std::int64_t endY = std::min<std::int64_t>(at.y() + kLeafEdge, dims_.y);
             std::fill(differs.begin(), differs.end(), 0);
             for (std::int64_t z = at.z(); z < endZ; ++z)
               for (std::int64_t y = at.y(); y < endY; ++y)
@@ -164,10 +166,10 @@ template <class T>
 SlabBuilder::Place SlabBuilder::buildLeaf(const T* slabVoxels, const Slab& slab, const openvdb::Coord& at,
                                           SparseTally& tally) const {
   LeafVoxels voxels;
-  const auto nx = static_cast<int>(std::min<std::int64_t>(kEdge, dims_.x - at.x()));
-  const auto ny = static_cast<int>(std::min<std::int64_t>(kEdge, dims_.y - at.y()));
-  const auto nz = static_cast<int>(std::min<std::int64_t>(kEdge, slab.firstSlice() + slab.slices() - at.z()));
-  if (nx < kEdge || ny < kEdge || nz < kEdge) {  // voxels beyond the volume
+  const auto nx = static_cast<int>(std::min<std::int64_t>(kLeafEdge, dims_.x - at.x()));
+  const auto ny = static_cast<int>(std::min<std::int64_t>(kLeafEdge, dims_.y - at.y()));
+  const auto nz = static_cast<int>(std::min<std::int64_t>(kLeafEdge, slab.firstSlice() + slab.slices() - at.z()));
+  if (nx < kLeafEdge || ny < kLeafEdge || nz < kLeafEdge) {  // voxels beyond the volume
     std::fill(std::begin(voxels.value), std::end(voxels.value), rule_.background());
     for (int x = 0; x < nx; ++x)
       for (int y = 0; y < ny; ++y)
@@ -191,8 +193,9 @@ SlabBuilder::Place SlabBuilder::buildLeaf(const T* slabVoxels, const Slab& slab,
 
 openvdb::Coord SlabBuilder::origin(std::size_t place, const Slab& slab) const {
   const auto i = static_cast<std::int64_t>(place);
-  return openvdb::Coord(static_cast<int>(i % leavesX_ * kEdge), static_cast<int>(i / leavesX_ % leavesY_ * kEdge),
-                        static_cast<int>(slab.firstSlice() + i / (leavesX_ * leavesY_) * kEdge));
+  return openvdb::Coord(static_cast<int>(i % leavesX_ * kLeafEdge),
+                        static_cast<int>(i / leavesX_ % leavesY_ * kLeafEdge),
+                        static_cast<int>(slab.firstSlice() + i / (leavesX_ * leavesY_) * kLeafEdge));
 }
 
 }  // namespace umbrick

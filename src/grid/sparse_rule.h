@@ -13,6 +13,7 @@
 namespace umbrick {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
+inline constexpr std::int64_t kLeafEdge = Leaf::DIM;  // 8 voxels
 
 /// Errors of some voxels.
 struct LossSum {

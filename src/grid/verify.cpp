@@ -14,8 +14,6 @@
 namespace umbrick {
 namespace {
 
-constexpr std::int64_t kEdge = Leaf::DIM;
-
 struct Seen {
   LossSum error;
   std::uint64_t wrongly = 0, active = 0;
@@ -89,7 +87,7 @@ bool VerifyReport::honours(const BuildReport& stated) const {
 VerifyReport verifyGrid(VoxelSource& source, const openvdb::FloatGrid& grid, const BuildOptions& options,
                         double backgroundError) {
   const glm::i64vec3 dims = source.info().dims;
-  const std::int64_t leavesX = (dims.x + kEdge - 1) / kEdge, leavesY = (dims.y + kEdge - 1) / kEdge;
+  const std::int64_t leavesX = (dims.x + kLeafEdge - 1) / kLeafEdge, leavesY = (dims.y + kLeafEdge - 1) / kLeafEdge;
   const std::int64_t atOnce = slabSlices(dims);
   const Verifier verifier(grid, options, backgroundError);
   Seen seen;
@@ -99,13 +97,13 @@ VerifyReport verifyGrid(VoxelSource& source, const openvdb::FloatGrid& grid, con
     slab.resize(static_cast<std::size_t>(slices * dims.x * dims.y));
     source.readSlab(slices, slab);
     seen.add(tbb::parallel_deterministic_reduce(
-        tbb::blocked_range<std::int64_t>(0, leavesX * leavesY * ((slices + kEdge - 1) / kEdge), 64), Seen{},
+        tbb::blocked_range<std::int64_t>(0, leavesX * leavesY * ((slices + kLeafEdge - 1) / kLeafEdge), 64), Seen{},
         [&](const tbb::blocked_range<std::int64_t>& range, Seen sum) {
           const auto access = grid.getConstAccessor();
           for (std::int64_t i = range.begin(); i != range.end(); ++i) {
-            const glm::i64vec3 from(i % leavesX * kEdge, i / leavesX % leavesY * kEdge,
-                                    first + i / (leavesX * leavesY) * kEdge);
-            const glm::i64vec3 to = glm::min(from + kEdge, glm::i64vec3(dims.x, dims.y, first + slices));
+            const glm::i64vec3 from(i % leavesX * kLeafEdge, i / leavesX % leavesY * kLeafEdge,
+                                    first + i / (leavesX * leavesY) * kLeafEdge);
+            const glm::i64vec3 to = glm::min(from + kLeafEdge, glm::i64vec3(dims.x, dims.y, first + slices));
             sum.add(verifier.compare(slab.data(), from, to, dims, first, access));
           }
           return sum;

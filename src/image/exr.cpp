@@ -53,7 +53,7 @@ void checkLayers(const std::vector<ImageLayer>& layers) {
 }
 
 // One channel as it goes to the file: rows from the top.
-struct Plane {
+struct ChannelRows {
   std::string name;
   Imf::PixelType type = Imf::FLOAT;
   std::vector<char> bytes;
@@ -71,13 +71,13 @@ std::vector<char> planeOf(const Image& image, int c, Convert convert) {
 
 half toHalf(float value) { return half(std::isfinite(value) ? std::clamp(value, -kLargestHalf, kLargestHalf) : value); }
 
-void writePlanes(const std::string& path, int width, int height, const std::vector<Plane>& planes,
+void writePlanes(const std::string& path, int width, int height, const std::vector<ChannelRows>& planes,
                  const std::map<std::string, std::string>& metadata) {
   Imf::Header header(width, height);
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const auto& [key, text] : metadata) header.insert(key, Imf::StringAttribute(text));
   Imf::FrameBuffer buffer;
-  for (const Plane& plane : planes) {
+  for (const ChannelRows& plane : planes) {
     header.channels().insert(plane.name, Imf::Channel(plane.type));
     const std::size_t size = plane.type == Imf::HALF ? sizeof(half) : sizeof(float);
     buffer.insert(plane.name, Imf::Slice(plane.type, const_cast<char*>(plane.bytes.data()), size,
@@ -169,10 +169,10 @@ ExrFile readOpened(Imf::InputFile& file) {
 void writeExr(const std::filesystem::path& path, const std::vector<ImageLayer>& layers, const ExrOptions& options) {
   checkLayers(layers);
   PendingFile pending(path);
-  std::vector<Plane> planes;
+  std::vector<ChannelRows> planes;
   for (const ImageLayer& layer : layers)
     for (int c = 0; c < layer.image.channels; ++c) {
-      Plane plane{channelName(layer, c), Imf::FLOAT, {}};
+      ChannelRows plane{channelName(layer, c), Imf::FLOAT, {}};
       if (options.pixel == ExrPixel::half && plane.name != kDepth) {
         plane.type = Imf::HALF;
         plane.bytes = planeOf<half>(layer.image, c, toHalf);

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <numbers>
 #include <numeric>
 
 #include "image/comparable.h"
@@ -15,8 +16,6 @@
 
 namespace umbrick {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Linear sRGB to CIE XYZ, one column per primary, in the fractions that the program of the paper's authors has.
 const glm::dmat3 kToXyz(10135552 / 24577794.0, 2613072 / 12288897.0, 1425312 / 73733382.0,  // red
@@ -56,7 +55,7 @@ constexpr Sensitivity kAchromatic{1, 0.0047}, kRedGreen{1, 0.0053}, kBlueYellowW
     kBlueYellowNarrow{13.5, 0.025};
 
 double sigmaPixels(const Sensitivity& term, double pixelsPerDegree) {
-  return pixelsPerDegree * std::sqrt(term.b / (2 * kPi * kPi));
+  return pixelsPerDegree * std::sqrt(term.b / (2 * std::numbers::pi * std::numbers::pi));
 }
 
 // All filters reach 3 standard deviations of the widest one.
@@ -74,7 +73,7 @@ Plane seenThroughBlueYellow(const Plane& plane, double pixelsPerDegree) {
   const auto volume = [&](const Sensitivity& term) {
     const Kernel kernel = gaussian(sigmaPixels(term, pixelsPerDegree), sensitivityRadius(pixelsPerDegree));
     const double sum = std::accumulate(kernel.begin(), kernel.end(), 0.0);
-    return term.a * std::sqrt(kPi / term.b) * sum * sum;
+    return term.a * std::sqrt(std::numbers::pi / term.b) * sum * sum;
   };
   const double wide = volume(kBlueYellowWide), narrow = volume(kBlueYellowNarrow);
   Plane result = seenThrough(kBlueYellowWide, plane, pixelsPerDegree);

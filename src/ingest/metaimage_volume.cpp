@@ -22,8 +22,8 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMaxHeader = 1 << 22;
-constexpr std::int64_t kMaxAxes = 10;
+constexpr std::size_t kMetaImageMaxHeader = 1 << 22;
+constexpr std::int64_t kMetaImageMaxAxes = 10;
 
 // Where the voxels are and how they lie there.
 struct MetaHeader {
@@ -76,8 +76,8 @@ class HeaderReader {
   bool line(std::string& text) {
     text.clear();
     for (int c; (c = in_.get()) != std::ifstream::traits_type::eof();) {
-      if (static_cast<std::size_t>(++header_.headerBytes) > kMaxHeader)
-        failField(path_, "header", "lines of text", std::to_string(kMaxHeader) + " bytes without an end");
+      if (static_cast<std::size_t>(++header_.headerBytes) > kMetaImageMaxHeader)
+        failField(path_, "header", "lines of text", std::to_string(kMetaImageMaxHeader) + " bytes without an end");
       if (c == '\n') return true;
       text.push_back(static_cast<char>(c));
     }
@@ -115,7 +115,7 @@ class HeaderReader {
 
   void readAxes() {
     const auto count = integer(value("NDims"));
-    if (!count || *count < 2 || *count > kMaxAxes) failField(path_, "NDims", "2 to 10", value("NDims"));
+    if (!count || *count < 2 || *count > kMetaImageMaxAxes) failField(path_, "NDims", "2 to 10", value("NDims"));
     axes_ = static_cast<std::size_t>(*count);
     const std::vector<double> sizes = numbers("DimSize", axes_);
     header_.info.dims = glm::i64vec3(1);

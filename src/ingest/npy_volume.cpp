@@ -15,7 +15,7 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMaxHeader = 1 << 16, kMaxAxes = 32;
+constexpr std::size_t kNpyMaxHeader = 1 << 16, kNpyMaxAxes = 32;
 
 struct NpyHeader {
   VoxelLayout layout;
@@ -77,7 +77,7 @@ std::vector<std::int64_t> shapeOf(const fs::path& path, const std::string& text)
   std::string_view rest = text;
   const bool tuple = rest.size() >= 2 && rest.front() == '(' && rest.back() == ')';
   if (tuple) rest = rest.substr(1, rest.size() - 2);
-  while (tuple && !trimmed(rest).empty() && shape.size() < kMaxAxes) {
+  while (tuple && !trimmed(rest).empty() && shape.size() < kNpyMaxAxes) {
     const std::size_t comma = std::min(rest.find(','), rest.size());
     std::string_view digits = trimmed(rest.substr(0, comma));
     if (digits.ends_with('L')) digits.remove_suffix(1);  // of Python 2
@@ -107,8 +107,8 @@ NpyHeader readHeader(const fs::path& path) {
   part(8, width);
   std::size_t length = 0;
   for (std::size_t i = width; i-- > 0;) length = length << 8 | start[8 + i];
-  if (length > kMaxHeader)
-    failField(path, "header", "at most " + std::to_string(kMaxHeader) + " bytes", std::to_string(length));
+  if (length > kNpyMaxHeader)
+    failField(path, "header", "at most " + std::to_string(kNpyMaxHeader) + " bytes", std::to_string(length));
   std::string text(length, '\0');
   if (bytes->read(std::as_writable_bytes(std::span(text))) < length)
     failField(path, "header", std::to_string(length) + " bytes", "the end of the file");

@@ -19,7 +19,7 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMaxLine = 1 << 16, kMaxHeader = 1 << 22, kMaxAxes = 16;
+constexpr std::size_t kMaxLine = 1 << 16, kNrrdMaxHeader = 1 << 22, kNrrdMaxAxes = 16;
 
 struct Axis {
   std::int64_t size = 0;
@@ -62,7 +62,7 @@ class HeaderReader {
         if (text.ends_with('\r')) text.pop_back();
         return true;
       }
-      if (text.size() >= kMaxLine || static_cast<std::size_t>(header_.bytes) > kMaxHeader)
+      if (text.size() >= kMaxLine || static_cast<std::size_t>(header_.bytes) > kNrrdMaxHeader)
         throw IoError(path_.string() + ": header: expected lines of text, found " + std::to_string(header_.bytes) +
                       " bytes without an end");
       text.push_back(static_cast<char>(c));
@@ -263,8 +263,8 @@ class HeaderReader {
 
   std::vector<Axis> readAxes() {
     const auto dimension = integer(required("dimension"));
-    if (!dimension || *dimension < 1 || *dimension > static_cast<std::int64_t>(kMaxAxes))
-      fail("dimension", "1 to " + std::to_string(kMaxAxes), value("dimension"));
+    if (!dimension || *dimension < 1 || *dimension > static_cast<std::int64_t>(kNrrdMaxAxes))
+      fail("dimension", "1 to " + std::to_string(kNrrdMaxAxes), value("dimension"));
     std::vector<Axis> axes(static_cast<std::size_t>(*dimension));
     required("sizes");
     const std::vector<std::string> sizes = perAxis("sizes", axes.size());

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <numbers>
 
 #include "umbrick/core/srgb.h"
 
 namespace umbrick {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kWhite[3] = {0.9505, 1.0, 1.0890};  // XYZ of D65 as VTK has it
 
 glm::dvec3 mix(const glm::dvec3& a, const glm::dvec3& b, double t) { return a + (b - a) * t; }
@@ -76,14 +76,14 @@ glm::dvec3 fromMsh(const glm::dvec3& msh) {
 double adjustedHue(const glm::dvec3& msh, double unsaturated) {
   if (msh.x >= unsaturated - 0.1) return msh.z;
   const double spin = msh.y * std::sqrt(unsaturated * unsaturated - msh.x * msh.x) / (msh.x * std::sin(msh.y));
-  return msh.z > -kPi / 3 ? msh.z + spin : msh.z - spin;
+  return msh.z > -std::numbers::pi / 3 ? msh.z + spin : msh.z - spin;
 }
 
 glm::dvec3 mixDiverging(const glm::dvec3& from, const glm::dvec3& to, double t) {
   glm::dvec3 a = toMsh(toLab(from)), b = toMsh(toLab(to));
   double turn = std::abs(a.z - b.z);
-  if (turn > kPi) turn = 2 * kPi - turn;
-  if (a.y > 0.05 && b.y > 0.05 && turn > kPi / 3) {
+  if (turn > std::numbers::pi) turn = 2 * std::numbers::pi - turn;
+  if (a.y > 0.05 && b.y > 0.05 && turn > std::numbers::pi / 3) {
     const glm::dvec3 white{std::max({a.x, b.x, 88.0}), 0, 0};
     if (t < 0.5) {
       b = white;

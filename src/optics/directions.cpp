@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -10,7 +11,6 @@
 
 namespace umbrick {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kGoldenAngle = 2.39996322972865332;  // pi (3 - sqrt(5))
 
 // Two axes perpendicular to a unit vector. Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
@@ -47,7 +47,7 @@ std::vector<int> ringCounts(const std::vector<double>& sines, int count) {
 }
 
 void checkCone(double aperture, int count) {
-  if (!(aperture >= 0 && aperture <= kPi))
+  if (!(aperture >= 0 && aperture <= std::numbers::pi))
     throw InvalidArgument("aperture: expected [0, pi] rad, found " + std::to_string(aperture));
   if (count < 1) throw InvalidArgument("directions: expected at least 1, found " + std::to_string(count));
 }
@@ -58,7 +58,7 @@ std::vector<QuadratureNode> gaussLegendre(int count) {
   std::vector<QuadratureNode> nodes(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     // Newton's iteration from the asymptotic place of the root; P by its three-term recurrence.
-    double x = std::cos(kPi * (i + 0.75) / (count + 0.5)), slope = 1;
+    double x = std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5)), slope = 1;
     for (int iteration = 0; iteration < 100; ++iteration) {
       double p = 1, before = 0;
       for (int k = 1; k <= count; ++k) {
@@ -82,7 +82,7 @@ std::vector<WeightedDirection> coneDirections(const glm::dvec3& axis, double ape
   if (aperture == 0 || count == 1) return {{pole, 1}};
   const auto sides = tangents(pole);
   // A ring of the cone is about as far from the next as its directions are from each other.
-  const double area = 2 * kPi * (1 - std::cos(aperture));
+  const double area = 2 * std::numbers::pi * (1 - std::cos(aperture));
   const int rings = std::max(1, static_cast<int>(std::lround(aperture / std::sqrt(area / count))));
   const std::vector<QuadratureNode> nodes = gaussLegendre(rings);
   std::vector<double> cosines, sines;
@@ -94,7 +94,7 @@ std::vector<WeightedDirection> coneDirections(const glm::dvec3& axis, double ape
   std::vector<WeightedDirection> directions;
   for (std::size_t ring = 0; ring < nodes.size(); ++ring)
     for (int i = 0; i < counts[ring]; ++i) {
-      const double phi = rotation + kGoldenAngle * static_cast<double>(ring) + 2 * kPi * i / counts[ring];
+      const double phi = rotation + kGoldenAngle * static_cast<double>(ring) + 2 * std::numbers::pi * i / counts[ring];
       directions.push_back({around(pole, sides, cosines[ring], phi), nodes[ring].weight / counts[ring]});
     }
   return directions;
@@ -114,12 +114,12 @@ std::vector<WeightedDirection> spiralDirections(const glm::dvec3& axis, double a
 }
 
 std::vector<WeightedDirection> sphereDirections(int count, double rotation) {
-  return coneDirections({0, 0, 1}, kPi, count, rotation);
+  return coneDirections({0, 0, 1}, std::numbers::pi, count, rotation);
 }
 
 glm::dvec3 sampleCone(const glm::dvec3& axis, double aperture, double u, double v) {
   const glm::dvec3 pole = unit(axis);
-  return around(pole, tangents(pole), 1 - u * (1 - std::cos(aperture)), 2 * kPi * v);
+  return around(pole, tangents(pole), 1 - u * (1 - std::cos(aperture)), 2 * std::numbers::pi * v);
 }
 
 }  // namespace umbrick

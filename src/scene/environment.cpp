@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <numbers>
 #include <string>
 
 #include "umbrick/core/error.h"
@@ -11,7 +12,6 @@
 
 namespace umbrick {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kRows = 256, kColumns = 512;  // of cells, about
 
 glm::dvec3 radianceAt(const Image& image, int x, int y) {
@@ -112,7 +112,7 @@ Environment::Environment(const EnvironmentLight& light, const glm::dmat3& toWorl
       subRows_((kRows + image_->height - 1) / image_->height),
       subColumns_((kColumns + width_ - 1) / width_),
       blockColumns_((width_ * subColumns_ + kColumns - 1) / kColumns),
-      scale_(light.scale / (4 * kPi)),
+      scale_(light.scale / (4 * std::numbers::pi)),
       axes_(toWorld * axesOf(light)),
       viewer_(viewer),
       viewerInMap_(glm::transpose(axes_) * viewer) {
@@ -135,19 +135,22 @@ double Environment::solidAngleInFront() const {
       const double power = powerOf(radianceAt(*image_, (x % width_ + width_) % width_, y));
       sum += share * power * power;
     }
-    squares += (high - low) * sum * 2 * kPi / width_;
+    squares += (high - low) * sum * 2 * std::numbers::pi / width_;
   }
   const double power = rowsUpTo_.back();
-  return squares > 0 && power > 0 ? std::min(power * power / squares, 2 * kPi) : 2 * kPi;
+  return squares > 0 && power > 0 ? std::min(power * power / squares, 2 * std::numbers::pi) : 2 * std::numbers::pi;
 }
 
 // Of the lower edge of a row.
-double Environment::sineOf(int row) const { return std::sin(kPi * (static_cast<double>(row) / rows_ - 0.5)); }
+double Environment::sineOf(int row) const {
+  return std::sin(std::numbers::pi * (static_cast<double>(row) / rows_ - 0.5));
+}
 
 glm::dvec3 Environment::pixel(int row, int column) const { return radianceAt(*image_, column, imageRow(row)); }
 
 glm::dvec3 Environment::direction(double s, double x) const {
-  const double longitude = 2 * kPi * (x / width_ - 0.5), cosine = std::sqrt(std::max(0.0, (1 - s) * (1 + s)));
+  const double longitude = 2 * std::numbers::pi * (x / width_ - 0.5),
+               cosine = std::sqrt(std::max(0.0, (1 - s) * (1 + s)));
   return glm::normalize(axes_ * glm::dvec3(cosine * std::cos(longitude), cosine * std::sin(longitude), s));
 }
 
@@ -157,11 +160,11 @@ Environment::Interval Environment::front(double s) const {
   const double below = -s * viewerInMap_.z;
   double half = 0;
   if (below <= -across)
-    half = kPi;
+    half = std::numbers::pi;
   else if (below < across)
     half = std::acos(below / across);
   const double middle = std::atan2(viewerInMap_.y, viewerInMap_.x);
-  const auto columnOf = [this](double longitude) { return width_ * (longitude / (2 * kPi) + 0.5); };
+  const auto columnOf = [this](double longitude) { return width_ * (longitude / (2 * std::numbers::pi) + 0.5); };
   return {columnOf(middle - half), columnOf(middle + half)};
 }
 
@@ -176,7 +179,7 @@ double Environment::powerUpTo(int row, double x) const {
 // In front of the viewer, per unit of s.
 double Environment::powerOfCircle(int row, double s) const {
   const Interval part = front(s);
-  return 2 * kPi / width_ * (powerUpTo(row, part.end) - powerUpTo(row, part.begin));
+  return 2 * std::numbers::pi / width_ * (powerUpTo(row, part.end) - powerUpTo(row, part.begin));
 }
 
 // The inverse of powerUpTo.
@@ -217,7 +220,7 @@ void Environment::addToBlocks(int row, double s, double height, std::vector<Cell
     const double end = std::min(part.end, static_cast<double>(step + 1) / subColumns_);
     if (!(end > begin)) continue;
     const int column = (step % fine + fine) % fine;
-    const double solidAngle = height * (end - begin) * 2 * kPi / width_;
+    const double solidAngle = height * (end - begin) * 2 * std::numbers::pi / width_;
     const glm::dvec3 light = solidAngle * pixel(row, column / subColumns_);
     Cell& cell = blocks[static_cast<std::size_t>(column / blockColumns_)];
     cell.light += light;
@@ -291,7 +294,7 @@ LightDirection Environment::sample(double u, double v) const {
   const double power = powerOf(light);
   if (!(power > 0)) return {viewer_, glm::dvec3(0)};
   // The densities: own / total / (high - low) in s, power / (end - begin) in columns.
-  const double area = (high - low) * rowsUpTo_.back() / own * (2 * kPi / width_) * (end - begin) / power;
+  const double area = (high - low) * rowsUpTo_.back() / own * (2 * std::numbers::pi / width_) * (end - begin) / power;
   return {direction(s, x), scale_ * area * light};
 }
 

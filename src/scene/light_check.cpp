@@ -2,22 +2,22 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "scene/checker.h"
 
 namespace umbrick {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 
 std::string nameOf(std::size_t number) { return "light.sources[" + std::to_string(number) + "]"; }
 
 // Angles that are computed come without the digits that rounding makes up.
-std::string printRounded(double radians) { return print(std::round(radians * 180 / kPi * 1e9) / 1e9); }
+std::string printRounded(double radians) { return print(std::round(radians * 180 / std::numbers::pi * 1e9) / 1e9); }
 
 void check(Checker& checker, const ConeLight& cone, const std::string& field) {
   checker.require(isFinite(cone.axis) && cone.axis != glm::dvec3(0), field, "along the axis " + print(cone.axis),
                   "along three finite numbers that are not all 0");
-  checker.require(cone.aperture >= 0 && cone.aperture < kPi / 2, field,
+  checker.require(cone.aperture >= 0 && cone.aperture < std::numbers::pi / 2, field,
                   "a cone of half-angle " + printDegrees(cone.aperture), "of one in [0, 90)");
   checker.requireRadiance(cone.radiance, field + ".radiance");
 }
@@ -50,7 +50,7 @@ std::string ending(LightFrame frame) { return frame == LightFrame::world ? " as 
 void checkFront(Checker& checker, const ConeLight& cone, LightFrame frame, const std::string& field,
                 const glm::dvec3& viewer) {
   const double tilt = std::atan2(glm::length(glm::cross(cone.axis, viewer)), glm::dot(cone.axis, viewer));
-  if (tilt + cone.aperture < kPi / 2) return;
+  if (tilt + cone.aperture < std::numbers::pi / 2) return;
   checker.complain(field, "its axis is " + printRounded(tilt) + " degrees from the direction to the viewer and its " +
                               "half-angle " + printRounded(cone.aperture) + " degrees, together " +
                               printRounded(tilt + cone.aperture) + ", must be below 90" + ending(frame));

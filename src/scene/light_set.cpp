@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <numbers>
 #include <string>
 
 #include "scene/environment.h"
@@ -14,13 +15,14 @@
 
 namespace umbrick {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 
 // Directions are those of the light's own frame: a light that moves with the camera keeps them, seen from there.
 class UniformCone : public Light {
  public:
   UniformCone(const ConeLight& cone, const glm::dmat3& toWorld)
-      : Light(powerOf(cone.radiance), 2 * kPi * (1 - std::cos(cone.aperture))), cone_(cone), toWorld_(toWorld) {}
+      : Light(powerOf(cone.radiance), 2 * std::numbers::pi * (1 - std::cos(cone.aperture))),
+        cone_(cone),
+        toWorld_(toWorld) {}
 
   std::vector<LightDirection> directions(int count, double rotation) const override {
     std::vector<LightDirection> result;

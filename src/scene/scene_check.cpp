@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "scene/checker.h"
 #include "scene/light_check.h"
@@ -10,12 +11,11 @@
 
 namespace umbrick {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 
 void checkCamera(Checker& check, const Camera& camera, const std::optional<Orbit>& orbit) {
   check.require(camera.width >= 1 && camera.height >= 1, "camera.size",
                 std::to_string(camera.width) + " x " + std::to_string(camera.height), "at least 1 x 1");
-  check.require(camera.fov > 0 && camera.fov < kPi, "camera.fov", printDegrees(camera.fov), "in (0, 180)");
+  check.require(camera.fov > 0 && camera.fov < std::numbers::pi, "camera.fov", printDegrees(camera.fov), "in (0, 180)");
   check.require(camera.nearDistance >= 0 && std::isfinite(camera.nearDistance), "camera.near",
                 print(camera.nearDistance), "0 or more");
   if (orbit) {
@@ -84,7 +84,7 @@ std::optional<Complaint> findComplaint(const Scene& scene) {
   check.requireWithin(sampling.tableSize, 2, 4096, "sampling.tableSize");
 
   const OcclusionOptions& occlusion = scene.occlusion;
-  check.require(occlusion.aperture >= 0 && occlusion.aperture < kPi / 2, "occlusion.theta",
+  check.require(occlusion.aperture >= 0 && occlusion.aperture < std::numbers::pi / 2, "occlusion.theta",
                 printDegrees(occlusion.aperture), "in [0, 90)");
   check.requireWithin(occlusion.footprint, 1, 16, "occlusion.footprint");
   check.requireEither(occlusion.passes, 1, 2, "occlusion.passes");

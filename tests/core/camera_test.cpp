@@ -37,8 +37,8 @@ TEST_CASE("An orbit camera sees the bounding sphere from every side, poles inclu
           const CameraFrame f = cameraFrame(camera);
           const double distance = glm::dot(bounds.centre() - camera.eye, f.forward);
           CHECK(distance > radius);
-          const glm::dvec2 half = screenPlane(camera).halfExtent;
-          const double narrow = std::min(half.x, half.y);
+          const glm::dvec2 extent = screenPlane(camera).halfExtent;
+          const double narrow = std::min(extent.x, extent.y);
           // The sphere's silhouette, on the screen plane.
           const double silhouette = projection == Projection::perspective
                                         ? radius / std::sqrt(distance * distance - radius * radius)

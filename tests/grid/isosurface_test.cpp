@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/ext/matrix_transform.hpp>
+#include <numbers>
 
 #include "support/complaint.h"
 #include "support/test_grids.h"
@@ -16,8 +17,6 @@ using namespace umbrick;
 using Catch::Contains;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979;
 
 // 5000 on a sphere around `centre`, 100 more for each world unit inwards.
 ScalarGrid ball(const glm::ivec3& dims, const glm::dmat4& place, const glm::dvec3& centre, double radius) {
@@ -48,9 +47,9 @@ void checkSphere(const Isosurface& surface, const glm::dvec3& centre, double rad
   CHECK(worst < 0.1);  // voxels
   CHECK(distanceAt(surface, centre) == -double(surface.grid->background()));
   // A tenth of a voxel on the whole surface.
-  const double ballVolume = 4.0 / 3 * kPi * radius * radius * radius;
+  const double ballVolume = 4.0 / 3 * std::numbers::pi * radius * radius * radius;
   CHECK(openvdb::tools::levelSetVolume(*surface.grid) ==
-        Approx(ballVolume).margin(0.1 * surface.report.voxelSize * 4 * kPi * radius * radius));
+        Approx(ballVolume).margin(0.1 * surface.report.voxelSize * 4 * std::numbers::pi * radius * radius));
 }
 
 }  // namespace

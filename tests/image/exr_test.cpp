@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "support/files.h"
 #include "support/temporary_folder.h"
 #include "umbrick/core/error.h"
 
@@ -23,10 +24,6 @@ Image randomImage(int width, int height, int channels, unsigned seed) {
   return image;
 }
 
-std::string bytesOf(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 }  // namespace
 
 TEST_CASE("Float EXR files return every bit, layer and attribute", "[image]") {
@@ -83,7 +80,7 @@ TEST_CASE("The bottom row of an image is the last scan line of the file", "[imag
   image.at(0, 0)[0] = 1.5f;  // bottom
   image.at(0, 1)[0] = 2.5f;
   writeExr(path, {{"V", image}}, {ExrPixel::float32, {}});
-  const std::string bytes = bytesOf(path);
+  const std::string bytes = readBytes(path);
   // Both lines are one block, which is stored as it is where compression would not make it smaller.
   float pixels[2];
   std::memcpy(pixels, bytes.data() + bytes.size() - sizeof(pixels), sizeof(pixels));
@@ -114,7 +111,7 @@ TEST_CASE("Missing, truncated and foreign EXR files are named", "[image]") {
   CHECK_THROWS_WITH(readExr(path), Contains("a.exr: not an EXR file"));
   fs::remove(path);
   writeExr(path, {{"", randomImage(40, 60, 4, 9)}}, {ExrPixel::float32, {{"key", "text"}}});
-  const std::string bytes = bytesOf(path);
+  const std::string bytes = readBytes(path);
   for (std::size_t length = 0; length < bytes.size(); length += length < 700 ? 7 : 997) {
     std::ofstream(cut, std::ios::binary) << bytes.substr(0, length);
     CHECK_THROWS_AS(readExr(cut), IoError);

@@ -1,6 +1,7 @@
 // Pictures made by formulas that a few lines in any language repeat, for numbers computed elsewhere.
 #pragma once
 #include <cmath>
+#include <numbers>
 
 #include "umbrick/image/image.h"
 
@@ -10,7 +11,6 @@ enum class Formula { smooth, shifted, checks, waves, noise, flat };
 
 /// 64 x 48 pixels, linear RGB rounded to float, alpha 1; y counts from row 0.
 inline Image formulaPicture(Formula formula) {
-  constexpr double kPi = 3.14159265358979323846;
   Image image(64, 48, 4);
   const auto put = [&](int x, int y, double r, double g, double b) {
     float* pixel = image.at(x, y);
@@ -34,7 +34,7 @@ inline Image formulaPicture(Formula formula) {
           mix(x, y, (x / 8 + y / 6) % 2);
           break;
         case Formula::waves:  // smooth where checks are sharp, bright where they are dark
-          mix(x, y, 0.5 + 0.5 * std::sin(kPi * x / 8) * std::sin(kPi * y / 6));
+          mix(x, y, 0.5 + 0.5 * std::sin(std::numbers::pi * x / 8) * std::sin(std::numbers::pi * y / 6));
           break;
         case Formula::noise: {
           const double r = (x * 131 + y * 197) % 89 / 88.0, g = (x * 53 + y * 151) % 97 / 96.0,

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "support/files.h"
 #include "support/temporary_folder.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/srgb.h"
@@ -17,11 +18,6 @@ using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-std::string bytesOf(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 // Writes one pixel and reads it back.
 Image roundTrip(std::initializer_list<float> rgba, const PngOptions& options = {}) {
   const TemporaryFolder folder;
@@ -110,7 +106,7 @@ TEST_CASE("Metadata and the sRGB chunk are in the file", "[image]") {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "a.png";
   writePng(path, Image(2, 2, 4), {ToneMap::none, 0, {{"scene", "{\"a\": 1}"}, {"author", "J\xC3\xBC"}}});
-  const std::string bytes = bytesOf(path);
+  const std::string bytes = readBytes(path);
   CHECK_THAT(bytes, Contains(std::string("tEXtscene\0{\"a\": 1}", 18)));
   CHECK_THAT(bytes, Contains("iTXtauthor") && Contains("J\xC3\xBC"));
   CHECK_THAT(bytes, Contains(std::string("\0\0\0\1sRGB\0", 9)));
@@ -136,7 +132,7 @@ TEST_CASE("Missing, truncated and foreign PNG files are named", "[image]") {
   std::mt19937 random(3);
   for (float& value : image.pixels) value = static_cast<float>(random() % 1000) / 999;
   writePng(path, image);
-  const std::string bytes = bytesOf(path);
+  const std::string bytes = readBytes(path);
   for (std::size_t length = 0; length < bytes.size(); length += length < 100 ? 7 : 97) {
     std::ofstream(cut, std::ios::binary) << bytes.substr(0, length);
     CHECK_THROWS_AS(readPng(cut), IoError);

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "ingest/small_volume.h"
 #include "support/files.h"
 #include "support/read_volume.h"
 #include "support/temporary_folder.h"
@@ -23,10 +24,8 @@ struct MetaFile {
   std::vector<float> read() const { return readVolume(*openMetaImage(path)); }
 };
 
-const std::string kStart = "ObjectType = Image\nNDims = 3\nDimSize = 2 3 2\nElementType = MET_SHORT\n";
+const std::string kMetaStart = "ObjectType = Image\nNDims = 3\nDimSize = 2 3 2\nElementType = MET_SHORT\n";
 const std::string kLocal = "ElementDataFile = LOCAL\n";
-const std::vector<std::int16_t> kValues{0, 1, 2, 3, 4, 5, -6, -7, -8, -9, -300, 32767};
-const std::vector<float> kFloats(kValues.begin(), kValues.end());
 
 std::string zlibPacked(const std::string& bytes) {
   std::string out(compressBound(bytes.size()), '\0');
@@ -41,35 +40,35 @@ std::string zlibPacked(const std::string& bytes) {
 TEST_CASE("MetaImage voxels of every kind of storage are the same", "[ingest]") {
   const MetaFile file;
   const std::string little = bytesOf(kValues), big = bytesOf(kValues, true);
-  file.write(kStart + "BinaryData = True\n" + kLocal, little);
+  file.write(kMetaStart + "BinaryData = True\n" + kLocal, little);
   CHECK(file.read() == kFloats);
-  file.write(kStart + "BinaryDataByteOrderMSB = True\n" + kLocal, big);
+  file.write(kMetaStart + "BinaryDataByteOrderMSB = True\n" + kLocal, big);
   CHECK(file.read() == kFloats);
-  file.write(kStart + "ElementByteOrderMSB = True\r\nCompressedData = True\r\nElementDataFile = LOCAL\n",
+  file.write(kMetaStart + "ElementByteOrderMSB = True\r\nCompressedData = True\r\nElementDataFile = LOCAL\n",
              zlibPacked(big));
   CHECK(file.read() == kFloats);
-  file.write(kStart + "BinaryData = False\n" + kLocal, "0 1 2 3 4 5 -6 -7 -8 -9 -300 32767\n");
+  file.write(kMetaStart + "BinaryData = False\n" + kLocal, "0 1 2 3 4 5 -6 -7 -8 -9 -300 32767\n");
   CHECK(file.read() == kFloats);
   file.beside("a b.raw", "xyz" + little);
-  file.write(kStart + "HeaderSize = 3\nElementDataFile = a b.raw\n");
+  file.write(kMetaStart + "HeaderSize = 3\nElementDataFile = a b.raw\n");
   CHECK(file.read() == kFloats);
-  file.write(kStart + "HeaderSize = -1\nElementDataFile = a b.raw\n");
+  file.write(kMetaStart + "HeaderSize = -1\nElementDataFile = a b.raw\n");
   CHECK(file.read() == kFloats);
   file.beside("s08.raw", little.substr(0, 12));
   file.beside("s10.raw", little.substr(12));
-  file.write(kStart + "ElementDataFile = s%02d.raw 8 10 2\n");
+  file.write(kMetaStart + "ElementDataFile = s%02d.raw 8 10 2\n");
   CHECK(file.read() == kFloats);
-  file.write(kStart + "ElementDataFile = LIST\ns08.raw\ns10.raw\n");
+  file.write(kMetaStart + "ElementDataFile = LIST\ns08.raw\ns10.raw\n");
   CHECK(file.read() == kFloats);
   file.beside("s08.raw", zlibPacked(little.substr(0, 12)));
   file.beside("s10.raw", zlibPacked(little.substr(12)));
-  file.write(kStart + "CompressedData = True\nElementDataFile = LIST 2D\ns08.raw\ns10.raw\n");
+  file.write(kMetaStart + "CompressedData = True\nElementDataFile = LIST 2D\ns08.raw\ns10.raw\n");
   CHECK(file.read() == kFloats);
 }
 
 TEST_CASE("MetaImage geometry: a row of TransformMatrix is an axis of the image, units become mm", "[ingest]") {
   const MetaFile file;
-  file.write(kStart +
+  file.write(kMetaStart +
                  "TransformMatrix = 0 1 0 -1 0 0 0.5 0 1\nOffset = 10 -20 0.1\nCenterOfRotation = 5 5 5\n"
                  "ElementSpacing = 0.7 0.8 1.5\nDistanceUnits = um\nModality = MET_MOD_CT\n"
                  "AnatomicalOrientation = RAI\n" +
@@ -85,7 +84,7 @@ TEST_CASE("MetaImage geometry: a row of TransformMatrix is an axis of the image,
   CHECK(info.metadata.at("length_unit") == "mm");
   CHECK(info.metadata.at("source_format") == "MetaImage");
   CHECK(info.metadata.at("source_file") == "v.mha");
-  file.write(kStart + "ElementToIntensityFunctionSlope = 0.5\nElementToIntensityFunctionOffset = -1000\n" + kLocal,
+  file.write(kMetaStart + "ElementToIntensityFunctionSlope = 0.5\nElementToIntensityFunctionOffset = -1000\n" + kLocal,
              bytesOf(kValues));
   CHECK(file.read()[10] == -1150);
 }
@@ -98,19 +97,19 @@ TEST_CASE("Malformed MetaImage is refused with the field and both values", "[ing
     CHECK_THROWS_WITH(file.read(), Contains(what) && Contains(file.folder.path().string()));
   };
   refused("ObjectType = Tube\n" + kLocal, "ObjectType: expected Image, found \"tube\"");
-  refused(kStart, "header: expected");  // the voxels are read as text
-  refused(kStart + "ElementSpacing = 1 0 1\n" + kLocal, "ElementSpacing: expected numbers other than 0");
-  refused(kStart + "ElementSpacing = 1 nan 1\n" + kLocal, "ElementSpacing: expected 3 finite numbers");
-  refused(kStart + "Offset = 1 2\n" + kLocal, "Offset: expected 3 finite numbers, found \"1 2\"");
-  refused(kStart + "TransformMatrix = 1 0 0 1 0 0 0 0 1\n" + kLocal, "three independent directions");
-  refused(kStart + "ElementNumberOfChannels = 3\n" + kLocal, "ElementNumberOfChannels: expected 1, found \"3\"");
-  refused(kStart + "ElementType = MET_OTHER\n" + kLocal, "found \"MET_OTHER\"");
-  refused(kStart + "DimSize = 2 3 1e12\n" + kLocal, "DimSize: expected numbers from 1");
-  refused(kStart + "DimSize = 2147483647 2147483647 2147483647\n" + kLocal, "less than 2^63");
-  refused(kStart + "DimSize = 2 3 3\n" + kLocal, "expected 36 bytes of i16 voxels, found 24");
-  refused(kStart + "NDims = 4\nDimSize = 2 3 2 5\n" + kLocal, "a volume of two or three axes");
-  refused(kStart + "ElementDataFile = none.raw\n", "none.raw: no such file");
-  refused(kStart + "CompressedData = True\n" + kLocal, "cannot unpack zlib");
+  refused(kMetaStart, "header: expected");  // the voxels are read as text
+  refused(kMetaStart + "ElementSpacing = 1 0 1\n" + kLocal, "ElementSpacing: expected numbers other than 0");
+  refused(kMetaStart + "ElementSpacing = 1 nan 1\n" + kLocal, "ElementSpacing: expected 3 finite numbers");
+  refused(kMetaStart + "Offset = 1 2\n" + kLocal, "Offset: expected 3 finite numbers, found \"1 2\"");
+  refused(kMetaStart + "TransformMatrix = 1 0 0 1 0 0 0 0 1\n" + kLocal, "three independent directions");
+  refused(kMetaStart + "ElementNumberOfChannels = 3\n" + kLocal, "ElementNumberOfChannels: expected 1, found \"3\"");
+  refused(kMetaStart + "ElementType = MET_OTHER\n" + kLocal, "found \"MET_OTHER\"");
+  refused(kMetaStart + "DimSize = 2 3 1e12\n" + kLocal, "DimSize: expected numbers from 1");
+  refused(kMetaStart + "DimSize = 2147483647 2147483647 2147483647\n" + kLocal, "less than 2^63");
+  refused(kMetaStart + "DimSize = 2 3 3\n" + kLocal, "expected 36 bytes of i16 voxels, found 24");
+  refused(kMetaStart + "NDims = 4\nDimSize = 2 3 2 5\n" + kLocal, "a volume of two or three axes");
+  refused(kMetaStart + "ElementDataFile = none.raw\n", "none.raw: no such file");
+  refused(kMetaStart + "CompressedData = True\n" + kLocal, "cannot unpack zlib");
   refused("ObjectType = Image\nNDims = 3\nDimSize = 99999 99999 9\nElementType = MET_UCHAR\nCompressedData = True\n" +
               kLocal,
           "cannot hold more than");
@@ -118,8 +117,9 @@ TEST_CASE("Malformed MetaImage is refused with the field and both values", "[ing
 
 TEST_CASE("MetaImage headers with flipped bytes end in a volume or an IoError", "[ingest]") {
   const MetaFile file;
-  const std::string good = kStart + "ElementSpacing = 1 1 2\nOffset = 0 0 0\nTransformMatrix = 1 0 0 0 1 0 0 0 1\n" +
-                           kLocal + bytesOf(kValues);
+  const std::string good = kMetaStart +
+                           "ElementSpacing = 1 1 2\nOffset = 0 0 0\nTransformMatrix = 1 0 0 0 1 0 0 0 1\n" + kLocal +
+                           bytesOf(kValues);
   std::mt19937 random(3);
   for (int trial = 0; trial < 1000; ++trial) {
     std::string bytes = good;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "ingest/small_volume.h"
 #include "support/files.h"
 #include "support/read_volume.h"
 #include "support/temporary_folder.h"
@@ -16,9 +17,6 @@ using namespace umbrick;
 using Catch::Contains;
 
 namespace {
-
-const std::vector<std::int16_t> kValues{0, 1, 2, 3, 4, 5, -6, -7, -8, -9, -300, 32767};
-const std::vector<float> kFloats(kValues.begin(), kValues.end());
 
 // A header by the byte offsets of the standard (nifti1.h, nifti2.h), in either byte order.
 class Header {

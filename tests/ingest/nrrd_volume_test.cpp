@@ -4,6 +4,7 @@
 #include <numeric>
 #include <random>
 
+#include "ingest/small_volume.h"
 #include "support/files.h"
 #include "support/packed.h"
 #include "support/temporary_folder.h"
@@ -29,40 +30,38 @@ struct NrrdFolder {
   }
 };
 
-const std::string kStart = "NRRD0004\n# a comment\ndimension: 3\nsizes: 2 3 2\ntype: short\n";
-const std::vector<std::int16_t> kValues{0, 1, 2, 3, 4, 5, -6, -7, -8, -9, -300, 32767};
-const std::vector<float> kFloats(kValues.begin(), kValues.end());
+const std::string kNrrdStart = "NRRD0004\n# a comment\ndimension: 3\nsizes: 2 3 2\ntype: short\n";
 
 }  // namespace
 
 TEST_CASE("NRRD encodings give the same voxels", "[ingest]") {
   const NrrdFolder file;
   const std::string little = bytesOf(kValues), big = bytesOf(kValues, true);
-  file.write(kStart + "endian: little\nencoding: raw\n\n", little);
+  file.write(kNrrdStart + "endian: little\nencoding: raw\n\n", little);
   CHECK(file.read() == kFloats);
-  file.write(kStart + "endian: big\r\nencoding: raw\r\n\r\n", big);
+  file.write(kNrrdStart + "endian: big\r\nencoding: raw\r\n\r\n", big);
   CHECK(file.read() == kFloats);
-  file.write(kStart + "endian: big\nencoding: gzip\nbyte skip: 3\n\n", gzipped("abc" + big));
+  file.write(kNrrdStart + "endian: big\nencoding: gzip\nbyte skip: 3\n\n", gzipped("abc" + big));
   CHECK(file.read() == kFloats);
-  file.write(kStart + "endian: little\nencoding: bzip2\n\n", bzip2Packed(little));
+  file.write(kNrrdStart + "endian: little\nencoding: bzip2\n\n", bzip2Packed(little));
   CHECK(file.read() == kFloats);
-  file.write(kStart + "encoding: text\n\n", "0 1 2 3 4 5\n-6, -7 -8 +-9 0 0\n");
+  file.write(kNrrdStart + "encoding: text\n\n", "0 1 2 3 4 5\n-6, -7 -8 +-9 0 0\n");
   CHECK_THROWS_WITH(file.read(), Contains("voxel 9") && Contains("+-9"));
-  file.write(kStart + "encoding: ascii\n\n", "0 1 +2 3 4 5\n-6, -7 -8 -9 -300\n3.2767e4\n");
+  file.write(kNrrdStart + "encoding: ascii\n\n", "0 1 +2 3 4 5\n-6, -7 -8 -9 -300\n3.2767e4\n");
   CHECK(file.read() == kFloats);
   std::string hex;
   for (const char c : little) {
     const char digits[] = "0123456789aBcDeF";
     hex += {digits[static_cast<unsigned char>(c) >> 4], digits[c & 15], ' '};
   }
-  file.write(kStart + "endian: little\nencoding: hex\n\n", hex);
+  file.write(kNrrdStart + "endian: little\nencoding: hex\n\n", hex);
   CHECK(file.read() == kFloats);
 }
 
 TEST_CASE("NRRD data may lie in other files", "[ingest]") {
   const NrrdFolder file;
   const std::string bytes = bytesOf(kValues), half1 = bytes.substr(0, 12), half2 = bytes.substr(12);
-  const std::string start = kStart + "endian: little\nencoding: raw\n";
+  const std::string start = kNrrdStart + "endian: little\nencoding: raw\n";
   file.beside("one.raw", "skipped\nlines\nxy" + bytes);
   file.write(start + "line skip: 2\nbyte skip: 2\ndata file: one.raw\n");
   CHECK(file.read() == kFloats);
@@ -86,7 +85,7 @@ TEST_CASE("NRRD data may lie in other files", "[ingest]") {
 
 TEST_CASE("NRRD geometry is taken as the file states it", "[ingest]") {
   const NrrdFolder file;
-  const std::string start = kStart + "endian: little\nencoding: raw\n", data = "\n" + bytesOf(kValues);
+  const std::string start = kNrrdStart + "endian: little\nencoding: raw\n", data = "\n" + bytesOf(kValues);
   file.write(start + "spacings: 0.5 nan 2\naxis mins: 10 20 30\ncenterings: node cell cell\n", data);
   CHECK(openNrrd(file.path)->info().indexToWorld == glm::dmat4(0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0, 10, 20.5, 31, 1));
   file.write(start +
@@ -136,10 +135,10 @@ TEST_CASE("Malformed NRRD is refused with the field, what was expected and what 
   refused("PNG\n", "first line: expected NRRD0001");
   refused("NRRD0004\ndimension 3\n", "\"field: value\"");
   refused("NRRD0004\n" + raw, "type: expected the field, found nothing");
-  refused(kStart + "encoding: raw\n", "endian: expected little or big");
-  refused(kStart + "endian: middle\nencoding: raw\n", "found \"middle\"");
-  refused(kStart + "endian: little\nencoding: bzip2\n", "no bzip2 magic");
-  refused(kStart + "endian: little\nencoding: lzma\n",
+  refused(kNrrdStart + "encoding: raw\n", "endian: expected little or big");
+  refused(kNrrdStart + "endian: middle\nencoding: raw\n", "found \"middle\"");
+  refused(kNrrdStart + "endian: little\nencoding: bzip2\n", "no bzip2 magic");
+  refused(kNrrdStart + "endian: little\nencoding: lzma\n",
           "encoding: expected raw, gzip, bzip2, text or hex, found \"lzma\"");
   refused("NRRD0004\ndimension: 3\nsizes: 2 3\ntype: short\n" + raw, "sizes: expected 3 values, found \"2 3\"");
   refused("NRRD0004\ndimension: 3\nsizes: 2 -3 2\ntype: short\n" + raw, "sizes: expected numbers from 1");
@@ -148,21 +147,21 @@ TEST_CASE("Malformed NRRD is refused with the field, what was expected and what 
   refused("NRRD0004\ndimension: 3\nsizes: 2 3 2\ntype: block\n" + raw, "found \"block\"");
   refused("NRRD0004\ndimension: 3\nsizes: 2 3 2\ntype: int128\n" + raw, "found \"int128\"");
   refused("NRRD0004\ndimension: 99999999999999999999\nsizes: 2 3 2\ntype: short\n" + raw, "dimension");
-  refused(kStart + raw + "spacings: 1 0 1\n", "spacings: expected positive finite numbers");
-  refused(kStart + raw + "space: LPS\nspace directions: (1,0,0) (2,0,0) (0,0,1)\n", "independent directions");
-  refused(kStart + raw + "space: LPS\nspace directions: (1,0,0) (0,1) (0,0,1)\n", "a vector of 3 finite numbers");
-  refused(kStart + raw + "space directions: (1,0,0) (0,1,0) (0,0,1)\n", "space: expected the field");
-  refused(kStart + raw + "byte skip: -2\n", "byte skip: expected a number from -1");
-  refused(kStart + raw + "type: short\n", "the field once");
+  refused(kNrrdStart + raw + "spacings: 1 0 1\n", "spacings: expected positive finite numbers");
+  refused(kNrrdStart + raw + "space: LPS\nspace directions: (1,0,0) (2,0,0) (0,0,1)\n", "independent directions");
+  refused(kNrrdStart + raw + "space: LPS\nspace directions: (1,0,0) (0,1) (0,0,1)\n", "a vector of 3 finite numbers");
+  refused(kNrrdStart + raw + "space directions: (1,0,0) (0,1,0) (0,0,1)\n", "space: expected the field");
+  refused(kNrrdStart + raw + "byte skip: -2\n", "byte skip: expected a number from -1");
+  refused(kNrrdStart + raw + "type: short\n", "the field once");
   refused("NRRD0004\ndimension: 3\nsizes: 2 3 3\ntype: short\n" + raw, "expected 36 bytes of i16 voxels, found 24");
-  refused(kStart + "endian: little\nencoding: gzip\n", "no gzip magic");
-  refused(kStart + raw + "data file: none.raw\n", "none.raw: no such file");
+  refused(kNrrdStart + "endian: little\nencoding: gzip\n", "no gzip magic");
+  refused(kNrrdStart + raw + "data file: none.raw\n", "none.raw: no such file");
 }
 
 // Bytes of a header changed at random: an error or a volume, never a crash.
 TEST_CASE("NRRD headers with flipped bytes end in a volume or an IoError", "[ingest]") {
   const NrrdFolder file;
-  const std::string good = kStart +
+  const std::string good = kNrrdStart +
                            "endian: little\nencoding: raw\nspace: LPS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"
                            "space origin: (0,0,0)\nkinds: domain domain domain\n\n" +
                            bytesOf(kValues);

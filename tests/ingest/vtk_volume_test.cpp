@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "ingest/small_volume.h"
 #include "support/files.h"
 #include "support/packed.h"
 #include "support/read_volume.h"
@@ -18,8 +19,6 @@ using Catch::Contains;
 
 namespace {
 
-const std::vector<std::int16_t> kValues{0, 1, 2, 3, 4, 5, -6, -7, -8, -9, -300, 32767};
-const std::vector<float> kFloats(kValues.begin(), kValues.end());
 const std::string kImage = "<ImageData WholeExtent=\"0 1 0 2 0 1\" Origin=\"1 2 3\" Spacing=\"0.5 2 4\">";
 const std::string kPiece = "<Piece Extent=\"0 1 0 2 0 1\"><PointData Scalars=\"a\">";
 

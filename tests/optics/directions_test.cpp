@@ -3,14 +3,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "umbrick/core/error.h"
 
 using namespace umbrick;
 
-namespace {
-constexpr double kPi = 3.14159265358979323846;
-}
+namespace {}
 
 TEST_CASE("Gauss-Legendre integrates polynomials of degree 2n - 1 exactly", "[optics]") {
   for (const int n : {1, 2, 3, 5, 16, 64}) {
@@ -24,7 +23,7 @@ TEST_CASE("Gauss-Legendre integrates polynomials of degree 2n - 1 exactly", "[op
 }
 
 TEST_CASE("Directions of a cone lie in it, share it and balance around its axis", "[optics]") {
-  for (const double aperture : {0.1, 1.0, 1.5, kPi / 2, kPi})
+  for (const double aperture : {0.1, 1.0, 1.5, std::numbers::pi / 2, std::numbers::pi})
     for (const int count : {1, 3, 4, 8, 32, 500}) {
       const glm::dvec3 axis = glm::normalize(glm::dvec3(0.3, -0.7, 0.2));
       for (const bool spiral : {false, true}) {

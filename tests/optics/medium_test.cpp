@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 using namespace umbrick;
 
@@ -47,13 +48,12 @@ TEST_CASE("A slab cut in two scatters the same", "[optics]") {
 
 // A phase function is a density over directions.
 TEST_CASE("Cone phase integrates to one over the sphere", "[optics]") {
-  constexpr double kPi = 3.14159265358979323846;
   for (const float aperture : {0.05f, 0.7f, 1.5f}) {
     const int steps = 2'000'000;  // midpoints in cos(angle); the edge of the cone is off by one step at most
     double integral = 0;
     for (int i = 0; i < steps; ++i) {
       const double cosAngle = -1 + 2 * (i + 0.5) / steps;
-      integral += 2 * kPi * 2 / steps * conePhase(static_cast<float>(cosAngle), aperture);
+      integral += 2 * std::numbers::pi * 2 / steps * conePhase(static_cast<float>(cosAngle), aperture);
     }
     // The one step, and the rounding of float near cos = 1, where numbers are 6e-8 apart.
     const double share = 1 - std::cos(static_cast<double>(aperture));

@@ -12,7 +12,7 @@
 using namespace umbrick;
 
 namespace {
-constexpr glm::dvec3 kGrey{0.5};
+constexpr glm::dvec3 kMidGrey{0.5};
 
 // The place of a lookup: entry below, entry above and weight of the latter.
 struct Tap {
@@ -62,8 +62,8 @@ TEST_CASE("Table entries are the associated medium at their nodes", "[optics]") 
 }
 
 TEST_CASE("A table agrees with its function wherever data and function meet", "[optics]") {
-  const TransferFunction ramp({{10, {kGrey, 1}}, {20, {kGrey, 3}}});
-  const TransferFunction step({{10, {kGrey, 1}}, {10, {kGrey, 3}}});
+  const TransferFunction ramp({{10, {kMidGrey, 1}}, {20, {kMidGrey, 3}}});
+  const TransferFunction step({{10, {kMidGrey, 1}}, {10, {kMidGrey, 3}}});
   for (const TransferFunction& f : {ramp, step})
     // Data below, above, around and inside the domain, a single value, and data that touch the domain.
     for (const Range& data : {Range{-50, -20}, Range{30, 90}, Range{-1000, 1000}, Range{12, 13}, Range{5, 5},
@@ -80,7 +80,7 @@ TEST_CASE("A table agrees with its function wherever data and function meet", "[
 }
 
 TEST_CASE("A threshold at the end of the domain survives the table", "[optics]") {
-  const TransferFunction threshold({{100, {kGrey, 0}}, {100, {kGrey, 2}}});
+  const TransferFunction threshold({{100, {kMidGrey, 0}}, {100, {kMidGrey, 2}}});
   const TransferTable table = sampleTransferFunction(threshold, {0, 4095}, {}, 256);
   CHECK(lookup(table, 0).a == 0);
   CHECK(lookup(table, 83).a == 0);
@@ -161,7 +161,7 @@ TEST_CASE("Means vanish where the function is transparent over the range widened
 }
 
 TEST_CASE("The table resolves a bin: what is more than two bins from any medium is culled", "[optics]") {
-  const TransferFunction f({{40, {kGrey, 0}}, {50, {kGrey, 3}}, {60, {kGrey, 0}}});
+  const TransferFunction f({{40, {kMidGrey, 0}}, {50, {kMidGrey, 3}}, {60, {kMidGrey, 0}}});
   const TransferTable table = sampleTransferFunction(f, {0, 100}, {}, 101, 1, TableCover::data);  // bins of 1
   CHECK(table.isTransparent({0, 38}));
   CHECK(table.isTransparent({62, 100}));
@@ -213,7 +213,7 @@ TEST_CASE("Means agree with brute-force quadrature for random functions", "[opti
 }
 
 TEST_CASE("A mean over a vanishing interval is the function, at a step the average of both sides", "[optics]") {
-  const TransferFunction f({{0, {kGrey, 1}}, {5, {kGrey, 2}}, {5, {{1, 1, 1}, 6}}, {10, {kGrey, 6}}});
+  const TransferFunction f({{0, {kMidGrey, 1}}, {5, {kMidGrey, 2}}, {5, {{1, 1, 1}, 6}}, {10, {kMidGrey, 6}}});
   const std::vector<glm::vec4> means = preintegrate(f, {0, 10}, 11);
   for (const int i : {0, 1, 4, 6, 10}) CHECK(means[static_cast<std::size_t>(i * 12)].a == Approx(f(i).sigma_t));
   CHECK(means[5 * 12].a == Approx(4));
@@ -221,7 +221,7 @@ TEST_CASE("A mean over a vanishing interval is the function, at a step the avera
 }
 
 TEST_CASE("A peak narrower than a bin keeps its integral in the means", "[optics]") {
-  const TransferFunction f({{50.4, {kGrey, 0}}, {50.5, {kGrey, 100}}, {50.6, {kGrey, 0}}});
+  const TransferFunction f({{50.4, {kMidGrey, 0}}, {50.5, {kMidGrey, 100}}, {50.6, {kMidGrey, 0}}});
   const std::vector<glm::vec4> means = preintegrate(f, {0, 100}, 101);
   CHECK(means[51 * 101 + 50].a == Approx(10));  // area 0.1 * 100, over a bin of 1
   CHECK(means[100 * 101].a == Approx(0.1));
@@ -231,14 +231,15 @@ TEST_CASE("A peak narrower than a bin keeps its integral in the means", "[optics
 
 // A prefix integral would have lost the faint part beside the strong one: 1e-9 of a difference of numbers near 1e6.
 TEST_CASE("Faint media keep their precision beside strong ones", "[optics]") {
-  const TransferFunction f({{0, {kGrey, 1e6}}, {1, {kGrey, 1e6}}, {1, {kGrey, 1e-9}}, {100, {kGrey, 1e-9}}});
+  const TransferFunction f(
+      {{0, {kMidGrey, 1e6}}, {1, {kMidGrey, 1e6}}, {1, {kMidGrey, 1e-9}}, {100, {kMidGrey, 1e-9}}});
   const std::vector<glm::vec4> means = preintegrate(f, {0, 100}, 1001);
   CHECK(means[501 * 1001 + 500].a == Approx(1e-9).epsilon(1e-6));
   CHECK(means[1000 * 1001 + 11].a == Approx(1e-9).epsilon(1e-6));
 }
 
 TEST_CASE("Narrow ranges far from zero keep their means", "[optics]") {
-  const TransferFunction f({{1e6, {kGrey, 0}}, {1e6 + 1, {kGrey, 8}}});
+  const TransferFunction f({{1e6, {kMidGrey, 0}}, {1e6 + 1, {kMidGrey, 8}}});
   const std::vector<glm::vec4> means = preintegrate(f, {1e6f, 1e6f + 1}, 257);
   for (int i = 0; i < 257; ++i)
     for (int j = 0; j < 257; ++j)
@@ -246,7 +247,7 @@ TEST_CASE("Narrow ranges far from zero keep their means", "[optics]") {
 }
 
 TEST_CASE("Tables that cannot be are refused", "[optics]") {
-  const TransferFunction f({{0, {kGrey, 0}}, {1, {kGrey, 1}}});
+  const TransferFunction f({{0, {kMidGrey, 0}}, {1, {kMidGrey, 1}}});
   const TransferFunction f2({0, 1}, {0, 1}, std::vector<Medium>(4));
   CHECK_THROWS_WITH(sampleTransferFunction(f, {0, 1}, {}, 1), Catch::Contains("columns is 1"));
   CHECK_THROWS_WITH(sampleTransferFunction(f2, {0, 1}, {0, 1}, 8, 1), Catch::Contains("rows is 1"));

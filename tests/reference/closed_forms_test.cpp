@@ -1,5 +1,6 @@
 // The reference against closed forms: emission and absorption. Max 1995, doi:10.1109/2945.468400
 #include <catch2/catch.hpp>
+#include <numbers>
 
 #include "reference/reference_fixture.h"
 
@@ -22,8 +23,8 @@ std::vector<View> viewsOf(const glm::dmat4& indexToWorld) {
   return {{"orthographic face-on", orthographicCamera(centre + glm::dvec3(0, 0, 40), centre, 40, 24)},
           {"orthographic diagonal", orthographicCamera(centre + glm::dvec3(30, -20, 25), centre, 50, 24)},
           {"perspective", perspectiveCamera(centre + glm::dvec3(-30, 25, 35), centre, 0.8, 24)},
-          {"1 degree", perspectiveCamera(centre + glm::dvec3(-900, 700, 1100), centre, kPi / 180, 24)},
-          {"150 degrees", perspectiveCamera(centre + glm::dvec3(-4, 9, 10), centre, 150 * kPi / 180, 24)},
+          {"1 degree", perspectiveCamera(centre + glm::dvec3(-900, 700, 1100), centre, std::numbers::pi / 180, 24)},
+          {"150 degrees", perspectiveCamera(centre + glm::dvec3(-4, 9, 10), centre, 150 * std::numbers::pi / 180, 24)},
           {"inside", perspectiveCamera(centre + glm::dvec3(2, -1, 3), centre + glm::dvec3(9, 5, 1), 1.4, 24)}};
 }
 

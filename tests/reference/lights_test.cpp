@@ -2,6 +2,7 @@
 #include "umbrick/scene/lights.h"
 
 #include <catch2/catch.hpp>
+#include <numbers>
 
 #include "reference/visibility_fixture.h"
 #include "support/complaint.h"
@@ -12,7 +13,7 @@ using namespace umbrick;
 namespace {
 
 LightSource cone(LightFrame frame, const glm::dvec3& axis, double degrees, const glm::dvec3& radiance = kWhite) {
-  return {frame, ConeLight{axis, degrees * kPi / 180, radiance}};
+  return {frame, ConeLight{axis, degrees * std::numbers::pi / 180, radiance}};
 }
 
 // Everything that the model may look at: a dense field, a view that no axis is aligned with.
@@ -45,7 +46,7 @@ TEST_CASE("A cone of light around the view axis is the model cone", "[reference]
   Scene scene = denseScene({cone(LightFrame::view, {0, 0, 1}, 50)});
   Scene same = scene;
   same.model = Model::cone;
-  same.occlusion.aperture = 50 * kPi / 180;
+  same.occlusion.aperture = 50 * std::numbers::pi / 180;
   for (const ReferenceOptions& options : {quadrature(24), monteCarlo(50)}) {
     const ReferencePicture a = renderReference(denseGrid(), scene, options);
     const ReferencePicture b = renderReference(denseGrid(), same, options);
@@ -107,7 +108,7 @@ TEST_CASE("A sharp tilted light passes two slabs by their thickness over the cos
   scene.model = Model::lights;
   const glm::dvec3 radiance(2, 0.5, 1);
   for (const double degrees : {0.0, 30.0, 60.0}) {
-    const double angle = degrees * kPi / 180, stretch = 1 + 1 / std::cos(angle);
+    const double angle = degrees * std::numbers::pi / 180, stretch = 1 + 1 / std::cos(angle);
     // In the world and, as the camera looks along -z with y up, in the view: the same direction.
     for (const LightFrame frame : {LightFrame::world, LightFrame::view}) {
       scene.lights = {cone(frame, {std::sin(angle), 0, std::cos(angle)}, 0, radiance)};
@@ -131,7 +132,7 @@ TEST_CASE("An opaque half-plane hides its share of a tilted cone", "[reference]"
   for (const double tilt : {-40.0, 20.0, 38.0})
     for (const double theta : {0.0, 10.0, 45.0}) {
       Scene scene = lookingDownAt(floorAndRoofTransfer(), Model::lights, 12 - a, 0);
-      const double radians = tilt * kPi / 180, aperture = theta * kPi / 180;
+      const double radians = tilt * std::numbers::pi / 180, aperture = theta * std::numbers::pi / 180;
       scene.lights = {cone(LightFrame::world, {std::sin(radians), 0, std::cos(radians)}, theta, {1, 0.5, 0.25})};
       const double expected = 1 - shareBeyond(aperture, edge - radians);
       INFO("tilt " << tilt << ", theta " << theta << ": " << expected);

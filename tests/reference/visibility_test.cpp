@@ -1,6 +1,7 @@
 // The light that reaches a point, against closed forms, by both integrators.
 // Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, Eqs. 6-10
 #include <catch2/catch.hpp>
+#include <numbers>
 
 #include "reference/visibility_fixture.h"
 
@@ -14,7 +15,7 @@ TEST_CASE("An opaque half-plane hides its share of the cone", "[reference]") {
   const ScalarGrid grid = floorAndRoof();
   for (const double theta : {20.0, 60.0, 85.0})
     for (const double a : {1.0, 4.0, 9.0}) {
-      const double aperture = theta * kPi / 180, edge = std::atan(a / 11);
+      const double aperture = theta * std::numbers::pi / 180, edge = std::atan(a / 11);
       const Scene scene = lookingDownAt(floorAndRoofTransfer(), Model::cone, 12 - a, aperture);
       const double expected = 1 - shareBeyond(aperture, edge);
       INFO("theta " << theta << ", " << a << " from the edge: " << expected);
@@ -30,7 +31,7 @@ TEST_CASE("An opaque half-plane hides its share of the sphere", "[reference]") {
   for (const double a : {1.0, 4.0, 9.0}) {
     const Scene scene = lookingDownAt(floorAndRoofTransfer(), Model::ambient, 12 - a, 1);
     // Of the upper half. Below the far end of the roof, 10 high, half a belt of the sphere stays open at most.
-    const double expected = 1 - 0.5 * shareBeyond(kPi / 2, std::atan(a / 11));
+    const double expected = 1 - 0.5 * shareBeyond(std::numbers::pi / 2, std::atan(a / 11));
     const double open = 0.25 * std::sin(std::atan(10.0 / (far - 12)));
     INFO(a << " from the edge: " << expected << " to " << expected + open);
     const double seen = meanVisibility(renderReference(grid, scene, quadrature(4000)));
@@ -42,7 +43,7 @@ TEST_CASE("An opaque half-plane hides its share of the sphere", "[reference]") {
 // Around the view ray, which is tilted by 25 degrees away from the roof: the edge is 25 degrees farther from its axis.
 TEST_CASE("The cone around the view ray tilts with it", "[reference]") {
   const ScalarGrid grid = floorAndRoof();
-  const double tilt = 25 * kPi / 180, aperture = 60 * kPi / 180, a = 4;
+  const double tilt = 25 * std::numbers::pi / 180, aperture = 60 * std::numbers::pi / 180, a = 4;
   Scene scene = lookingDownAt(floorAndRoofTransfer(), Model::coneRay, 12 - a, aperture);
   const glm::dvec3 point(12 - a, 0, 4), towardsEye(-std::sin(tilt), 0, std::cos(tilt));
   scene.camera.eye = point + 30.0 * towardsEye;
@@ -79,7 +80,7 @@ TEST_CASE("Inside a homogeneous half-space the cone has its closed form", "[refe
   // Two voxels span the domain, whose background is the medium.
   const ScalarGrid grid = makeVoxels({{glm::ivec3(-2000, -2000, -39), 1}, {glm::ivec3(2000, 2000, -1), 1}}, 1);
   for (const double theta : {0.0, 20.0, 60.0, 85.0}) {
-    const double aperture = theta * kPi / 180, cosine = std::cos(aperture);
+    const double aperture = theta * std::numbers::pi / 180, cosine = std::cos(aperture);
     const Scene scene = lookingDownAt(homogeneous({0.8, 0.5, 0.3}, sigma_t), Model::cone, 0, aperture);
     const double expected = theta > 0 ? 1 - std::log(2 / (1 + cosine)) / (1 - cosine) : 0.5;
     INFO("theta " << theta << ": " << expected);

@@ -5,12 +5,12 @@
 
 #include "report/case_scene.h"
 #include "report/study_record.h"
+#include "support/test_scenes.h"
 
 namespace umbrick {
 
 /// Complete; errors fall with the slices as d^1 and times grow with slices and detail.
 inline StudyRecord inventedStudy(const std::vector<int>& slices = {8, 16, 32}) {
-  constexpr double kDegree = 3.14159265358979323846 / 180;
   StudySettings settings;
   settings.methods = {"emission", "dos", "ordinates"};
   settings.slices = slices;

@@ -15,6 +15,7 @@
 #include "support/gl_fixture.h"
 #include "support/temporary_folder.h"
 #include "support/test_grids.h"
+#include "support/test_scenes.h"
 #include "support/xml.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/build_grid.h"
@@ -26,8 +27,6 @@ using Catch::Contains;
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 // A ball that gets denser inwards, in a file of its own.
 struct SmallStudy {

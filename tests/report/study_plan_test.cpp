@@ -8,13 +8,12 @@
 
 #include "report/case_scene.h"
 #include "support/complaint.h"
+#include "support/test_scenes.h"
 #include "umbrick/core/error.h"
 
 using namespace umbrick;
 
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 StudySettings small() {
   StudySettings settings;

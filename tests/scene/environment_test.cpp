@@ -4,6 +4,7 @@
 #include <functional>
 #include <glm/geometric.hpp>
 #include <memory>
+#include <numbers>
 
 #include "scene/lights_scene.h"
 #include "support/closed_forms.h"
@@ -41,15 +42,6 @@ LightSource onePixel(int width, int height, int atX, int atY, const glm::dvec3& 
 
 EnvironmentLight& mapOf(LightSource& source) { return std::get<EnvironmentLight>(source.light); }
 
-glm::dvec3 applied(const std::vector<LightDirection>& directions, const std::function<double(const glm::dvec3&)>& f) {
-  glm::dvec3 sum(0);
-  for (const LightDirection& light : directions) sum += light.radiance * f(light.direction);
-  return sum;
-}
-glm::dvec3 total(const std::vector<LightDirection>& directions) {
-  return applied(directions, [](const glm::dvec3&) { return 1.0; });
-}
-
 // Smooth, with a bright spot, coloured.
 glm::dvec3 varied(double u, double v) {
   const double spot = 40 * std::exp(-300 * ((u - 0.6) * (u - 0.6) + (v - 0.7) * (v - 0.7)));
@@ -69,17 +61,18 @@ glm::dvec3 bruteForce(const Scene& scene, const std::function<double(const glm::
   const int width = light.image->width * parts, height = light.image->height * parts;
   glm::dvec3 sum(0);
   for (int y = 0; y < height; ++y) {
-    const double s0 = std::sin(kPi * (double(y) / height - 0.5)), s1 = std::sin(kPi * (double(y + 1) / height - 0.5));
+    const double s0 = std::sin(std::numbers::pi * (double(y) / height - 0.5)),
+                 s1 = std::sin(std::numbers::pi * (double(y + 1) / height - 0.5));
     const double s = 0.5 * (s0 + s1), c = std::sqrt(1 - s * s);
     for (int x = 0; x < width; ++x) {
-      const double longitude = 2 * kPi * ((x + 0.5) / width - 0.5);
+      const double longitude = 2 * std::numbers::pi * ((x + 0.5) / width - 0.5);
       const glm::dvec3 w = c * std::cos(longitude) * front + c * std::sin(longitude) * right + s * up;
       if (glm::dot(w, -frame.forward) <= 0) continue;
       const float* pixel = light.image->at(x / parts, y / parts);
-      sum += glm::dvec3(pixel[0], pixel[1], pixel[2]) * ((s1 - s0) * 2 * kPi / width * f(w));
+      sum += glm::dvec3(pixel[0], pixel[1], pixel[2]) * ((s1 - s0) * 2 * std::numbers::pi / width * f(w));
     }
   }
-  return sum * light.scale / (4 * kPi);
+  return sum * light.scale / (4 * std::numbers::pi);
 }
 
 double relative(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b) / glm::length(b); }
@@ -102,7 +95,7 @@ TEST_CASE("A map is seen from its centre: up, front and to the right of it", "[s
   };
   // Centres of pixels of 0.1 rad; the centre of power of one is off towards the equator by about a twelfth of the
   // square of that times the tangent of the latitude, which is up to 3.
-  const double step = kPi / 32;
+  const double step = std::numbers::pi / 32;
   CHECK(glm::length(towards(onePixel(64, 32, 32, 16, glm::dvec3(1))) - at(0.5 * step, 0.5 * step)) < 3e-3);
   CHECK(glm::length(towards(onePixel(64, 32, 40, 16, glm::dvec3(1))) - at(8.5 * step, 0.5 * step)) < 3e-3);
   CHECK(glm::length(towards(onePixel(64, 32, 30, 28, glm::dvec3(1))) - at(-1.5 * step, 12.5 * step)) < 3e-3);
@@ -202,7 +195,7 @@ TEST_CASE("The median cut converges, and its rotations average to a better one",
   for (const int count : {4, 16, 64, 256, 1024}) {
     double error = 0;
     for (int i = 0; i < 16; ++i)
-      error += relative(applied(lightDirections(scene, count, 2 * kPi * i / 16), f), exact) / 16;
+      error += relative(applied(lightDirections(scene, count, 2 * std::numbers::pi * i / 16), f), exact) / 16;
     INFO(count << " directions: " << error);
     if (!errors.empty()) CHECK(error < errors.back());
     errors.push_back(error);
@@ -211,7 +204,7 @@ TEST_CASE("The median cut converges, and its rotations average to a better one",
   double single = 0;
   glm::dvec3 mean(0);
   for (int i = 0; i < 8; ++i) {
-    const glm::dvec3 set = applied(lightDirections(scene, 8, 2 * kPi * i / 8), f);
+    const glm::dvec3 set = applied(lightDirections(scene, 8, 2 * std::numbers::pi * i / 8), f);
     single += relative(set, exact) / 8;
     mean += set / 8.0;
   }
@@ -262,13 +255,15 @@ TEST_CASE("Samples of a map have its mean over seeds, and converge faster than r
 // A sun of one pixel is a sharp light of its radiance times its solid angle / (4 pi), in lists and in samples.
 TEST_CASE("A single bright pixel is one direction in lists and stays inside itself in samples", "[scene]") {
   const Scene scene = sceneWith({onePixel(720, 360, 400, 250, {8e4, 7e4, 5e4})});
-  const double s0 = std::sin(kPi * (250 / 360.0 - 0.5)), s1 = std::sin(kPi * (251 / 360.0 - 0.5));
-  const glm::dvec3 expected = glm::dvec3(8e4, 7e4, 5e4) * ((s1 - s0) * 2 * kPi / 720 / (4 * kPi));
+  const double s0 = std::sin(std::numbers::pi * (250 / 360.0 - 0.5)),
+               s1 = std::sin(std::numbers::pi * (251 / 360.0 - 0.5));
+  const glm::dvec3 expected =
+      glm::dvec3(8e4, 7e4, 5e4) * ((s1 - s0) * 2 * std::numbers::pi / 720 / (4 * std::numbers::pi));
   const auto list = lightDirections(scene, 64);
   CHECK(list.size() <= 2);  // a pixel may lie in two cells
   CHECK(relative(total(list), expected) < 1e-6);
   for (const LightDirection& light : lightSamples(scene, 0, 64, 1)) {
-    CHECK(glm::dot(light.direction, list[0].direction) > std::cos(1.5 * kPi / 360));
+    CHECK(glm::dot(light.direction, list[0].direction) > std::cos(1.5 * std::numbers::pi / 360));
     CHECK(relative(64.0 * light.radiance, expected) < 1e-6);
   }
 }

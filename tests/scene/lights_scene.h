@@ -1,5 +1,6 @@
 // A resolved scene for its lights' sake.
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "umbrick/scene/lights.h"
@@ -16,6 +17,17 @@ inline Scene sceneWith(const std::vector<LightSource>& lights) {
   scene.model = Model::lights;
   scene.lights = lights;
   return scene;
+}
+
+/// What the light makes of a function of the direction.
+inline glm::dvec3 applied(const std::vector<LightDirection>& directions,
+                          const std::function<double(const glm::dvec3&)>& f) {
+  glm::dvec3 sum(0);
+  for (const LightDirection& light : directions) sum += light.radiance * f(light.direction);
+  return sum;
+}
+inline glm::dvec3 total(const std::vector<LightDirection>& directions) {
+  return applied(directions, [](const glm::dvec3&) { return 1.0; });
 }
 
 inline glm::dvec3 towardsViewer(const Scene& scene) { return -cameraFrame(scene.camera).forward; }

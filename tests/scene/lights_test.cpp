@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <numbers>
 
 #include "scene/lights_scene.h"
 #include "support/closed_forms.h"
@@ -19,18 +20,12 @@ using Catch::Contains;
 namespace {
 
 LightSource cone(const glm::dvec3& axis, double degrees, const glm::dvec3& radiance) {
-  return {LightFrame::view, ConeLight{axis, degrees * kPi / 180, radiance}};
-}
-
-glm::dvec3 total(const std::vector<LightDirection>& directions) {
-  glm::dvec3 sum(0);
-  for (const LightDirection& light : directions) sum += light.radiance;
-  return sum;
+  return {LightFrame::view, ConeLight{axis, degrees * std::numbers::pi / 180, radiance}};
 }
 
 // What the light makes of a function of the direction.
-double applied(const std::vector<LightDirection>& directions, const std::function<double(const glm::dvec3&)>& f,
-               int channel = 0) {
+double appliedChannel(const std::vector<LightDirection>& directions, const std::function<double(const glm::dvec3&)>& f,
+                      int channel = 0) {
   double sum = 0;
   for (const LightDirection& light : directions) sum += light.radiance[channel] * f(light.direction);
   return sum;
@@ -57,7 +52,7 @@ TEST_CASE("A cone around the view axis is the model cone, in lists and in sample
     const Scene lights = sceneWith({cone({0, 0, 2}, degrees, glm::dvec3(1))});
     Scene same = lights;
     same.model = Model::cone;
-    same.occlusion.aperture = degrees * kPi / 180;
+    same.occlusion.aperture = degrees * std::numbers::pi / 180;
     CHECK(largestDifference(lightDirections(lights, 37, 0.3), lightDirections(same, 37, 0.3)) == 0);
     CHECK(largestDifference(lightSamples(lights, 50, 25, 7), lightSamples(same, 50, 25, 7)) == 0);
     // The quadrature of optics as it is, in the coordinates of the view.
@@ -128,7 +123,7 @@ TEST_CASE("Radiances add up to the light, each source has directions in its cone
     return first;
   };
   CHECK(share(cone({1, 0, 1}, 20, glm::dvec3(2)), cone({-1, 0, 1}, 20, glm::dvec3(1))) == 200);
-  const double wide = 2 * std::asin(2 * std::sin(10 * kPi / 180)) * 180 / kPi;
+  const double wide = 2 * std::asin(2 * std::sin(10 * std::numbers::pi / 180)) * 180 / std::numbers::pi;
   CHECK(share(cone({1, 0, 1}, wide, glm::dvec3(1)), cone({-1, 0, 1}, 20, glm::dvec3(1))) == 200);
 }
 
@@ -168,13 +163,13 @@ TEST_CASE("A light of the view moves with the camera, one of the world stays", "
 TEST_CASE("Samples that follow each other converge faster than random ones", "[scene]") {
   const Scene scene = sceneWith({cone({0.5, 0.2, 1}, 50, {1, 0.5, 0.2}), cone({-1, 0, 1}, 10, {0.1, 0.2, 0.9})});
   const auto f = throughSlab(towardsViewer(scene));
-  const double exact = applied(lightDirections(scene, 20'000), f);
+  const double exact = appliedChannel(lightDirections(scene, 20'000), f);
   const auto error = [&](int sets, int size) {
     double squares = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
       double sum = 0;
       for (int set = 0; set < sets; ++set)
-        sum += applied(lightSamples(scene, static_cast<std::uint64_t>(set * size), size, seed), f);
+        sum += appliedChannel(lightSamples(scene, static_cast<std::uint64_t>(set * size), size, seed), f);
       squares += (sum / sets - exact) * (sum / sets - exact);
     }
     return std::sqrt(squares / 8);
@@ -195,10 +190,10 @@ TEST_CASE("Every set of samples has the light's mean over seeds", "[scene]") {
     for (const int count : {1, 8}) {
       // Of 4000 seeds: one in 16 000 means is off by four standard errors.
       for (const int channel : {0, 2}) {
-        const double exact = applied(lightDirections(scene, 20'000), f, channel);
+        const double exact = appliedChannel(lightDirections(scene, 20'000), f, channel);
         double sum = 0, squares = 0;
         for (std::uint64_t seed = 0; seed < 4000; ++seed) {
-          const double x = applied(lightSamples(scene, first, count, seed), f, channel);
+          const double x = appliedChannel(lightSamples(scene, first, count, seed), f, channel);
           sum += x;
           squares += x * x;
         }

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "support/random_transfer.h"
@@ -16,8 +17,6 @@ using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Scene parse(const std::string& text) { return parseScene(text, "s.json"); }
 
@@ -76,9 +75,9 @@ TEST_CASE("A printed scene parses back to an equal one, to the last bit", "[scen
 TEST_CASE("What a scene leaves out keeps its default", "[scene]") {
   CHECK(parse("{}") == Scene{});
   const Scene scene = parse(R"({"camera": {"azimuth": 90}, "occlusion": {"theta": 45}})");
-  CHECK(scene.orbit->azimuth == Approx(kPi / 2).epsilon(1e-15));
+  CHECK(scene.orbit->azimuth == Approx(std::numbers::pi / 2).epsilon(1e-15));
   CHECK(scene.orbit->elevation == 0);
-  CHECK(scene.occlusion.aperture == Approx(kPi / 4).epsilon(1e-15));
+  CHECK(scene.occlusion.aperture == Approx(std::numbers::pi / 4).epsilon(1e-15));
   CHECK(scene.occlusion.footprint == OcclusionOptions{}.footprint);
   CHECK_FALSE(scene.background);
 }
@@ -153,7 +152,7 @@ TEST_CASE("A light is read in each of its ways", "[scene]") {
   const auto lights = [](const std::string& sources) {
     return parse("{\"light\": {\"sources\": [" + sources + "]}}").lights;
   };
-  const ConeLight cone{{1, 0, 2}, 20 * kPi / 180, glm::dvec3(1)};
+  const ConeLight cone{{1, 0, 2}, 20 * std::numbers::pi / 180, glm::dvec3(1)};
   CHECK(lights(R"({"type": "cone", "axis": [1, 0, 2], "theta": 20})")[0] == LightSource{LightFrame::view, cone});
   CHECK(lights(R"({"type": "directional", "direction": [1, 0, 2], "softAngle": 20, "frame": "world"})")[0] ==
         LightSource{LightFrame::world, cone});
@@ -198,7 +197,7 @@ TEST_CASE("Every field of a scene has its range, however the scene was made", "[
   const Case cases[] = {
       {"camera.size", [](Scene& s) { s.camera.width = 0; }},
       {"camera.fov", [](Scene& s) { s.camera.fov = 0; }},
-      {"camera.fov", [](Scene& s) { s.camera.fov = kPi; }},
+      {"camera.fov", [](Scene& s) { s.camera.fov = std::numbers::pi; }},
       {"camera.near", [=](Scene& s) { s.camera.nearDistance = infinity; }},
       {"camera.near", [](Scene& s) { s.camera.nearDistance = -1; }},
       {"camera.azimuth", [=](Scene& s) { s.orbit->azimuth = nan; }},
@@ -247,7 +246,7 @@ TEST_CASE("Every field of a scene has its range, however the scene was made", "[
       {"sampling.saturation", [](Scene& s) { s.sampling.saturation = 1; }},
       {"sampling.tableSize", [](Scene& s) { s.sampling.tableSize = 1; }},
       {"sampling.tableSize", [](Scene& s) { s.sampling.tableSize = 4097; }},
-      {"occlusion.theta", [](Scene& s) { s.occlusion.aperture = kPi / 2; }},
+      {"occlusion.theta", [](Scene& s) { s.occlusion.aperture = std::numbers::pi / 2; }},
       {"occlusion.theta", [](Scene& s) { s.occlusion.aperture = -1e-9; }},
       {"occlusion.footprint", [](Scene& s) { s.occlusion.footprint = 17; }},
       {"occlusion.passes", [](Scene& s) { s.occlusion.passes = 0; }},

@@ -11,9 +11,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const IndexBox kVoxels{glm::ivec3(0), glm::ivec3(31)};
-
-TransferFunction ramp() { return TransferFunction({{0, {glm::dvec3(1), 0}}, {1, {glm::dvec3(1), 1}}}); }
+TransferFunction unitRamp() { return TransferFunction({{0, {glm::dvec3(1), 0}}, {1, {glm::dvec3(1), 1}}}); }
 Camera camera() { return perspectiveCamera({40, 30, 50}, {16, 16, 16}, 0.7, 24); }
 
 }  // namespace
@@ -21,9 +19,9 @@ Camera camera() { return perspectiveCamera({40, 30, 50}, {16, 16, 16}, 0.7, 24);
 TEST_CASE("Scenes that cannot be rendered are refused with the reason", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const Scene scene = plainScene(ramp(), camera(), 1);
+  const Scene scene = plainScene(unitRamp(), camera(), 1);
   const FieldBricks volume = fieldFor(
-      scene, [](const glm::ivec3& i) { return i.x / 31.0; }, kVoxels);
+      scene, [](const glm::ivec3& i) { return i.x / 31.0; }, kBlock);
   const auto complaintOf = [&](const Scene& bad) {
     return complaint<InvalidArgument>([&] { renderPicture(*context, volume, bad); });
   };
@@ -56,7 +54,7 @@ TEST_CASE("Scenes that cannot be rendered are refused with the reason", "[shade]
 TEST_CASE("A budget that one slice does not fit is refused with both sizes", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  Scene scene = plainScene(ramp(), orthographicCamera({64, 64, 190}, {64, 64, 0}, 128, 24), 1);
+  Scene scene = plainScene(unitRamp(), orthographicCamera({64, 64, 190}, {64, 64, 0}, 128, 24), 1);
   scene.bricks.budgetMiB = 1;  // of 20^3 * 4 bytes: 32 bricks
   const FieldBricks volume =
       fieldFor(scene, [](const glm::ivec3& i) { return (i.x + i.y + i.z) / 400.0; }, {glm::ivec3(0), glm::ivec3(127)});
@@ -72,10 +70,10 @@ TEST_CASE("A budget that one slice does not fit is refused with both sizes", "[s
 TEST_CASE("A renderer takes other cameras of the same image size", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  Scene scene = plainScene(ramp(), camera(), 1);
+  Scene scene = plainScene(unitRamp(), camera(), 1);
   scene.model = Model::cone;
   const FieldBricks volume = fieldFor(
-      scene, [](const glm::ivec3& i) { return std::sin(0.3 * i.x) * std::sin(0.2 * i.y); }, kVoxels);
+      scene, [](const glm::ivec3& i) { return std::sin(0.3 * i.x) * std::sin(0.2 * i.y); }, kBlock);
   SliceRenderer renderer(*context, volume, scene);
   renderer.render();
   Camera other = camera();
@@ -96,9 +94,9 @@ TEST_CASE("A renderer takes other cameras of the same image size", "[shade][gl]"
 TEST_CASE("There is no slice to probe before a picture or beyond it", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const Scene scene = plainScene(ramp(), camera(), 1);
+  const Scene scene = plainScene(unitRamp(), camera(), 1);
   const FieldBricks volume = fieldFor(
-      scene, [](const glm::ivec3& i) { return i.x / 31.0; }, kVoxels);
+      scene, [](const glm::ivec3& i) { return i.x / 31.0; }, kBlock);
   SliceRenderer renderer(*context, volume, scene);
   CHECK(renderer.sliceDepths().empty());
   CHECK_THAT(complaint<InvalidArgument>([&] { renderer.probe(0); }), Contains("no slice 0"));
@@ -112,7 +110,7 @@ TEST_CASE("An empty volume gives an empty picture", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   for (const Model model : {Model::emission, Model::cone}) {
-    Scene scene = plainScene(ramp(), camera(), 1);
+    Scene scene = plainScene(unitRamp(), camera(), 1);
     scene.model = model;
     scene.sampling.saturation = 1e-3;
     const FieldBricks empty = fieldFor(
@@ -136,7 +134,7 @@ TEST_CASE("Resolving a scene writes out what the volume decides", "[shade]") {
   Scene scene;
   CHECK_THAT(complaint<InvalidArgument>([&] { resolveScene(scene, bounds, anisotropic); }),
              Contains("no transfer function"));
-  scene.transfer = ramp();
+  scene.transfer = unitRamp();
   const Scene resolved = resolveScene(scene, bounds, anisotropic);
   CHECK_FALSE(resolved.orbit);
   CHECK_FALSE(resolved.sampling.spacingInVoxels);
@@ -150,7 +148,7 @@ TEST_CASE("Resolving a scene writes out what the volume decides", "[shade]") {
 
 // A slab reads half its length beyond a brick along each axis, and every sample half a voxel.
 TEST_CASE("The apron follows from the reach of a slab", "[shade]") {
-  Scene scene = plainScene(ramp(), orthographicCamera({0, 0, 9}, {0, 0, 0}, 1, 8), 1);
+  Scene scene = plainScene(unitRamp(), orthographicCamera({0, 0, 9}, {0, 0, 0}, 1, 8), 1);
   scene.camera.up = {0, 1, 0};
   CHECK(requiredApron(scene, glm::dmat4(1)) == 1);
   scene.sampling.spacing = 1.5;
@@ -173,7 +171,7 @@ TEST_CASE("The apron follows from the reach of a slab", "[shade]") {
 
 TEST_CASE("Bricks are as large as pixels and aprons ask for, unless the scene says how large", "[shade]") {
   // 2 x 2 world units on 8 x 8 pixels; voxels of an edge of 1.
-  Scene scene = plainScene(ramp(), orthographicCamera({0, 0, 9}, {0, 0, 0}, 2, 8), 1);
+  Scene scene = plainScene(unitRamp(), orthographicCamera({0, 0, 9}, {0, 0, 0}, 2, 8), 1);
   const Box bounds{{-1, -1, -1}, {1, 1, 1}};
   const glm::dmat4 voxels(1);
   CHECK(brickInterior(scene, voxels, bounds) == 16);

@@ -1,5 +1,6 @@
 // Renderer and closed forms that the reference is held against as well.
 #include <catch2/catch.hpp>
+#include <numbers>
 
 #include "shade/footprint.h"
 #include "shade/grid_picture.h"
@@ -9,7 +10,6 @@ using namespace umbrick;
 
 namespace {
 const IndexBox kDomain{glm::ivec3(0), glm::ivec3(24)};
-const glm::dvec3 kAlbedo(0.9, 0.5, 0.2);
 }  // namespace
 
 // The surface is where the interpolated square of the distance passes R^2: within 3/8 of a squared voxel. A ramp of
@@ -92,7 +92,7 @@ TEST_CASE("Below an opaque half-plane dos has the light of a random walk, not of
   const auto field = [](const glm::ivec3& i) { return i.z == 24 && i.x >= 1 ? 1.0 : i.z == 4 ? -1.0 : 0.0; };
   const TransferFunction transfer(
       {{-1, {glm::dvec3(1), 1e-3}}, {0, {glm::dvec3(1), 0}}, {0.9, {glm::dvec3(1), 0}}, {1, {glm::dvec3(1), 1e4}}});
-  const double d = 0.5, theta = 60 * kPi / 180, edge = 1;
+  const double d = 0.5, theta = 60 * std::numbers::pi / 180, edge = 1;
   const int size = 80, roof = 32, floor = 72;  // slabs
   Scene scene = plainScene(transfer, orthographicCamera({0, 0, 40.25}, {0, 0, 0}, 40, size), d);
   scene.camera.up = {0, 1, 0};

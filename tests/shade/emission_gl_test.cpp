@@ -8,16 +8,14 @@ using namespace umbrick;
 
 namespace {
 
-const glm::dvec3 kAlbedo(0.9, 0.5, 0.2);
 // The medium ends more than half a slab before the bricks do: where they end, slabs are drawn whole or not at all.
-const IndexBox kVoxels{glm::ivec3(-16), glm::ivec3(47)};
-const Box kMediumIndex{glm::dvec3(2.3, 3.1, 2.7), glm::dvec3(28.6, 27.9, 28.2)};
+const IndexBox kAroundMedium{glm::ivec3(-16), glm::ivec3(47)};
 
 // Nothing at value 0, a medium at value 1, linear between them.
 TransferFunction rampTo(double sigma_t) { return TransferFunction({{0, {kAlbedo, 0}}, {1, {kAlbedo, sigma_t}}}); }
 
 // Rotated, anisotropic, sheared, mirrored and moved.
-glm::dmat4 crookedTransform() {
+glm::dmat4 mediumTransform() {
   return glm::dmat4(0.8, 0.3, -0.1, 0, -0.25, 0.9, 0.2, 0, 0.4, 0.1, -1.1, 0, 12, -5, 3, 1);
 }
 
@@ -70,7 +68,7 @@ void checkChords(const Picture& picture, const Scene& scene, std::span<const Cli
 TEST_CASE("A homogeneous box has the opacity of each ray's exact chord", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  for (const glm::dmat4& transform : {glm::dmat4(1), crookedTransform()})
+  for (const glm::dmat4& transform : {glm::dmat4(1), mediumTransform()})
     for (const auto& [name, camera] : viewsOf(transform))
       for (const double spacing : {0.3, 1.0, 4.7}) {
         INFO(name << ", spacing " << spacing << ", crooked " << (transform != glm::dmat4(1)));
@@ -80,7 +78,7 @@ TEST_CASE("A homogeneous box has the opacity of each ray's exact chord", "[shade
         FieldOptions options;
         options.indexToWorld = transform;
         const FieldBricks volume = fieldFor(
-            scene, [](const glm::ivec3&) { return 1.0; }, kVoxels, options);
+            scene, [](const glm::ivec3&) { return 1.0; }, kAroundMedium, options);
         checkChords(renderPicture(*context, volume, scene), scene, scene.clipPlanes, sigma_t);
       }
 }
@@ -97,7 +95,7 @@ TEST_CASE("The closed form holds from next to nothing to next to solid", "[shade
       scene.sampling.quadrature = quadrature;
       scene.clipBox = kMediumIndex;
       const FieldBricks volume = fieldFor(
-          scene, [](const glm::ivec3&) { return 1.0; }, kVoxels);
+          scene, [](const glm::ivec3&) { return 1.0; }, kAroundMedium);
       checkChords(renderPicture(*context, volume, scene), scene, boxPlanes(kMediumIndex), tau / spacing);
     }
 }
@@ -114,7 +112,7 @@ TEST_CASE("A clip plane cuts slabs exactly, however it is tilted", "[shade][gl]"
       scene.clipPlanes = boxPlanes(kMediumIndex);
       scene.clipPlanes.push_back(plane);
       const FieldBricks volume = fieldFor(
-          scene, [](const glm::ivec3&) { return 1.0; }, kVoxels);
+          scene, [](const glm::ivec3&) { return 1.0; }, kAroundMedium);
       const Picture picture = renderPicture(*context, volume, scene);
       checkChords(picture, scene, scene.clipPlanes, sigma_t);
       // The reverse half-space shows the rest: opacities multiply to the whole.
@@ -142,7 +140,7 @@ TEST_CASE("Nothing nearer than the near distance is seen", "[shade][gl]") {
       Scene scene = plainScene(rampTo(0.1), camera, 2.1);
       scene.clipBox = kMediumIndex;
       const FieldBricks volume = fieldFor(
-          scene, [](const glm::ivec3&) { return 1.0; }, kVoxels);
+          scene, [](const glm::ivec3&) { return 1.0; }, kAroundMedium);
       std::vector<ClipPlane> planes = boxPlanes(kMediumIndex);
       const CameraFrame frame = cameraFrame(camera);
       planes.emplace_back(frame.forward, -glm::dot(frame.forward, camera.eye) - nearDistance);
@@ -154,7 +152,7 @@ TEST_CASE("Nothing nearer than the near distance is seen", "[shade][gl]") {
 TEST_CASE("A linear field of linear extinction has its exact optical depth", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  for (const glm::dmat4& transform : {glm::dmat4(1), crookedTransform()})
+  for (const glm::dmat4& transform : {glm::dmat4(1), mediumTransform()})
     for (const auto& [name, camera] : viewsOf(transform)) {
       INFO(name << ", crooked " << (transform != glm::dmat4(1)));
       const auto value = [](const glm::dvec3& index) {
@@ -166,7 +164,7 @@ TEST_CASE("A linear field of linear extinction has its exact optical depth", "[s
       FieldOptions options;
       options.indexToWorld = transform;
       const FieldBricks volume = fieldFor(
-          scene, [&](const glm::ivec3& i) { return value(glm::dvec3(i)); }, kVoxels, options);
+          scene, [&](const glm::ivec3& i) { return value(glm::dvec3(i)); }, kAroundMedium, options);
       const Picture picture = renderPicture(*context, volume, scene);
       const glm::dmat4 toIndex = glm::inverse(transform);
       double worst = 0;
@@ -194,7 +192,7 @@ TEST_CASE("A medium whose background value is visible fills the domain and nothi
     return glm::length(glm::dvec3(i) - glm::dvec3(15, 14, 16)) < 4 ? 3.0 : 2.0;
   };
   const IndexBox domain{glm::ivec3(-5, 3, 1), glm::ivec3(33, 24, 29)};
-  for (const glm::dmat4& transform : {glm::dmat4(1), crookedTransform()})
+  for (const glm::dmat4& transform : {glm::dmat4(1), mediumTransform()})
     for (const bool midpoint : {false, true})
       for (const auto& [name, camera] : viewsOf(transform)) {
         INFO(name << ", midpoint " << midpoint << ", crooked " << (transform != glm::dmat4(1)));
@@ -226,9 +224,9 @@ TEST_CASE("A volume of a single value shows the transfer function at exactly tha
       FieldOptions options;
       options.background = static_cast<float>(value);
       const FieldBricks volume = fieldFor(
-          scene, [&](const glm::ivec3&) { return value; }, kVoxels, options);
+          scene, [&](const glm::ivec3&) { return value; }, kAroundMedium, options);
       checkChords(renderPicture(*context, volume, scene), scene,
-                  boxPlanes({glm::dvec3(kVoxels.min), glm::dvec3(kVoxels.max)}), sigma_t);
+                  boxPlanes({glm::dvec3(kAroundMedium.min), glm::dvec3(kAroundMedium.max)}), sigma_t);
     }
 }
 
@@ -240,7 +238,7 @@ TEST_CASE("Colours are associated, scale with the ambient light and cover the ba
     return 0.5 + 0.5 * std::sin(0.4 * i.x) * std::cos(0.3 * i.y + 0.2 * i.z);
   };
   Scene scene = plainScene(transfer, viewsOf(glm::dmat4(1))[2].camera, 0.5);
-  const FieldBricks volume = fieldFor(scene, wave, kVoxels);
+  const FieldBricks volume = fieldFor(scene, wave, kAroundMedium);
   const Picture plain = renderPicture(*context, volume, scene);
   const glm::dvec3 largest(1, 0.7, 0.6);
   scene.ambient = {2, 0.5, 0};
@@ -277,7 +275,7 @@ TEST_CASE("Early rejection of saturated pixels changes less than the transmittan
     INFO("model " << static_cast<int>(model));
     Scene scene = plainScene(transfer, viewsOf(glm::dmat4(1))[2].camera, 0.5);
     scene.model = model;
-    const FieldBricks volume = fieldFor(scene, field, kVoxels);
+    const FieldBricks volume = fieldFor(scene, field, kAroundMedium);
     const Picture whole = renderPicture(*context, volume, scene);
     scene.sampling.saturation = SamplingOptions().saturation;
     const Picture early = renderPicture(*context, volume, scene);
@@ -295,7 +293,7 @@ TEST_CASE("A 2D transfer function sees the value and the gradient", "[shade][gl]
   if (!context) return;
   const glm::dvec3 slope(0.011, 0.004, 0.013);
   const auto value = [&](const glm::dvec3& index) { return 0.05 + glm::dot(index, slope); };
-  for (const glm::dmat4& transform : {glm::dmat4(1), crookedTransform()})
+  for (const glm::dmat4& transform : {glm::dmat4(1), mediumTransform()})
     for (const double perGradient : {0.0, 2.0}) {
       const double g = glm::length(glm::transpose(glm::inverse(glm::dmat3(transform))) * slope);
       const double byValue = 0.05;
@@ -308,7 +306,7 @@ TEST_CASE("A 2D transfer function sees the value and the gradient", "[shade][gl]
       FieldOptions options;
       options.indexToWorld = transform;
       const FieldBricks volume = fieldFor(
-          scene, [&](const glm::ivec3& i) { return value(glm::dvec3(i)); }, kVoxels, options);
+          scene, [&](const glm::ivec3& i) { return value(glm::dvec3(i)); }, kAroundMedium, options);
       const Picture picture = renderPicture(*context, volume, scene);
       double worst = 0;
       for (int y = 0; y < camera.height; ++y)
@@ -336,6 +334,6 @@ TEST_CASE("A 2D transfer function sees a volume without gradients at gradient 0"
   Scene scene = plainScene(transfer, viewsOf(glm::dmat4(1))[1].camera, 1);
   scene.clipBox = kMediumIndex;
   const FieldBricks volume = fieldFor(
-      scene, [](const glm::ivec3&) { return 1.0; }, kVoxels);
+      scene, [](const glm::ivec3&) { return 1.0; }, kAroundMedium);
   checkChords(renderPicture(*context, volume, scene), scene, boxPlanes(kMediumIndex), sigma_t);
 }

@@ -10,19 +10,11 @@ using namespace umbrick;
 
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
-
-TransferFunction ramp(double sigma_t) {
-  return TransferFunction({{0, {{0.9, 0.5, 0.2}, 0}}, {1, {{0.9, 0.5, 0.2}, sigma_t}}});
-}
-
 Camera withSize(Camera camera, int width, int height) {
   camera.width = width;
   camera.height = height;
   return camera;
 }
-
-const RenderOptions kLayers{.visibilityAndDepth = true};
 
 }  // namespace
 

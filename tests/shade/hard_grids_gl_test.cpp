@@ -15,8 +15,6 @@ using Catch::Contains;
 
 namespace {
 
-constexpr glm::dvec3 kAlbedo(0.9, 0.5, 0.2);
-
 // Nothing at `transparent`, sigma_t at `full`, linear between them.
 TransferFunction rampFrom(double transparent, double full, double sigma_t) {
   const Medium nothing{kAlbedo, 0}, medium{kAlbedo, sigma_t};

@@ -11,9 +11,7 @@ using namespace umbrick;
 
 namespace {
 
-const IndexBox kVoxels{glm::ivec3(0), glm::ivec3(31)};
-
-TransferFunction ramp(double low, double high, double sigma_t) {
+TransferFunction rampBetween(double low, double high, double sigma_t) {
   return TransferFunction({{low, {{0.8, 0.4, 0.1}, 0}}, {high, {{0.8, 0.4, 0.1}, sigma_t}}});
 }
 
@@ -22,13 +20,9 @@ FieldBricks::Field ball(double inside, double outside) {
   return [=](const glm::ivec3& i) { return glm::length(glm::dvec3(i) - glm::dvec3(15.5)) < 8 ? inside : outside; };
 }
 
-std::vector<Camera> cameras() {
+std::vector<Camera> ballCameras() {
   return {orthographicCamera({40, 30, 50}, {16, 16, 16}, 34, 40),
           perspectiveCamera({40, 30, 50}, {16, 16, 16}, 0.6, 40)};
-}
-
-bool allWithin(const Image& image, float low, float high) {
-  return std::all_of(image.pixels.begin(), image.pixels.end(), [&](float v) { return v >= low && v <= high; });
 }
 
 }  // namespace
@@ -40,15 +34,15 @@ TEST_CASE("Media as solid as numbers allow are opaque and empty space beside the
   for (const double sigma_t : {1e6, 1e30, 1e38, 1e300})
     for (const double background : {0.0, -1000.0})
       for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint})
-        for (const Camera& camera : cameras()) {
+        for (const Camera& camera : ballCameras()) {
           INFO("sigma_t " << sigma_t << ", background " << background << ", midpoint "
                           << (quadrature == Quadrature::midpoint) << ", perspective "
                           << (camera.projection == Projection::perspective));
-          Scene scene = plainScene(ramp(background, background + 1000, sigma_t), camera, 0.5);
+          Scene scene = plainScene(rampBetween(background, background + 1000, sigma_t), camera, 0.5);
           scene.sampling.quadrature = quadrature;
           FieldOptions options;
           options.background = static_cast<float>(background);
-          const FieldBricks volume = fieldFor(scene, ball(background + 1000, background), kVoxels, options);
+          const FieldBricks volume = fieldFor(scene, ball(background + 1000, background), kBlock, options);
           for (const Model model : {Model::emission, Model::cone}) {
             scene.model = model;
             const Picture picture = renderPicture(*context, volume, scene, {.visibilityAndDepth = true});
@@ -96,7 +90,7 @@ TEST_CASE("Empty space beside a solid medium is exactly empty in any table", "[s
             if (tableSize == 600 && quadrature == Quadrature::preintegrated) continue;  // takes long to make
             INFO("table " << tableSize << ", background " << background << ", below " << below << ", midpoint "
                           << (quadrature == Quadrature::midpoint) << ", " << format);
-            Scene scene = plainScene(ramp(background, background + 1000, 1e30), cameras()[0], 2);
+            Scene scene = plainScene(rampBetween(background, background + 1000, 1e30), ballCameras()[0], 2);
             scene.camera.width = scene.camera.height = 12;
             scene.sampling.quadrature = quadrature;
             scene.sampling.tableSize = tableSize;
@@ -107,7 +101,7 @@ TEST_CASE("Empty space beside a solid medium is exactly empty in any table", "[s
               if (glm::length(glm::dvec3(i) - glm::dvec3(16)) < 4) return background + 1000;
               return i == glm::ivec3(1) ? background - below : background;
             };
-            const FieldBricks volume = fieldFor(scene, field, kVoxels, options);
+            const FieldBricks volume = fieldFor(scene, field, kBlock, options);
             const Image image = renderPicture(*context, volume, scene).colour;
             for (const int pixel : {0, 1, 10, 11}) CHECK(image.at(pixel, 6)[3] == 0);
             CHECK(largestAlpha(image) == 1);
@@ -118,9 +112,9 @@ TEST_CASE("A clip plane through a solid medium shows its cut", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   for (const double sigma_t : {1e30, 1e300}) {
-    Scene scene = plainScene(ramp(0, 1, sigma_t), cameras()[0], 0.5);
+    Scene scene = plainScene(rampBetween(0, 1, sigma_t), ballCameras()[0], 0.5);
     scene.clipPlanes = {{0.1, 0.2, -1, 14}};
-    const FieldBricks volume = fieldFor(scene, ball(1, 0), kVoxels);
+    const FieldBricks volume = fieldFor(scene, ball(1, 0), kBlock);
     const Image image = renderPicture(*context, volume, scene).colour;
     CHECK(allWithin(image, 0, 1));
     CHECK(image.at(20, 20)[3] == Approx(1).epsilon(1e-6));
@@ -152,8 +146,8 @@ TEST_CASE("NaN and infinite voxels are background for renderer and reference", "
   holed->tree().addTile(1, openvdb::Coord(-32, 0, 0), 0.25f, false);
   spoilt->tree().addTile(1, openvdb::Coord(-32, 0, 0), infinity, false);
   for (const Model model : {Model::emission, Model::cone})
-    for (const Camera& camera : cameras()) {
-      Scene scene = plainScene(ramp(0.25, 1, 0.3), camera, 0.5);
+    for (const Camera& camera : ballCameras()) {
+      Scene scene = plainScene(rampBetween(0.25, 1, 0.3), camera, 0.5);
       scene.model = model;
       scene.camera.width = scene.camera.height = 20;
       const auto bricks = bricksFor(makeGrid(spoilt), scene);
@@ -181,11 +175,11 @@ TEST_CASE("Denormal voxels are as good as 0 among others", "[shade][gl]") {
   const auto zeros = [&](const glm::ivec3& i) { return (i.x + i.y + i.z) % 3 ? waves(i) : 0.0; };
   const auto denormals = [&](const glm::ivec3& i) { return (i.x + i.y + i.z) % 3 ? waves(i) : 1e-40 * (i.x - 10); };
   for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint}) {
-    Scene scene = plainScene(ramp(0, 1, 0.3), cameras()[1], 0.5);
+    Scene scene = plainScene(rampBetween(0, 1, 0.3), ballCameras()[1], 0.5);
     scene.sampling.quadrature = quadrature;
-    const Image image = renderPicture(*context, fieldFor(scene, zeros, kVoxels), scene).colour;
+    const Image image = renderPicture(*context, fieldFor(scene, zeros, kBlock), scene).colour;
     CHECK(largestAlpha(image) > 0.5);
-    CHECK(maxDifference(image, renderPicture(*context, fieldFor(scene, denormals, kVoxels), scene).colour) < 1e-6);
+    CHECK(maxDifference(image, renderPicture(*context, fieldFor(scene, denormals, kBlock), scene).colour) < 1e-6);
   }
 }
 
@@ -198,13 +192,13 @@ TEST_CASE("Volumes of next to one value show the medium of that value", "[shade]
                                   std::pair(1e6, 1e6 + 0.0625), std::pair(-3e38, 3e38)})
     for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint}) {
       INFO("values " << low << " to " << high << ", midpoint " << (quadrature == Quadrature::midpoint));
-      Scene scene = plainScene(homogeneous({0.8, 0.4, 0.1}, sigma_t), cameras()[0], 0.5);
+      Scene scene = plainScene(homogeneous({0.8, 0.4, 0.1}, sigma_t), ballCameras()[0], 0.5);
       scene.sampling.quadrature = quadrature;
       FieldOptions options;
       options.background = static_cast<float>(low);
-      const FieldBricks volume = fieldFor(scene, ball(high, low), kVoxels, options);
+      const FieldBricks volume = fieldFor(scene, ball(high, low), kBlock, options);
       const Image image = renderPicture(*context, volume, scene).colour;
-      const std::vector<ClipPlane> planes = boxPlanes({glm::dvec3(kVoxels.min), glm::dvec3(kVoxels.max)});
+      const std::vector<ClipPlane> planes = boxPlanes({glm::dvec3(kBlock.min), glm::dvec3(kBlock.max)});
       double worst = 0;
       for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {

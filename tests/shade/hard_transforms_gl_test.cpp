@@ -10,31 +10,12 @@ using namespace umbrick;
 
 namespace {
 
-TransferFunction ramp(double sigma_t) {
-  return TransferFunction({{0, {{0.9, 0.5, 0.2}, 0}}, {1, {{0.9, 0.5, 0.2}, sigma_t}}});
-}
-
-// Soft blobs in a box of 24 voxels, nothing at its faces.
-double blobs(const glm::ivec3& i) {
-  double value = 0;
-  for (const glm::dvec4& blob : {glm::dvec4(9, 8, 15, 7), glm::dvec4(15, 14, 9, 6), glm::dvec4(13, 6, 11, 4)})
-    value = std::max(value, 1 - glm::length(glm::dvec3(i) - glm::dvec3(blob)) / blob.w);
-  return value;
-}
-constexpr glm::dvec3 kCentre(12, 11, 12);
-
 Scene blobScene(Model model, const Camera& camera) {
   Scene scene = plainScene(ramp(0.6), camera, 0.5);
   scene.model = model;
   scene.sampling.saturation = SamplingOptions().saturation;
   return scene;
 }
-
-std::vector<Camera> cameras() {
-  return {orthographicCamera({30, 22, 40}, kCentre, 30, 32), perspectiveCamera({30, 22, 40}, kCentre, 0.6, 32)};
-}
-
-const RenderOptions kLayers{.visibilityAndDepth = true};
 
 // Everything of the scene with lengths `scale` times as long.
 Scene scaled(Scene scene, double scale) {
@@ -57,12 +38,12 @@ TEST_CASE("Huge and tiny worlds look like one of unit size", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   for (const Model model : {Model::emission, Model::cone})
-    for (const Camera& camera : cameras()) {
+    for (const Camera& camera : smallCameras()) {
       Scene scene = blobScene(model, camera);
       scene.camera.nearDistance = 5;
       scene.clipPlanes = {{0.3, -0.5, -0.8, 16}};
       const IndexBox voxels{glm::ivec3(0), glm::ivec3(23)};
-      const Picture unit = renderPicture(*context, fieldFor(scene, blobs, voxels), scene, kLayers);
+      const Picture unit = renderPicture(*context, fieldFor(scene, smallBlobs, voxels), scene, kLayers);
       REQUIRE(largestAlpha(unit.colour) > 0.9);
       for (const double scale : {0x1p-20, 1e-6, 1e6, 0x1p40, 1e-12}) {
         INFO("scale " << scale << ", cone " << (model == Model::cone) << ", perspective "
@@ -70,7 +51,7 @@ TEST_CASE("Huge and tiny worlds look like one of unit size", "[shade][gl]") {
         const Scene other = scaled(scene, scale);
         FieldOptions options;
         options.indexToWorld = glm::scale(glm::dmat4(1), glm::dvec3(scale));
-        const Picture picture = renderPicture(*context, fieldFor(other, blobs, voxels, options), other, kLayers);
+        const Picture picture = renderPicture(*context, fieldFor(other, smallBlobs, voxels, options), other, kLayers);
         CHECK(maxDifference(picture.colour, unit.colour) < 2e-5);
         CHECK(maxDifference(picture.visibility, unit.visibility) < 2e-5);
         double depth = 0;
@@ -85,7 +66,7 @@ TEST_CASE("Huge and tiny worlds look like one of unit size", "[shade][gl]") {
 TEST_CASE("Grids of the smallest voxels that OpenVDB takes and of huge ones match the reference", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const ScalarGrid unit = makeFilled({24, 24, 24}, {0, 0, 0}, blobs);
+  const ScalarGrid unit = makeFilled({24, 24, 24}, {0, 0, 0}, smallBlobs);
   for (const double scale : {1.6e-5, 1e6}) {
     INFO("scale " << scale);
     const ScalarGrid grid = withTransform(unit, glm::scale(glm::dmat4(1), glm::dvec3(scale)));
@@ -97,7 +78,7 @@ TEST_CASE("Grids of the smallest voxels that OpenVDB takes and of huge ones matc
 TEST_CASE("Rotated, anisotropic, sheared and mirrored grids match the reference", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, blobs);
+  const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, smallBlobs);
   const std::pair<std::string, glm::dmat4> transforms[] = {
       {"rotated", glm::rotate(glm::dmat4(1), 0.7, glm::normalize(glm::dvec3(1, 2, -1)))},
       {"anisotropic", glm::scale(glm::dmat4(1), glm::dvec3(0.25, 3, 1))},
@@ -117,15 +98,15 @@ TEST_CASE("A mirrored world is the mirror image", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   for (const Model model : {Model::emission, Model::cone})
-    for (const Camera& camera : cameras()) {
+    for (const Camera& camera : smallCameras()) {
       Scene scene = blobScene(model, camera);
       scene.camera.up = {0, 1, 0};
       const IndexBox voxels{glm::ivec3(0), glm::ivec3(23)};
-      const Image plain = renderPicture(*context, fieldFor(scene, blobs, voxels), scene).colour;
+      const Image plain = renderPicture(*context, fieldFor(scene, smallBlobs, voxels), scene).colour;
       for (glm::dvec3* point : {&scene.camera.eye, &scene.camera.lookAt}) point->x *= -1;
       FieldOptions options;
       options.indexToWorld = glm::scale(glm::dmat4(1), glm::dvec3(-1, 1, 1));
-      const Image mirrored = renderPicture(*context, fieldFor(scene, blobs, voxels, options), scene).colour;
+      const Image mirrored = renderPicture(*context, fieldFor(scene, smallBlobs, voxels, options), scene).colour;
       Image back = mirrored;
       for (int y = 0; y < back.height; ++y)
         for (int x = 0; x < back.width; ++x) std::copy_n(mirrored.at(mirrored.width - 1 - x, y), 4, back.at(x, y));
@@ -141,21 +122,21 @@ TEST_CASE("A grid 1e6 voxels from the origin looks like one at the origin", "[sh
   const IndexBox voxels{glm::ivec3(0), glm::ivec3(23)};
   for (const glm::dmat4& transform : {glm::dmat4(1), crookedTransform()})
     for (const Model model : {Model::emission, Model::cone})
-      for (Camera camera : cameras()) {
+      for (Camera camera : smallCameras()) {
         INFO("crooked " << (transform != glm::dmat4(1)) << ", cone " << (model == Model::cone));
         FieldOptions options;
         options.indexToWorld = transform;
-        const glm::dvec3 centre(transform * glm::dvec4(kCentre, 1));
+        const glm::dvec3 centre(transform * glm::dvec4(kSmallCentre, 1));
         camera.eye += centre - camera.lookAt;
         camera.lookAt = centre;
         Scene scene = blobScene(model, camera);
         scene.clipPlanes = {{0.3, -0.5, -0.8, 4 - glm::dot(glm::dvec3(0.3, -0.5, -0.8), centre)}};
-        const Picture here = renderPicture(*context, fieldFor(scene, blobs, voxels, options), scene, kLayers);
+        const Picture here = renderPicture(*context, fieldFor(scene, smallBlobs, voxels, options), scene, kLayers);
         const glm::dvec3 moved = glm::dmat3(transform) * glm::dvec3(far);
         scene.camera.eye += moved;
         scene.camera.lookAt += moved;
         scene.clipPlanes[0].w -= glm::dot(glm::dvec3(scene.clipPlanes[0]), moved);
-        const auto farBlobs = [&](const glm::ivec3& i) { return blobs(i - far); };
+        const auto farBlobs = [&](const glm::ivec3& i) { return smallBlobs(i - far); };
         const FieldBricks there = fieldFor(scene, farBlobs, {voxels.min + far, voxels.max + far}, options);
         const Picture picture = renderPicture(*context, there, scene, kLayers);
         REQUIRE(largestAlpha(here.colour) > 0.5);
@@ -164,7 +145,7 @@ TEST_CASE("A grid 1e6 voxels from the origin looks like one at the origin", "[sh
         CHECK(maxDifference(here.visibility, picture.visibility) < 2e-5);
       }
   // Against the reference, which is double precision throughout.
-  const ScalarGrid grid = makeFilled({24, 24, 24}, far, blobs);
+  const ScalarGrid grid = makeFilled({24, 24, 24}, far, smallBlobs);
   checkViewsAgainstReference(*context, grid, ramp(0.6), {glm::dvec3(far), glm::dvec3(far + 23)}, 0.5);
 }
 

@@ -10,8 +10,7 @@ using namespace umbrick;
 
 namespace {
 
-const IndexBox kVoxels{glm::ivec3(-8), glm::ivec3(39)};
-const Box kMediumIndex{glm::dvec3(2.3, 3.1, 2.7), glm::dvec3(28.6, 27.9, 28.2)};
+const IndexBox kSmoothBlock{glm::ivec3(-8), glm::ivec3(39)};
 
 // Wavelengths of 13 to 25 voxels, in (0, 1).
 double smoothField(const glm::ivec3& i) {
@@ -74,7 +73,7 @@ TEST_CASE("A smooth field converges to a march in double precision at second ord
                                perspectiveCamera(centre, centre + glm::dvec3(9, 5, 1), 1.4, 32)}) {
     Scene scene = plainScene(smoothTransfer(), camera, 4);
     scene.clipPlanes = boxPlanes(kMediumIndex);
-    const FieldBricks volume = fieldFor(scene, smoothField, kVoxels);
+    const FieldBricks volume = fieldFor(scene, smoothField, kSmoothBlock);
     // 1200 steps over 45 voxels or less: an error of (0.04 / 0.5)^2 of that at the smallest spacing.
     const Reference exact = marchPicture(volume, scene, 1200);
     for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint}) {
@@ -108,7 +107,7 @@ TEST_CASE("A thin shell of a steep field is seen by pre-integration at any phase
     Scene scene = plainScene(transfer, camera, 2.5);
     scene.sampling.tableSize = 1024;
     const FieldBricks volume = fieldFor(
-        scene, [](const glm::ivec3& i) { return i.z / 40.0; }, kVoxels);
+        scene, [](const glm::ivec3& i) { return i.z / 40.0; }, kSmoothBlock);
     const Picture picture = renderPicture(*context, volume, scene);
     INFO("phase " << phase);
     // The values are -0.225 to 1.05, so a bin is 0.00125, a sixteenth of the peak. Means from node to node are exact;
@@ -139,7 +138,7 @@ TEST_CASE("Texel formats agree within the error that they state", "[shade][gl]")
       const double value = low + (high - low) * smoothField(i);
       return wholeNumbers ? std::round(value) : value;
     };
-    FieldBricks volume = fieldFor(scene, field, kVoxels);
+    FieldBricks volume = fieldFor(scene, field, kSmoothBlock);
     if (wholeNumbers) volume.exactFormat = VoxelFormat::unorm16;
     scene.bricks.format = "float32";
     const Picture exact = renderPicture(*context, volume, scene);

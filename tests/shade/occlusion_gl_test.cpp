@@ -9,17 +9,6 @@ using namespace umbrick;
 
 namespace {
 
-const IndexBox kVoxels{glm::ivec3(0), glm::ivec3(31)};
-
-// Blobs that fade to nothing before the bricks end, where slabs are drawn whole or not at all.
-double blobs(const glm::ivec3& i) {
-  const glm::dvec3 p(i);
-  double value = 0;
-  for (const glm::dvec4& blob : {glm::dvec4(11, 12, 20, 8), glm::dvec4(20, 19, 12, 9), glm::dvec4(18, 9, 16, 5)})
-    value = std::max(value, 1 - glm::length(p - glm::dvec3(blob)) / blob.w);
-  return value;
-}
-
 TransferFunction blobTransfer() { return TransferFunction({{0, {{0.9, 0.5, 0.2}, 0}}, {1, {{0.3, 0.8, 0.6}, 1.5}}}); }
 
 Scene coneScene(const TransferFunction& transfer, const Camera& camera, double spacing) {
@@ -29,25 +18,19 @@ Scene coneScene(const TransferFunction& transfer, const Camera& camera, double s
   return scene;
 }
 
-std::vector<Camera> cameras() {
-  return {orthographicCamera({45, 5, 40}, {16, 16, 16}, 40, 40), perspectiveCamera({36, 2, 38}, {16, 16, 16}, 0.8, 40)};
-}
-
-const RenderOptions kLayers{.visibilityAndDepth = true};
-
 }  // namespace
 
 // Both compute in turn what the other computes at once, in the same words of the shader.
 TEST_CASE("Two passes a slice and multiple render targets agree to the last bit", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  for (const Camera& camera : cameras())
+  for (const Camera& camera : blobCameras())
     for (const int algorithm : {2, 3}) {
       Scene scene = coneScene(blobTransfer(), camera, 0.7);
       scene.sampling.quadrature = Quadrature::preintegrated;
       scene.sampling.saturation = SamplingOptions().saturation;
       scene.occlusion.algorithm = algorithm;
-      const FieldBricks volume = fieldFor(scene, blobs, kVoxels);
+      const FieldBricks volume = fieldFor(scene, blobs, kBlock);
       scene.occlusion.passes = 1;
       const Picture one = renderPicture(*context, volume, scene, kLayers);
       scene.occlusion.passes = 2;
@@ -63,7 +46,7 @@ TEST_CASE("Two passes a slice and multiple render targets agree to the last bit"
 TEST_CASE("The occlusion sweep agrees with one in double precision", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  for (const Camera& camera : cameras())
+  for (const Camera& camera : blobCameras())
     for (const double theta : {0.3, 1.0471975511965976, 1.4})
       for (const int footprint : {1, 2, 3, 4})
         for (const bool correction : {true, false}) {
@@ -78,7 +61,7 @@ TEST_CASE("The occlusion sweep agrees with one in double precision", "[shade][gl
           scene.occlusion.footprint = footprint;
           scene.occlusion.algorithm = algorithm;
           scene.occlusion.perspectiveCorrection = correction;
-          const FieldBricks volume = fieldFor(scene, blobs, kVoxels);
+          const FieldBricks volume = fieldFor(scene, blobs, kBlock);
           const Picture picture = renderPicture(*context, volume, scene, kLayers);
           const auto exact = sweepOcclusion(volume, scene, 80);
           double colour = 0, alpha = 0, visibility = 0, shadow = 0;
@@ -103,10 +86,10 @@ TEST_CASE("The occlusion sweep agrees with one in double precision", "[shade][gl
 TEST_CASE("With an aperture of 0 Algorithms 2 and 3 are the same", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  for (const Camera& camera : cameras()) {
+  for (const Camera& camera : blobCameras()) {
     Scene scene = coneScene(blobTransfer(), camera, 0.8);
     scene.occlusion.aperture = 0;
-    const FieldBricks volume = fieldFor(scene, blobs, kVoxels);
+    const FieldBricks volume = fieldFor(scene, blobs, kBlock);
     scene.occlusion.algorithm = 2;
     const Picture exact = renderPicture(*context, volume, scene, kLayers);
     scene.occlusion.algorithm = 3;
@@ -267,7 +250,7 @@ TEST_CASE("Clipping an occluder away lights what is behind it", "[shade][gl]") {
   };
   const TransferFunction transfer({{0, {{1, 1, 1}, 0}}, {1, {{1, 1, 1}, 2}}});
   Scene scene = coneScene(transfer, orthographicCamera({16, 16, 50}, {16, 16, 0}, 28, 32), 0.5);
-  const FieldBricks volume = fieldFor(scene, field, kVoxels);
+  const FieldBricks volume = fieldFor(scene, field, kBlock);
   const Picture roofed = renderPicture(*context, volume, scene, kLayers);
   scene.clipPlanes = {{0, 0, -1, 18}};
   const Picture open = renderPicture(*context, volume, scene, kLayers);

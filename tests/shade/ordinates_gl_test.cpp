@@ -1,6 +1,7 @@
 // Light by ordinates: closed forms, laws, and a sweep on the CPU.
 #include <catch2/catch.hpp>
 #include <functional>
+#include <numbers>
 #include <string>
 
 #include "shade/grid_picture.h"
@@ -12,24 +13,14 @@ using namespace umbrick;
 
 namespace {
 
-const IndexBox kVoxels{glm::ivec3(0), glm::ivec3(31)};
 const IndexBox kWide{glm::ivec3(-64, -64, 0), glm::ivec3(95, 95, 63)};
-const RenderOptions kLayers{.visibilityAndDepth = true};
-
-double blobs(const glm::ivec3& i) {
-  const glm::dvec3 p(i);
-  double value = 0;
-  for (const glm::dvec4& blob : {glm::dvec4(11, 12, 20, 8), glm::dvec4(20, 19, 12, 9), glm::dvec4(18, 9, 16, 5)})
-    value = std::max(value, 1 - glm::length(p - glm::dvec3(blob)) / blob.w);
-  return value;
-}
 
 TransferFunction ramp(const glm::dvec3& albedo, double sigma_t) {
   return TransferFunction({{0, {albedo, 0}}, {1, {albedo, sigma_t}}});
 }
 
-Scene ordinatesScene(const TransferFunction& transfer, const Camera& camera, double spacing, double theta = 1) {
-  return umbrick::ordinatesScene(transfer, camera, spacing, theta, 16);
+Scene sixteenDirections(const TransferFunction& transfer, const Camera& camera, double spacing, double theta = 1) {
+  return ordinatesScene(transfer, camera, spacing, theta, 16);
 }
 
 LightSource lightFrom(const std::vector<ListedDirection>& list, LightFrame frame = LightFrame::view) {
@@ -42,10 +33,6 @@ LightSource lightFrom(const glm::dvec3& direction, const glm::dvec3& colour = gl
 void setLights(Scene& scene, const std::vector<LightSource>& lights) {
   scene.model = Model::lights;
   scene.lights = lights;
-}
-
-std::vector<Camera> cameras() {
-  return {orthographicCamera({45, 5, 40}, {16, 16, 16}, 40, 40), perspectiveCamera({36, 2, 38}, {16, 16, 16}, 0.8, 40)};
 }
 
 Camera straightCamera(bool perspective, double z, int size) {
@@ -65,7 +52,7 @@ constexpr double kPictureRounding = 2e-5;
 TEST_CASE("Light by ordinates agrees with a sweep in double precision", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  for (const Camera& camera : cameras())
+  for (const Camera& camera : blobCameras())
     for (const double theta : {0.0, 0.6, 1.2})
       for (const double scale : {0.0, 1.4}) {
         if (scale > 0 && theta != 1.2) continue;
@@ -73,7 +60,7 @@ TEST_CASE("Light by ordinates agrees with a sweep in double precision", "[shade]
                                      0.8, theta, 10);
         scene.sampling.quadrature = Quadrature::midpoint;
         scene.occlusion.scale = scale;
-        const FieldBricks volume = fieldFor(scene, blobs, kVoxels);
+        const FieldBricks volume = fieldFor(scene, blobs, kBlock);
         const Picture picture = renderPicture(*context, volume, scene, kLayers);
         CHECK(picture.stats.windowTexel == Approx(scale > 0 ? 1 / scale : 1).epsilon(0.2));
         const auto exact = sweepOrdinates(volume, scene, picture.stats.windowTexel, 80);
@@ -252,7 +239,7 @@ TEST_CASE("Below an opaque half-plane ordinates have the light of the cone", "[s
   const auto field = [](const glm::ivec3& i) { return i.z == 24 && i.x >= 1 ? 1.0 : i.z == 4 ? -1.0 : 0.0; };
   const TransferFunction transfer(
       {{-1, {glm::dvec3(1), 1e-3}}, {0, {glm::dvec3(1), 0}}, {0.9, {glm::dvec3(1), 0}}, {1, {glm::dvec3(1), 1e4}}});
-  const double theta = 60 * kPi / 180;
+  const double theta = 60 * std::numbers::pi / 180;
   Scene scene = ordinatesScene(transfer, orthographicCamera({0, 0, 40.25}, {0, 0, 0}, 40, 80), 0.5, theta, 160);
   scene.camera.height = 1;
   scene.camera.viewHeight = 0.5;
@@ -285,16 +272,16 @@ TEST_CASE("Clipping an occluder away lights what is behind it, by ordinates as w
   };
   const auto floor = [](const glm::ivec3& i) { return i.z >= 4 && i.z <= 8 ? 1.0 : 0.0; };
   for (const bool perspective : {false, true}) {
-    Scene scene = ordinatesScene(ramp(glm::dvec3(1), 2), straightCamera(perspective, 50, 32), 0.5);
-    const Picture roofed = renderPicture(*context, fieldFor(scene, field, kVoxels), scene, kLayers);
-    const Picture alone = renderPicture(*context, fieldFor(scene, floor, kVoxels), scene, kLayers);
+    Scene scene = sixteenDirections(ramp(glm::dvec3(1), 2), straightCamera(perspective, 50, 32), 0.5);
+    const Picture roofed = renderPicture(*context, fieldFor(scene, field, kBlock), scene, kLayers);
+    const Picture alone = renderPicture(*context, fieldFor(scene, floor, kBlock), scene, kLayers);
     CHECK(maxDifference(roofed.visibility, alone.visibility) > 0.15);
     scene.clipPlanes = {{0.02, -0.03, -1, 18}};
-    const Picture open = renderPicture(*context, fieldFor(scene, field, kVoxels), scene, kLayers);
+    const Picture open = renderPicture(*context, fieldFor(scene, field, kBlock), scene, kLayers);
     CHECK(layersDifference(open, alone) < kPictureRounding);  // no trace of the roof
     scene.clipPlanes.clear();
     scene.camera.nearDistance = 50 - 18;
-    CHECK(layersDifference(renderPicture(*context, fieldFor(scene, field, kVoxels), scene, kLayers), alone) <
+    CHECK(layersDifference(renderPicture(*context, fieldFor(scene, field, kBlock), scene, kLayers), alone) <
           kPictureRounding);
   }
 }
@@ -353,13 +340,13 @@ TEST_CASE("Bricks, culling, pools and textures change nothing of light by ordina
 TEST_CASE("A picture by ordinates does not depend on the ones before", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  Scene scene = ordinatesScene(ramp({0.9, 0.5, 0.2}, 1.2), cameras()[0], 0.8, 1.2, 20);
+  Scene scene = ordinatesScene(ramp({0.9, 0.5, 0.2}, 1.2), blobCameras()[0], 0.8, 1.2, 20);
   scene.sampling.quadrature = Quadrature::midpoint;
-  const FieldBricks volume = fieldFor(scene, blobs, kVoxels);
+  const FieldBricks volume = fieldFor(scene, blobs, kBlock);
   const Picture alone = renderPicture(*context, volume, scene, kLayers);
   SliceRenderer renderer(*context, volume, scene, kLayers);
   for (const Camera& between :
-       {cameras()[1], perspectiveCamera({16, 16, 16}, {40, 9, 3}, 1.8, 40),
+       {blobCameras()[1], perspectiveCamera({16, 16, 16}, {40, 9, 3}, 1.8, 40),
         orthographicCamera({-50, 3, 9}, {16, 16, 16}, 200, 40), orthographicCamera({-50, 3, 9}, {-60, 3, 9}, 20, 40)}) {
     renderer.render(between);
     const Picture again = renderer.render(scene.camera);
@@ -372,7 +359,7 @@ TEST_CASE("A picture by ordinates does not depend on the ones before", "[shade][
 TEST_CASE("Many directions are lit in groups, which add up to what one group has", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  for (const Camera& camera : cameras())
+  for (const Camera& camera : blobCameras())
     for (const bool coloured : {false, true}) {
       Scene scene = ordinatesScene(ramp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 1.1, 15);
       std::vector<ListedDirection> once, often;
@@ -384,7 +371,7 @@ TEST_CASE("Many directions are lit in groups, which add up to what one group has
         for (const ListedDirection& listed : once)
           often.push_back({listed.direction, 0.1 * listed.weight, listed.colour});
       REQUIRE(often.size() > 128);
-      const FieldBricks volume = fieldFor(scene, blobs, kVoxels);
+      const FieldBricks volume = fieldFor(scene, blobs, kBlock);
       const Picture cone = renderPicture(*context, volume, scene, kLayers);
       CHECK(cone.stats.directions == static_cast<int>(once.size()));
       setLights(scene, {lightFrom(once, LightFrame::world)});
@@ -405,13 +392,13 @@ TEST_CASE("Pictures of lights add up to the picture of all of them", "[shade][gl
   const auto context = testContext();
   if (!context) return;
   const glm::dvec3 red(1, 0.2, 0.1), blue(0.1, 0.3, 0.8);
-  for (const Camera& camera : cameras())
+  for (const Camera& camera : blobCameras())
     for (const bool equalPaths : {true, false}) {
       const glm::dvec3 left(-0.6, 0.1, 0.7), right = equalPaths ? glm::dvec3(0.6, 0.1, 0.7) : glm::dvec3(0.1, 0.2, 0.9);
       std::vector<double> differences;
       for (const double d : {0.8, 0.4}) {
-        Scene scene = ordinatesScene(ramp({0.9, 0.8, 0.7}, 1.2), camera, d);
-        const FieldBricks volume = fieldFor(scene, blobs, kVoxels);
+        Scene scene = sixteenDirections(ramp({0.9, 0.8, 0.7}, 1.2), camera, d);
+        const FieldBricks volume = fieldFor(scene, blobs, kBlock);
         setLights(scene, {lightFrom(left, red)});
         Image sum = renderPicture(*context, volume, scene).colour;
         setLights(scene, {lightFrom(right, blue)});
@@ -434,10 +421,10 @@ TEST_CASE("Pictures of lights add up to the picture of all of them", "[shade][gl
 TEST_CASE("Windows of 16 bits stay within half a step per slice", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  for (const Camera& camera : cameras())
+  for (const Camera& camera : blobCameras())
     for (const double d : {0.8, 0.1}) {
       Scene scene = ordinatesScene(ramp({0.9, 0.5, 0.2}, 0.6), camera, d, 1, 12);
-      const FieldBricks volume = fieldFor(scene, blobs, kVoxels);
+      const FieldBricks volume = fieldFor(scene, blobs, kBlock);
       const Picture fine = renderPicture(*context, volume, scene, kLayers);
       scene.occlusion.bits = 16;
       const Picture coarse = renderPicture(*context, volume, scene, kLayers);
@@ -452,9 +439,9 @@ TEST_CASE("Windows of 16 bits stay within half a step per slice", "[shade][gl]")
 TEST_CASE("Without an aperture any number of directions is one, straight towards the viewer", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  for (const Camera& camera : cameras()) {
+  for (const Camera& camera : blobCameras()) {
     Scene scene = ordinatesScene(ramp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 0, 16);
-    const FieldBricks volume = fieldFor(scene, blobs, kVoxels);
+    const FieldBricks volume = fieldFor(scene, blobs, kBlock);
     const Picture straight = renderPicture(*context, volume, scene, kLayers);
     CHECK(straight.stats.directions == 1);
     scene.occlusion.directions = 1;

@@ -1,5 +1,6 @@
 // Hard cases of light by ordinates. Elsewhere: that bricks change nothing far from the origin and on faces (check).
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -15,39 +16,13 @@ using namespace umbrick;
 
 namespace {
 
-constexpr double kDegree = kPi / 180;
-const RenderOptions kLayers{.visibilityAndDepth = true};
-
-TransferFunction ramp(double sigma_t, double empty = 0, double full = 1) {
-  const Medium nothing{{0.9, 0.5, 0.2}, 0}, medium{{0.9, 0.5, 0.2}, sigma_t};
-  return empty < full ? TransferFunction({{empty, nothing}, {full, medium}})
-                      : TransferFunction({{full, medium}, {empty, nothing}});
-}
-
-// Soft blobs in a box of 24 voxels, nothing at its faces.
-double blobs(const glm::ivec3& i) {
-  double value = 0;
-  for (const glm::dvec4& blob : {glm::dvec4(9, 8, 15, 7), glm::dvec4(15, 14, 9, 6), glm::dvec4(13, 6, 11, 4)})
-    value = std::max(value, 1 - glm::length(glm::dvec3(i) - glm::dvec3(blob)) / blob.w);
-  return value;
-}
-constexpr glm::dvec3 kCentre(12, 11, 12);
-
-Scene ordinatesScene(const TransferFunction& transfer, const Camera& camera, double spacing, double theta = 1) {
-  return umbrick::ordinatesScene(transfer, camera, spacing, theta, 8);
+Scene eightDirections(const TransferFunction& transfer, const Camera& camera, double spacing, double theta = 1) {
+  return ordinatesScene(transfer, camera, spacing, theta, 8);
 }
 
 void setLights(Scene& scene, const std::vector<ListedDirection>& list, LightFrame frame = LightFrame::view) {
   scene.model = Model::lights;
   scene.lights = {{frame, ListedLight{list}}};
-}
-
-std::vector<Camera> cameras(int size = 32) {
-  return {orthographicCamera({30, 22, 40}, kCentre, 30, size), perspectiveCamera({30, 22, 40}, kCentre, 0.6, size)};
-}
-
-bool allWithin(const Image& image, float low, float high) {
-  return std::all_of(image.pixels.begin(), image.pixels.end(), [&](float v) { return v >= low && v <= high; });
 }
 
 // Against the reference of the same directions, at the scene's spacing and at half of it, window texels as large as
@@ -103,19 +78,19 @@ TEST_CASE("Slabs of optical depths from 1e-8 to 1e4 scatter what they should, by
 TEST_CASE("Media as solid as numbers allow are lit in front and dark behind, at any angle", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const auto ball = [](const glm::ivec3& i) { return glm::length(glm::dvec3(i) - kCentre) < 7 ? 1.0 : 0.0; };
+  const auto ball = [](const glm::ivec3& i) { return glm::length(glm::dvec3(i) - kSmallCentre) < 7 ? 1.0 : 0.0; };
   for (const double sigma_t : {1e6, 1e30, 1e38, 1e300})
     for (const double theta : {0.0, 1.0, 89.9 * kDegree})
       for (const int directions : {1, 16})
         for (const int bits : {32, 16})
-          for (const Camera& camera : cameras(20)) {
+          for (const Camera& camera : smallCameras(20)) {
             INFO("sigma_t " << sigma_t << ", theta " << theta << ", directions " << directions << ", bits " << bits
                             << ", perspective " << (camera.projection == Projection::perspective));
             Scene scene = ordinatesScene(ramp(sigma_t), camera, 0.5, theta, directions);
             scene.occlusion.bits = bits;
             // The half of the ball behind its middle: a front that no part of it shades.
             const glm::dvec3 forward = cameraFrame(camera).forward;
-            scene.clipPlanes = {{forward, -glm::dot(forward, kCentre)}};
+            scene.clipPlanes = {{forward, -glm::dot(forward, kSmallCentre)}};
             const FieldBricks volume = fieldFor(scene, ball, {glm::ivec3(0), glm::ivec3(23)});
             const Picture picture = renderPicture(*context, volume, scene, kLayers);
             CHECK(allWithin(picture.colour, 0, 1));
@@ -141,7 +116,7 @@ TEST_CASE("Windows that 10 000 slices have multiplied are off by half a step per
   for (const double whole : {0.05, 2.3})
     for (const int slices : {100, 10'000}) {
       const double d = depth / slices;
-      Scene scene = ordinatesScene(ramp(whole / depth), orthographicCamera({12, 12, 20.5 + d}, {12, 12, 0}, 4, 2), d);
+      Scene scene = eightDirections(ramp(whole / depth), orthographicCamera({12, 12, 20.5 + d}, {12, 12, 0}, 4, 2), d);
       setLights(scene, {{glm::dvec3(0.28, 0, 0.96)}});
       scene.clipPlanes = {{0, 0, -1, 20.5}, {0, 0, 1, -0.5}};
       scene.occlusion.scale = 1;
@@ -169,8 +144,8 @@ TEST_CASE("Windows that 10 000 slices have multiplied are off by half a step per
 TEST_CASE("Apertures of 0 and 89.9 degrees, one direction and many, match the reference", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, blobs);
-  for (const Camera& camera : cameras(16))
+  const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, smallBlobs);
+  for (const Camera& camera : smallCameras(16))
     for (const auto& [theta, directions] :
          {std::pair(0.0, 4), std::pair(1.5, 1), std::pair(89.9, 4), std::pair(89.9, 24)}) {
       INFO("theta " << theta << ", directions " << directions << ", perspective "
@@ -184,11 +159,11 @@ TEST_CASE("Apertures of 0 and 89.9 degrees, one direction and many, match the re
 TEST_CASE("Light at a grazing angle is blocked by what is beside a point, or not at all", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, blobs);
-  for (const Camera& camera : cameras(24))
+  const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, smallBlobs);
+  for (const Camera& camera : smallCameras(24))
     for (const double towards : {1e-2, 1e-4, 1e-9, 1e-300}) {
       INFO("towards the viewer " << towards << ", perspective " << (camera.projection == Projection::perspective));
-      Scene scene = ordinatesScene(ramp(0.6), camera, 0.5);
+      Scene scene = eightDirections(ramp(0.6), camera, 0.5);
       setLights(scene, {{glm::dvec3(0.8, 0.6, towards)}});
       const Picture picture = renderGrid(*context, grid, scene, kLayers);
       CHECK(allWithin(picture.colour, 0, 1));
@@ -205,9 +180,9 @@ TEST_CASE("Huge and tiny worlds, by ordinates, look like one of unit size", "[sh
   const auto context = testContext();
   if (!context) return;
   const IndexBox voxels{glm::ivec3(0), glm::ivec3(23)};
-  for (const Camera& camera : cameras()) {
-    const Scene scene = ordinatesScene(ramp(0.6), camera, 0.5);
-    const Picture unit = renderPicture(*context, fieldFor(scene, blobs, voxels), scene, kLayers);
+  for (const Camera& camera : smallCameras()) {
+    const Scene scene = eightDirections(ramp(0.6), camera, 0.5);
+    const Picture unit = renderPicture(*context, fieldFor(scene, smallBlobs, voxels), scene, kLayers);
     for (const double scale : {0x1p-20, 1e-6, 1e6, 0x1p40, 1e-12}) {
       INFO("scale " << scale << ", perspective " << (camera.projection == Projection::perspective));
       Scene other = scene;
@@ -218,7 +193,7 @@ TEST_CASE("Huge and tiny worlds, by ordinates, look like one of unit size", "[sh
       other.transfer = scene.transfer->scaled(1 / scale);
       FieldOptions options;
       options.indexToWorld = glm::scale(glm::dmat4(1), glm::dvec3(scale));
-      const Picture picture = renderPicture(*context, fieldFor(other, blobs, voxels, options), other, kLayers);
+      const Picture picture = renderPicture(*context, fieldFor(other, smallBlobs, voxels, options), other, kLayers);
       CHECK(picture.stats.windowTexel == Approx(scale * unit.stats.windowTexel));
       CHECK(layersDifference(picture, unit) < 2e-5);
     }
@@ -231,22 +206,22 @@ TEST_CASE("A grid 1e6 voxels from the origin, by ordinates, looks like one at th
   const glm::ivec3 far(1'000'000, -1'000'000, 1'000'000);  // a multiple of the bricks' edge
   const IndexBox voxels{glm::ivec3(0), glm::ivec3(23)};
   for (const glm::dmat4& transform : {glm::dmat4(1), crookedTransform()})
-    for (Camera camera : cameras()) {
+    for (Camera camera : smallCameras()) {
       INFO("crooked " << (transform != glm::dmat4(1)) << ", perspective "
                       << (camera.projection == Projection::perspective));
       FieldOptions options;
       options.indexToWorld = transform;
-      const glm::dvec3 centre(transform * glm::dvec4(kCentre, 1));
+      const glm::dvec3 centre(transform * glm::dvec4(kSmallCentre, 1));
       camera.eye += centre - camera.lookAt;
       camera.lookAt = centre;
-      Scene scene = ordinatesScene(ramp(0.6), camera, 0.5);
+      Scene scene = eightDirections(ramp(0.6), camera, 0.5);
       scene.clipPlanes = {{0.3, -0.5, -0.8, 4 - glm::dot(glm::dvec3(0.3, -0.5, -0.8), centre)}};
-      const Picture here = renderPicture(*context, fieldFor(scene, blobs, voxels, options), scene, kLayers);
+      const Picture here = renderPicture(*context, fieldFor(scene, smallBlobs, voxels, options), scene, kLayers);
       const glm::dvec3 moved = glm::dmat3(transform) * glm::dvec3(far);
       scene.camera.eye += moved;
       scene.camera.lookAt += moved;
       scene.clipPlanes[0].w -= glm::dot(glm::dvec3(scene.clipPlanes[0]), moved);
-      const auto farBlobs = [&](const glm::ivec3& i) { return blobs(i - far); };
+      const auto farBlobs = [&](const glm::ivec3& i) { return smallBlobs(i - far); };
       const FieldBricks there = fieldFor(scene, farBlobs, {voxels.min + far, voxels.max + far}, options);
       const Picture picture = renderPicture(*context, there, scene, kLayers);
       REQUIRE(largestAlpha(here.colour) > 0.5);
@@ -257,7 +232,7 @@ TEST_CASE("A grid 1e6 voxels from the origin, by ordinates, looks like one at th
 TEST_CASE("Grids in any place and shape, by ordinates, match the reference", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, blobs);
+  const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, smallBlobs);
   const std::pair<std::string, glm::dmat4> transforms[] = {
       {"anisotropic", glm::scale(glm::dmat4(1), glm::dvec3(0.7, 2, 1))},
       {"sheared", glm::dmat4(1, 0, 0, 0, 0.7, 1, 0, 0, -0.4, 0.9, 1, 0, 0, 0, 0, 1)},
@@ -339,7 +314,7 @@ TEST_CASE("One-pixel and narrow images, by ordinates, are cut-outs of larger one
   for (const bool perspective : {false, true}) {
     const Camera large = perspective ? perspectiveCamera({40, 30, 50}, glm::dvec3(14.5), 0.7, 27)
                                      : orthographicCamera({40, 30, 50}, glm::dvec3(14.5), 40, 27);
-    Scene scene = ordinatesScene(ramp(0.3), large, 0.5);
+    Scene scene = eightDirections(ramp(0.3), large, 0.5);
     const Image whole = renderGrid(*context, grid, scene).colour;
     REQUIRE(largestAlpha(whole) > 0.9);
     for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(27, 1), glm::ivec2(1, 27), glm::ivec2(3, 9)}) {
@@ -363,11 +338,11 @@ TEST_CASE("One-pixel and narrow images, by ordinates, are cut-outs of larger one
 TEST_CASE("What a grid holds, nothing, one voxel, tiles or fog, is lit as the reference says", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const Scene nothing = ordinatesScene(ramp(1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 10, 8), 0.5);
+  const Scene nothing = eightDirections(ramp(1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 10, 8), 0.5);
   const Picture empty = renderGrid(*context, makeVoxels({}), nothing, kLayers);
   CHECK(maxDifference(empty.colour, Image(8, 8)) == 0);
   CHECK(maxDifference(empty.visibility, Image(8, 8, 1)) == 0);
-  Scene beside = ordinatesScene(ramp(1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 4, 8), 0.5);
+  Scene beside = eightDirections(ramp(1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 4, 8), 0.5);
   CHECK(maxDifference(renderGrid(*context, makeVoxels({{{30, 0, 0}, 1.0f}}), beside).colour, Image(8, 8)) == 0);
   beside.camera = orthographicCamera({0, 0, -9}, {0, 0, -20}, 100, 8);  // all is behind the eye
   CHECK(maxDifference(renderGrid(*context, makeVoxels({{{0, 0, 0}, 1.0f}}), beside).colour, Image(8, 8)) == 0);
@@ -404,7 +379,7 @@ TEST_CASE("What a grid holds, nothing, one voxel, tiles or fog, is lit as the re
     INFO(volume.name << ", perspective " << (projection == Projection::perspective));
     base.projection = projection;
     checkAgainstDirections(*context, volume.grid,
-                           ordinatesScene(volume.transfer, orbitCamera(volume.bounds, 0.6, 0.4, base), volume.spacing),
+                           eightDirections(volume.transfer, orbitCamera(volume.bounds, 0.6, 0.4, base), volume.spacing),
                            1.5e-3);
   }
 }
@@ -412,8 +387,8 @@ TEST_CASE("What a grid holds, nothing, one voxel, tiles or fog, is lit as the re
 TEST_CASE("Lights without radiance and maps that are dark in front give opacity and no light", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  Scene scene = ordinatesScene(ramp(0.6), cameras()[1], 0.5);
-  const FieldBricks volume = fieldFor(scene, blobs, {glm::ivec3(0), glm::ivec3(23)});
+  Scene scene = eightDirections(ramp(0.6), smallCameras()[1], 0.5);
+  const FieldBricks volume = fieldFor(scene, smallBlobs, {glm::ivec3(0), glm::ivec3(23)});
   const Picture lit = renderPicture(*context, volume, scene, kLayers);
   EnvironmentLight dark;
   dark.image = std::make_shared<const Image>(8, 4, 3);
@@ -440,7 +415,7 @@ TEST_CASE("Lights without radiance and maps that are dark in front give opacity 
 TEST_CASE("No step of the camera is so small that light by ordinates jumps", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, blobs);
+  const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, smallBlobs);
   const Box bounds{glm::dvec3(0), glm::dvec3(23)};
   const double step = 0.05 * kDegree;
   enum class Light { cone, view, world };
@@ -539,8 +514,8 @@ TEST_CASE("A wall thinner than a texel of the windows leaks as the test says", "
 TEST_CASE("Windows that no driver has room for are refused, saying why", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  Scene scene = ordinatesScene(ramp(0.6), cameras()[0], 0.5);
-  const FieldBricks volume = fieldFor(scene, blobs, {glm::ivec3(0), glm::ivec3(23)});
+  Scene scene = eightDirections(ramp(0.6), smallCameras()[0], 0.5);
+  const FieldBricks volume = fieldFor(scene, smallBlobs, {glm::ivec3(0), glm::ivec3(23)});
   scene.occlusion.scale = 2000;
   CHECK_THAT(complaint<InvalidArgument>([&] { renderPicture(*context, volume, scene); }), Catch::Contains("scale"));
   scene.occlusion.scale = 0;

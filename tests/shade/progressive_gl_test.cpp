@@ -16,7 +16,6 @@ using namespace umbrick;
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-const RenderOptions kLayers{.visibilityAndDepth = true};
 
 // The courtyard in few pixels, slabs and directions.
 Scene smallScene(int slices = 16, int directions = 3) {

@@ -2,14 +2,13 @@
 #pragma once
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "support/test_grids.h"
 #include "umbrick/optics/directions.h"
 #include "umbrick/optics/transfer_function.h"
 
 namespace umbrick {
-
-inline constexpr double kPi = 3.14159265358979323846;
 
 /// A grid whose domain is exactly `domain`: active voxels lie one inside.
 inline ScalarGrid fieldGrid(const IndexBox& domain, const std::function<double(const glm::dvec3&)>& value,
@@ -30,9 +29,11 @@ inline TransferFunction solidAbove(const glm::dvec3& albedo, double sigma_t) {
 /// angle `distance` in [0, pi/2) from its axis. By integration of 2 acos(tan distance / tan angle) sin angle.
 inline double shareBeyond(double aperture, double distance) {
   if (distance >= aperture) return 0;
-  const double part =
-      aperture >= kPi / 2 - 1e-12 ? 0 : std::cos(aperture) * std::acos(std::tan(distance) / std::tan(aperture));
-  return 2 * (std::acos(std::sin(distance) / std::sin(aperture)) - part) / (2 * kPi * (1 - std::cos(aperture)));
+  const double part = aperture >= std::numbers::pi / 2 - 1e-12
+                          ? 0
+                          : std::cos(aperture) * std::acos(std::tan(distance) / std::tan(aperture));
+  return 2 * (std::acos(std::sin(distance) / std::sin(aperture)) - part) /
+         (2 * std::numbers::pi * (1 - std::cos(aperture)));
 }
 
 /// On a field that is its own z: one slab from z = 5.3 to 8.6, another from 13.1 to 17.45.

@@ -1,5 +1,7 @@
 // A scene of hard edges that cast shadows on each other.
 #pragma once
+#include <numbers>
+
 #include "support/closed_forms.h"
 #include "support/test_scenes.h"
 
@@ -24,7 +26,7 @@ inline Scene courtyardScene(double theta, int slices) {
                                    {1, {{0.9, 0.8, 0.6}, 3}}});
   Scene scene = plainScene(transfer, orthographicCamera({30, 10, 90}, {24, 23, 20}, 44, 48), 52.0 / slices);
   scene.model = Model::cone;
-  scene.occlusion.aperture = theta * kPi / 180;
+  scene.occlusion.aperture = theta * std::numbers::pi / 180;
   return scene;
 }
 

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "umbrick/scene/scene.h"
 
 namespace umbrick {
+
+inline constexpr double kDegree = std::numbers::pi / 180;
 
 /// Single precision: half a unit in the last place of numbers near 1.
 inline constexpr double kFloatRounding = 6e-8;

@@ -43,8 +43,8 @@ TEST_CASE("The head scan converts, and info tells what is in the result", "[tool
   CHECK_THAT(convert.out, Contains("2299643 of 6160384 (37.33 %)") && Contains("maximum error   0"));
   const ProgramResult info = runProgram(folder, "info head.vdb --json --bins 4");
   REQUIRE(info.status == 0);
-  const nlohmann::json json = nlohmann::json::parse(info.out);
-  const nlohmann::json& grid = json.at("grids").at(0);
+  const nlohmann::json parsed = nlohmann::json::parse(info.out);
+  const nlohmann::json& grid = parsed.at("grids").at(0);
   CHECK(grid.at("name") == "ct");
   CHECK(grid.at("type") == "float");
   CHECK(grid.at("class") == "fog volume");
@@ -79,8 +79,8 @@ TEST_CASE("Formats are listed, told by their first bytes, and keep what they say
   const ProgramResult list = runProgram(folder, "convert --list-formats");
   CHECK(list.status == 0);
   CHECK_THAT(list.out, Contains("NIfTI and Analyze: .nii .nii.gz") && Contains("OpenVDB: .vdb"));
-  const nlohmann::json json = nlohmann::json::parse(runProgram(folder, "convert --list-formats-json").out);
-  CHECK(json.size() == static_cast<std::size_t>(std::count(list.out.begin(), list.out.end(), '\n')));
+  const nlohmann::json parsed = nlohmann::json::parse(runProgram(folder, "convert --list-formats-json").out);
+  CHECK(parsed.size() == static_cast<std::size_t>(std::count(list.out.begin(), list.out.end(), '\n')));
   writeBytes(folder.path() / "unnamed",
              "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nModality = MET_MOD_CT\n"
              "ElementDataFile = LOCAL\nabcdefgh");

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/info_of.h"
 #include "tools/program.h"
 
 using namespace umbrick;
@@ -18,8 +19,6 @@ using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-
-const std::string kSmoke = "'" UMBRICK_ASSETS "'/densityAndHeat.vdb ";
 
 // 40 x 24 x 16 voxels of a u8 ramp in a border of 0.
 void writeRamp(const TemporaryFolder& folder, const std::string& name) {
@@ -31,10 +30,6 @@ void writeRamp(const TemporaryFolder& folder, const std::string& name) {
         voxels += static_cast<char>(inside ? 5 * x + y + z : 0);
       }
   writeBytes(folder.path() / name, "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 40 24 16\nencoding: raw\n\n" + voxels);
-}
-
-nlohmann::json gridsOf(const TemporaryFolder& folder, const std::string& file) {
-  return nlohmann::json::parse(runProgram(folder, "info --json " + file).out).at("grids");
 }
 
 }  // namespace

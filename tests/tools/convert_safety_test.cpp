@@ -11,7 +11,7 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kHead =
+const std::string kConvertHead =
     "convert '" UMBRICK_ASSETS "'/headsq_256x256x94_uint16le.raw.gz --dims 256 256 94 --type u16 --bits-stored 15 ";
 
 // Runs the program by way of a shell command that ends in its arguments. @return the shell's status
@@ -26,10 +26,11 @@ int runBy(const TemporaryFolder& folder, const std::string& how, const std::stri
 
 TEST_CASE("A conversion killed at any moment leaves the old file or the whole new one", "[tools]") {
   const TemporaryFolder folder;
-  const std::string oldOnes = kHead + "--clip-below 3000 -o a.vdb", newOnes = kHead + "--clip-below 2000 -o a.vdb";
+  const std::string oldOnes = kConvertHead + "--clip-below 3000 -o a.vdb",
+                    newOnes = kConvertHead + "--clip-below 2000 -o a.vdb";
   REQUIRE(runProgram(folder, oldOnes).status == 0);
   const std::string before = readBytes(folder.path() / "a.vdb");
-  REQUIRE(runProgram(folder, kHead + "--clip-below 2000 -o b.vdb").status == 0);
+  REQUIRE(runProgram(folder, kConvertHead + "--clip-below 2000 -o b.vdb").status == 0);
   const std::string voxels = runProgram(folder, "info b.vdb --json").out;
   const auto counted = [](const std::string& info) {
     const std::size_t at = info.find("\"active_voxels\"");
@@ -47,10 +48,10 @@ TEST_CASE("A conversion killed at any moment leaves the old file or the whole ne
 
 TEST_CASE("A disk that is full leaves the old file and nothing beside it", "[tools]") {
   const TemporaryFolder folder;
-  REQUIRE(runProgram(folder, kHead + "--clip-below 3000 -o a.vdb").status == 0);
+  REQUIRE(runProgram(folder, kConvertHead + "--clip-below 3000 -o a.vdb").status == 0);
   const std::string before = readBytes(folder.path() / "a.vdb");
   // Files may grow to 64 blocks of 512 or 1024 bytes, then a write fails as on a full disk.
-  CHECK(runBy(folder, "trap '' XFSZ; ulimit -f 64;", kHead + "-o a.vdb") == 1);
+  CHECK(runBy(folder, "trap '' XFSZ; ulimit -f 64;", kConvertHead + "-o a.vdb") == 1);
   const std::string err = readBytes(folder.path() / ".err");
   CHECK_THAT(err, Contains("a.vdb: cannot write: "));
   CHECK(std::count(err.begin(), err.end(), '\n') == 1);
@@ -82,12 +83,12 @@ TEST_CASE("A terminal is shown the share, the rate and the time left, each pass 
 
 TEST_CASE("The number of threads does not change a file's content", "[tools]") {
   const TemporaryFolder folder;
-  REQUIRE(runProgram(folder, kHead + "--tolerance 20 --threads 1 -o a.vdb").status == 0);
-  REQUIRE(runProgram(folder, kHead + "--tolerance 20 --threads 3 -o b.vdb").status == 0);
+  REQUIRE(runProgram(folder, kConvertHead + "--tolerance 20 --threads 1 -o a.vdb").status == 0);
+  REQUIRE(runProgram(folder, kConvertHead + "--tolerance 20 --threads 3 -o b.vdb").status == 0);
   const auto described = [&](const char* file) {
     std::string info = runProgram(folder, std::string("info ") + file).out;
     return info.substr(info.find("grid"));
   };
   CHECK(described("a.vdb") == described("b.vdb"));
-  CHECK(runProgram(folder, kHead + "--threads -1 -o c.vdb").status == 2);
+  CHECK(runProgram(folder, kConvertHead + "--threads -1 -o c.vdb").status == 2);
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/info_of.h"
 #include "tools/program.h"
 
 using namespace umbrick;
@@ -18,10 +19,6 @@ void writeNrrd(const TemporaryFolder& folder, const std::string& name, std::size
   for (std::size_t i = 0; i < active; ++i) voxels[2 * i] = 9;
   writeBytes(folder.path() / name, "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 3 2\nspacings: 1 1 " +
                                        std::to_string(active) + "\nencoding: raw\n\n" + voxels);
-}
-
-nlohmann::json gridsOf(const TemporaryFolder& folder, const std::string& file) {
-  return nlohmann::json::parse(runProgram(folder, "info --json " + file).out).at("grids");
 }
 
 }  // namespace

@@ -11,6 +11,9 @@
 
 namespace umbrick {
 
+/// The bundled smoke, as an argument.
+inline const std::string kSmoke = "'" UMBRICK_ASSETS "/densityAndHeat.vdb' ";
+
 struct ProgramResult {
   int status = -1;  // exit status; 128 + signal when it was killed
   std::string out, err;

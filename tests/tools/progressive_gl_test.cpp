@@ -13,8 +13,8 @@ using Json = nlohmann::json;
 
 namespace {
 
-const std::string kVolume = "render ball.vdb --tf ball.json --size 24x20 ";
-const std::string kCone = kVolume + "--model cone --directions 4 ";
+const std::string kRenderBall = "render ball.vdb --tf ball.json --size 24x20 ";
+const std::string kCone = kRenderBall + "--model cone --directions 4 ";
 
 // Spacing, its unit, segments, directions, scale and method.
 Json sampling(const Json& scene) {
@@ -100,7 +100,7 @@ TEST_CASE("Passes over what has no directions are one line and leave no file", "
   const std::size_t before = filesIn(at.folder);
   const auto check = [&](const std::string& arguments, int status, const std::string& message) {
     CAPTURE(arguments);
-    const ProgramResult result = at.run(kVolume + arguments + " -o a.exr --stats s.json");
+    const ProgramResult result = at.run(kRenderBall + arguments + " -o a.exr --stats s.json");
     CHECK(result.status == status);
     CHECK_THAT(result.err, Contains(message));
     CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
@@ -138,7 +138,7 @@ TEST_CASE("A quality sets what goes together, and single options win over it", "
   // Spacing is in world units in a header: the voxels are of unit size.
   const Json draft{5.0, "world", 4, 6, 0.0, "ordinates"}, normal{2.5, "world", 4, 16, 0.0, "ordinates"},
       high{1.25, "world", 2, 32, 0.0, "ordinates"};
-  const std::string cone = kVolume + "--model cone ";
+  const std::string cone = kRenderBall + "--model cone ";
   CHECK(sampling(at.sceneOf(cone + "--quality draft")) == draft);
   CHECK(sampling(at.sceneOf(cone + "--quality normal")) == normal);
   CHECK(sampling(at.sceneOf(cone + "--quality high")) == high);
@@ -151,7 +151,7 @@ TEST_CASE("A quality sets what goes together, and single options win over it", "
   CHECK(sampling(at.sceneOf(cone + "--directions 9")) == Json{2.5, "world", 4, 9, 0.0, "ordinates"});
   CHECK(sampling(at.sceneOf(cone + "--spacing 1")) == Json{1.0, "world", 2, 16, 0.0, "ordinates"});
   CHECK(sampling(at.sceneOf(cone + "--method dos"))[0] == 0.5);
-  CHECK(sampling(at.sceneOf(kVolume))[0] == 0.5);
+  CHECK(sampling(at.sceneOf(kRenderBall))[0] == 0.5);
 
   // A scene file is taken at its word, which a quality may overrule.
   writeBytes(at.folder.path() / "scene.json",

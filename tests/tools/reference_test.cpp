@@ -11,8 +11,8 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kVolume = "ball.vdb --tf ball.json ";
-const std::string kScene = kVolume + "--size 24x20 --theta 50 ";
+const std::string kBall = "ball.vdb --tf ball.json ";
+const std::string kScene = kBall + "--size 24x20 --theta 50 ";
 
 double largest(const Image& image) {
   double most = 0;
@@ -110,7 +110,7 @@ TEST_CASE("An interrupted reference writes what is done, says so and fails", "[t
   const BallWorkplace at;
   const std::size_t before = filesIn(at.folder);
   // Hours of work.
-  const std::string hours = "reference " + kVolume + "--integrator monte-carlo ";
+  const std::string hours = "reference " + kBall + "--integrator monte-carlo ";
   const ProgramResult result =
       interruptProgram(at.folder, hours + "--model cone --samples 100000 --size 512x512 -o a.exr --stats s.json");
   CHECK(result.status == 1);
@@ -151,5 +151,5 @@ TEST_CASE("What the reference cannot do is one line and leaves no file", "[tools
   CHECK_THAT(complaint(kScene + "--backend osmesa -o a.exr", 2), Contains("--backend"));
   CHECK_THAT(complaint(kScene + "-o a.tiff", 2), Contains("a.tiff") && Contains(".exr"));
   CHECK_THAT(complaint(kScene + "-o nowhere/a.exr", 1), Contains("nowhere"));
-  CHECK_THAT(complaint(kVolume + "--theta 90 -o a.exr", 1), Contains("theta") && Contains("90"));
+  CHECK_THAT(complaint(kBall + "--theta 90 -o a.exr", 1), Contains("theta") && Contains("90"));
 }

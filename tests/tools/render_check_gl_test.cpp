@@ -16,7 +16,6 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kSmoke = "'" UMBRICK_ASSETS "/densityAndHeat.vdb' ";
 const std::string kSmall = kSmoke + "--tf smoke --size 40x30 ";
 
 void writeText(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }

@@ -15,10 +15,10 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-const std::string kSmoke = "study '" UMBRICK_ASSETS "/densityAndHeat.vdb' --tf smoke ";
+const std::string kStudySmoke = "study " + kSmoke + "--tf smoke ";
 // Every axis has two values, all of them small.
 const std::string kTiny =
-    kSmoke +
+    kStudySmoke +
     "--quick --slices 16 32 --footprints 1 2 --directions 2 4 --scales 0.5 --sizes 16 32 --thetas 30 60 --repeats 1 "
     "--reference-directions 8 --reference-tolerance 0.05 -o report";
 
@@ -89,23 +89,23 @@ TEST_CASE("Studies that cannot be say so in one line and leave nothing behind", 
     CHECK(result.out.empty());
     CHECK(filesIn(folder) == before);
   };
-  check(kSmoke, 2, "--output");
-  check(kSmoke + "-o r --methods dos guessing", 1, "methods: no method 'guessing': there are emission, ");
-  check(kSmoke + "-o r --slices 0", 1, "slices: is 0");
-  check(kSmoke + "-o r --slices many", 2, "--slices");
-  check(kSmoke + "-o r --bits 32:16", 2, "--bits: expected BITS or EYE/OCCLUSION, found '32:16'");
-  check(kSmoke + "-o r --bits 8", 1, "bits: is 8, must be 16 or 32");
-  check(kSmoke + "-o r --thetas 90", 1, "thetas: is 90 degrees");
-  check(kSmoke + "-o r --reference-directions 1", 2, "--reference-directions");
-  check(kSmoke + "-o r --methods emission --footprints 2", 1, "no method of this study has footprints to sweep");
-  check(kSmoke + "-o r --methods dos --scales 1", 1, "no method of this study has windows");
-  check(kSmoke + "-o r --scales 0", 1, "scales: is 0, must be in [0.015625, 64]");
-  check(kSmoke + "-o r --directions 1025", 1, "directions: is 1025, must be in [1, 1024]");
-  check(kSmoke + "-o r --slices 1", 1, "slices: 1 are too few: ");
+  check(kStudySmoke, 2, "--output");
+  check(kStudySmoke + "-o r --methods dos guessing", 1, "methods: no method 'guessing': there are emission, ");
+  check(kStudySmoke + "-o r --slices 0", 1, "slices: is 0");
+  check(kStudySmoke + "-o r --slices many", 2, "--slices");
+  check(kStudySmoke + "-o r --bits 32:16", 2, "--bits: expected BITS or EYE/OCCLUSION, found '32:16'");
+  check(kStudySmoke + "-o r --bits 8", 1, "bits: is 8, must be 16 or 32");
+  check(kStudySmoke + "-o r --thetas 90", 1, "thetas: is 90 degrees");
+  check(kStudySmoke + "-o r --reference-directions 1", 2, "--reference-directions");
+  check(kStudySmoke + "-o r --methods emission --footprints 2", 1, "no method of this study has footprints to sweep");
+  check(kStudySmoke + "-o r --methods dos --scales 1", 1, "no method of this study has windows");
+  check(kStudySmoke + "-o r --scales 0", 1, "scales: is 0, must be in [0.015625, 64]");
+  check(kStudySmoke + "-o r --directions 1025", 1, "directions: is 1025, must be in [1, 1024]");
+  check(kStudySmoke + "-o r --slices 1", 1, "slices: 1 are too few: ");
   check("study none.json -o r", 1, "none.json");
-  check(kSmoke + "-o r --compare none.json", 1, "none.json");
+  check(kStudySmoke + "-o r --compare none.json", 1, "none.json");
   fs::create_directory(folder.path() / "other");
   writeBytes(folder.path() / "other" / "letter.txt", "dear");
-  check(kSmoke + "--quick -o other", 1, "other: holds files but no study.json");
+  check(kStudySmoke + "--quick -o other", 1, "other: holds files but no study.json");
   CHECK(std::distance(fs::directory_iterator(folder.path() / "other"), fs::directory_iterator()) == 1);
 }

@@ -1,0 +1,14 @@
+// What the program says of the grids of a file.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/program.h"
+
+namespace umbrick {
+
+inline nlohmann::json gridsOf(const TemporaryFolder& folder, const std::string& file) {
+  return nlohmann::json::parse(runProgram(folder, "info --json " + file).out).at("grids");
+}
+
+}  // namespace umbrick
