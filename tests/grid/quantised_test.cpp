@@ -18,7 +18,7 @@ using openvdb::Coord;
 namespace {
 
 // Noise, a leaf of one value, a tile, and a background that lies between the values.
-openvdb::FloatGrid::Ptr sample() {
+openvdb::FloatGrid::Ptr noiseAndTile() {
   const auto grid = makeNoise(glm::ivec3(20, 19, 30), glm::ivec3(-3, 0, 5), 2).grid->deepCopy();
   grid->setName("noise");
   grid->tree().addTile(1, Coord(64, 0, 0), 0.3f, true);
@@ -26,13 +26,13 @@ openvdb::FloatGrid::Ptr sample() {
   return grid;
 }
 
-struct Plain {
+struct StoredLoss {
   double max = 0, squares = 0, activeSquares = 0;
   bool halfSteps = true;  // no value is off by more than half a step between the extremes of its leaf
 };
 
-Plain difference(const openvdb::FloatGrid& grid, const openvdb::FloatGrid& stored, double steps) {
-  Plain plain;
+StoredLoss storedLoss(const openvdb::FloatGrid& grid, const openvdb::FloatGrid& stored, double steps) {
+  StoredLoss plain;
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
     double low = 1e9, high = -1e9;
     for (openvdb::Index i = 0; i < 512; ++i) {
@@ -56,7 +56,7 @@ Plain difference(const openvdb::FloatGrid& grid, const openvdb::FloatGrid& store
 
 TEST_CASE("Quantised values are off by half a step at most, and by what is stated", "[grid]") {
   const TemporaryFolder folder;
-  const auto grid = sample();
+  const auto grid = noiseAndTile();
   const auto path = folder.path() / "v.nvdb";
   std::uintmax_t bytes = 0;
   for (const auto& [values, bits] :
@@ -66,7 +66,7 @@ TEST_CASE("Quantised values are off by half a step at most, and by what is state
     options.values = values;
     const QuantiseError stated = writeNanoVdb(path, {grid}, options).front();
     const auto back = readBack(path, *grid);
-    const Plain found = difference(*grid, *back, std::exp2(bits) - 1);
+    const StoredLoss found = storedLoss(*grid, *back, std::exp2(bits) - 1);
     CHECK(found.halfSteps);
     CHECK(found.max == stated.max);
     CHECK(found.squares == Approx(stated.squares));
@@ -81,7 +81,7 @@ TEST_CASE("Quantised values are off by half a step at most, and by what is state
 
 TEST_CASE("As few bits are used as keep the error that is asked for", "[grid]") {
   const TemporaryFolder folder;
-  const auto grid = sample();
+  const auto grid = noiseAndTile();
   const auto path = folder.path() / "v.nvdb";
   NanoOptions options;
   options.values = NanoValues::adaptive;
@@ -91,7 +91,7 @@ TEST_CASE("As few bits are used as keep the error that is asked for", "[grid]") 
     options.maxError = maxError;
     const QuantiseError stated = writeNanoVdb(path, {grid, grid}, options).back();
     CHECK(stated.max <= double(maxError));
-    CHECK(difference(*grid, *readBack(path, *grid, 1), 1).max == stated.max);
+    CHECK(storedLoss(*grid, *readBack(path, *grid, 1), 1).max == stated.max);
     CHECK(std::filesystem::file_size(path) > bytes);
     bytes = std::filesystem::file_size(path);
   }
@@ -106,6 +106,23 @@ TEST_CASE("As few bits are used as keep the error that is asked for", "[grid]") 
     CHECK(writeNanoVdb(path, {one}, options).front().max == 0);
     CHECK(readBack(path, *one)->activeVoxelCount() == one->activeVoxelCount());
   }
+}
+
+TEST_CASE("Values too far apart for a step of 32 bits are refused, and nothing is written", "[grid]") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "v.nvdb";
+  const auto grid = noiseAndTile();
+  grid->tree().setValue(Coord(3, 3, 8), -3e38f);
+  grid->tree().setValue(Coord(4, 3, 8), 3e38f);
+  NanoOptions options;
+  for (const NanoValues values : {NanoValues::bits4, NanoValues::bits16}) {
+    options.values = values;
+    CHECK_THROWS_WITH(writeNanoVdb(path, {grid}, options),
+                      Contains("v.nvdb: grid \"noise\": quantise: expected values"));
+    CHECK(std::filesystem::is_empty(folder.path()));
+  }
+  options.values = NanoValues::float32;
+  CHECK(writeNanoVdb(path, {grid}, options).front().max == 0);
 }
 
 TEST_CASE("A dense volume verifies within what building and quantising it cost together", "[grid]") {
@@ -138,7 +155,7 @@ TEST_CASE("A dense volume verifies within what building and quantising it cost t
 
 TEST_CASE("A file of any format that is not the grid is found out before it takes its name", "[grid]") {
   const TemporaryFolder folder;
-  const ScalarGrid source{sample(), "noise"};
+  const ScalarGrid source{noiseAndTile(), "noise"};
   const BuiltGrid built = sparsifyGrid(source);
   const auto wrong = built.grid->deepCopy();
   wrong->tree().setValue(Coord(67, 3, 3), 0.625f);  // in the tile of 0.3

@@ -182,3 +182,10 @@ TEST_CASE("Spacings that make no volume are refused", "[grid]") {
   refused({1, 1, std::numeric_limits<double>::infinity()}, "found inf");
   refused({1e-9, 1, 1}, "at most 2147483647 voxels along an axis, found 1e-09");
 }
+
+// A slice of the source is in memory, whatever the result's size: here 2^48 voxels for 17 x 17.
+TEST_CASE("Slices of the source beyond the memory are refused before anything is read", "[grid]") {
+  const std::int64_t wide = std::int64_t(1) << 24;
+  CHECK_THROWS_WITH(resampleSource(source({wide, wide, 1}, {}), glm::dvec3(1e6)),
+                    Contains("memory: dims: two slabs of 16777216 x 16777216 x 1 voxels take"));
+}
