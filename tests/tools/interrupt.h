@@ -4,11 +4,12 @@
 
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <future>
 #include <string>
-#include <thread>
+#include <system_error>
 
 #include "tools/program.h"
 
@@ -19,9 +20,13 @@ inline std::string bytesSoFar(const std::filesystem::path& file) {
   return std::filesystem::exists(file) ? readBytes(file) : std::string();
 }
 
-/// Does a process handle SIGINT by itself? Until it does, an interrupt ends it as any other program.
+/// Is a process the program, and does it handle SIGINT by itself? Until it does, an interrupt ends it as any other. The
+/// shell that it was before handles SIGINT too.
 inline bool catchesInterrupt(pid_t pid) {
-  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
+  const std::filesystem::path process = "/proc/" + std::to_string(pid);
+  std::error_code gone;
+  if (std::filesystem::read_symlink(process / "exe", gone) != std::filesystem::canonical(UMBRICK_PROGRAM)) return false;
+  std::ifstream status(process / "status");
   for (std::string line; std::getline(status, line);)
     if (line.starts_with("SigCgt:")) return (std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1) & 1) != 0;
   return false;
