@@ -11,9 +11,6 @@ namespace {
 // The medium ends more than half a slab before the bricks do: where they end, slabs are drawn whole or not at all.
 const IndexBox kAroundMedium{glm::ivec3(-16), glm::ivec3(47)};
 
-// Nothing at value 0, a medium at value 1, linear between them.
-TransferFunction rampTo(double sigma_t) { return TransferFunction({{0, {kAlbedo, 0}}, {1, {kAlbedo, sigma_t}}}); }
-
 // Rotated, anisotropic, sheared, mirrored and moved.
 glm::dmat4 mediumTransform() {
   return glm::dmat4(0.8, 0.3, -0.1, 0, -0.25, 0.9, 0.2, 0, 0.4, 0.1, -1.1, 0, 12, -5, 3, 1);
@@ -73,7 +70,7 @@ TEST_CASE("A homogeneous box has the opacity of each ray's exact chord", "[shade
       for (const double spacing : {0.3, 1.0, 4.7}) {
         INFO(name << ", spacing " << spacing << ", crooked " << (transform != glm::dmat4(1)));
         const double sigma_t = 0.07;
-        Scene scene = plainScene(rampTo(sigma_t), camera, spacing);
+        Scene scene = plainScene(ramp(sigma_t), camera, spacing);
         scene.clipPlanes = boxPlanes(kMediumIndex, transform);
         FieldOptions options;
         options.indexToWorld = transform;
@@ -91,7 +88,7 @@ TEST_CASE("The closed form holds from next to nothing to next to solid", "[shade
   for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint})
     for (const double tau : {1e-8, 1e-6, 1e-3, 0.4999, 0.5001, 3.0, 1e3, 1e4}) {
       INFO("sigma_t d " << tau << ", midpoint " << (quadrature == Quadrature::midpoint));
-      Scene scene = plainScene(rampTo(tau / spacing), view.camera, spacing);
+      Scene scene = plainScene(ramp(tau / spacing), view.camera, spacing);
       scene.sampling.quadrature = quadrature;
       scene.clipBox = kMediumIndex;
       const FieldBricks volume = fieldFor(
@@ -108,7 +105,7 @@ TEST_CASE("A clip plane cuts slabs exactly, however it is tilted", "[shade][gl]"
        {ClipPlane(0.3, -0.5, 0.8, -6.1), ClipPlane(0, 0, -1, 14.7), ClipPlane(2, 0, 0.02, -31)})
     for (const auto& [name, camera] : viewsOf(glm::dmat4(1))) {
       INFO(name << ", plane " << plane.x << ' ' << plane.y << ' ' << plane.z << ' ' << plane.w);
-      Scene scene = plainScene(rampTo(sigma_t), camera, spacing);
+      Scene scene = plainScene(ramp(sigma_t), camera, spacing);
       scene.clipPlanes = boxPlanes(kMediumIndex);
       scene.clipPlanes.push_back(plane);
       const FieldBricks volume = fieldFor(
@@ -137,7 +134,7 @@ TEST_CASE("Nothing nearer than the near distance is seen", "[shade][gl]") {
       if (name == "inside" && nearDistance > 4) continue;  // next to nothing would be left
       INFO(name << ", near " << nearDistance);
       camera.nearDistance = nearDistance;
-      Scene scene = plainScene(rampTo(0.1), camera, 2.1);
+      Scene scene = plainScene(ramp(0.1), camera, 2.1);
       scene.clipBox = kMediumIndex;
       const FieldBricks volume = fieldFor(
           scene, [](const glm::ivec3&) { return 1.0; }, kAroundMedium);
@@ -159,7 +156,7 @@ TEST_CASE("A linear field of linear extinction has its exact optical depth", "[s
         return 0.05 + glm::dot(index, glm::dvec3(0.011, 0.004, 0.013));
       };
       const double sigma_t = 0.1;
-      Scene scene = plainScene(rampTo(sigma_t), camera, 1.3);
+      Scene scene = plainScene(ramp(sigma_t), camera, 1.3);
       scene.clipPlanes = boxPlanes(kMediumIndex, transform);
       FieldOptions options;
       options.indexToWorld = transform;

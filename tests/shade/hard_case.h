@@ -10,20 +10,8 @@
 
 namespace umbrick {
 
-/// Nothing at the value `empty`, the full medium at `full`.
-inline TransferFunction ramp(double sigma_t, double empty = 0, double full = 1) {
-  const Medium nothing{kAlbedo, 0}, medium{kAlbedo, sigma_t};
-  return empty < full ? TransferFunction({{empty, nothing}, {full, medium}})
-                      : TransferFunction({{full, medium}, {empty, nothing}});
-}
-
 /// Soft blobs in a box of 24 voxels, nothing at its faces.
-inline double smallBlobs(const glm::ivec3& i) {
-  double value = 0;
-  for (const glm::dvec4& blob : {glm::dvec4(9, 8, 15, 7), glm::dvec4(15, 14, 9, 6), glm::dvec4(13, 6, 11, 4)})
-    value = std::max(value, 1 - glm::length(glm::dvec3(i) - glm::dvec3(blob)) / blob.w);
-  return value;
-}
+inline double smallBlobs(const glm::ivec3& i) { return coneAt(i, {{9, 8, 15, 7}, {15, 14, 9, 6}, {13, 6, 11, 4}}); }
 inline constexpr glm::dvec3 kSmallCentre(12, 11, 12);
 /// Both kinds, on the box.
 inline std::vector<Camera> smallCameras(int size = 32) {

@@ -15,13 +15,6 @@ using Catch::Contains;
 
 namespace {
 
-// Nothing at `transparent`, sigma_t at `full`, linear between them.
-TransferFunction rampFrom(double transparent, double full, double sigma_t) {
-  const Medium nothing{kAlbedo, 0}, medium{kAlbedo, sigma_t};
-  return transparent < full ? TransferFunction({{transparent, nothing}, {full, medium}})
-                            : TransferFunction({{full, medium}, {transparent, nothing}});
-}
-
 ScalarGrid twoBlocks(const glm::ivec3& first, const glm::ivec3& second, int edge) {
   const openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(0);
   for (const glm::ivec3& at : {first, second})
@@ -36,7 +29,7 @@ TEST_CASE("A grid without voxels is an empty picture for renderer and reference"
   if (!context) return;
   const ScalarGrid empty = makeVoxels({});
   for (const Model model : {Model::emission, Model::cone}) {
-    Scene scene = plainScene(rampFrom(0, 1, 1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 10, 8), 0.5);
+    Scene scene = plainScene(ramp(1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 10, 8), 0.5);
     scene.model = model;
     const Picture picture = renderGrid(*context, empty, scene);
     CHECK(picture.stats.bricks == 0);
@@ -51,13 +44,13 @@ TEST_CASE("One voxel is the tent that trilinear interpolation makes of it", "[sh
   if (!context) return;
   const ScalarGrid voxel = makeVoxels({{{3, -2, 7}, 1.0f}});
   const Box around{glm::dvec3(2, -3, 6), glm::dvec3(4, -1, 8)};
-  checkViewsAgainstReference(*context, voxel, rampFrom(0, 1, 1.5), around, 0.25);
+  checkViewsAgainstReference(*context, voxel, ramp(1.5), around, 0.25);
   // Straight through its middle: the sum of a tent at equal distances of half its base or a whole part of that is its
   // area, so that a slab is integrated exactly, up to the table and roundings.
   Camera camera = orthographicCamera({3, -2, 20}, {3, -2, 0}, 0.01, 1);
   camera.up = {0, 1, 0};
   for (const double spacing : {0.25, 0.5, 1.0}) {
-    const Scene scene = plainScene(rampFrom(0, 1, 1.5), camera, spacing);
+    const Scene scene = plainScene(ramp(1.5), camera, spacing);
     CHECK(renderGrid(*context, voxel, scene).colour.at(0, 0)[3] == Approx(-std::expm1(-1.5)).epsilon(1e-4));
   }
 }
@@ -71,11 +64,11 @@ TEST_CASE("Tiles without leaves are voxels like any other", "[shade][gl]") {
   tiles->tree().addTile(1, openvdb::Coord(-16, 8, 16), 0.7f, true);
   REQUIRE(tiles->tree().leafCount() == 0);
   const Box bounds{glm::dvec3(-17, -1, -1), glm::dvec3(16, 16, 24)};
-  checkViewsAgainstReference(*context, makeGrid(tiles), rampFrom(0, 1, 0.2), bounds, 0.5);
+  checkViewsAgainstReference(*context, makeGrid(tiles), ramp(0.2), bounds, 0.5);
   // A tile of 128^3 is 512 bricks of one value; they share a slot.
   const openvdb::FloatGrid::Ptr large = openvdb::FloatGrid::create(0);
   large->tree().addTile(2, openvdb::Coord(0, 0, 0), 1, true);
-  checkViewsAgainstReference(*context, makeGrid(large), rampFrom(0, 1, 0.01), {glm::dvec3(0), glm::dvec3(127)}, 1);
+  checkViewsAgainstReference(*context, makeGrid(large), ramp(0.01), {glm::dvec3(0), glm::dvec3(127)}, 1);
 }
 
 TEST_CASE("A level set is filled with its inside background", "[shade][gl]") {
@@ -85,11 +78,11 @@ TEST_CASE("A level set is filled with its inside background", "[shade][gl]") {
   REQUIRE(ball.grid->tree().getValue(openvdb::Coord(3, 4, -5)) < 0);
   REQUIRE_FALSE(ball.grid->tree().isValueOn(openvdb::Coord(3, 4, -5)));
   const Box bounds{glm::dvec3(-10, -9, -18), glm::dvec3(16, 17, 8)};
-  checkViewsAgainstReference(*context, ball, rampFrom(0, -2, 0.1), bounds, 0.5);
+  checkViewsAgainstReference(*context, ball, ramp(0.1, 0, -2), bounds, 0.5);
   // A ray through the centre: sigma_t rises over two voxels on either side to its full value.
   Camera camera = orthographicCamera({3, 4, 30}, {3, 4, -5}, 0.01, 1);
   camera.up = {0, 1, 0};
-  const Scene scene = plainScene(rampFrom(0, -2, 0.1), camera, 0.5);
+  const Scene scene = plainScene(ramp(0.1, 0, -2), camera, 0.5);
   // 24 units inside less 2 for the two ramps. The narrow band is a distance to 1e-2 of a voxel between voxels.
   CHECK(renderGrid(*context, ball, scene).colour.at(0, 0)[3] == Approx(-std::expm1(-0.1 * 22)).margin(2e-3));
 }
@@ -100,8 +93,8 @@ TEST_CASE("A background other than 0 is what the transfer function makes of it",
   const ScalarGrid soft = makeFilled(
       {20, 18, 16}, {-9, 4, 2}, [](const glm::ivec3& p) { return 5 - 0.2 * p.x * std::sin(0.3 * p.y); }, 5);
   const Box bounds{glm::dvec3(-10, 3, 1), glm::dvec3(11, 22, 18)};
-  checkViewsAgainstReference(*context, soft, rampFrom(5, 1, 0.1), bounds, 0.5);  // not seen
-  checkViewsAgainstReference(*context, soft, rampFrom(1, 5, 0.1), bounds, 0.5);  // thick fog in the domain
+  checkViewsAgainstReference(*context, soft, ramp(0.1, 5, 1), bounds, 0.5);  // not seen
+  checkViewsAgainstReference(*context, soft, ramp(0.1, 1, 5), bounds, 0.5);  // thick fog in the domain
 }
 
 TEST_CASE("Negative indices are like others", "[shade][gl]") {
@@ -109,7 +102,7 @@ TEST_CASE("Negative indices are like others", "[shade][gl]") {
   if (!context) return;
   const glm::ivec3 moved(-1027, -500, -77);  // across the lattice of bricks, too
   const ScalarGrid here = makeNoise({11, 9, 10}), there = makeNoise({11, 9, 10}, moved);
-  const TransferFunction transfer = rampFrom(0, 1, 0.4);
+  const TransferFunction transfer = ramp(0.4);
   checkViewsAgainstReference(*context, there, transfer, {glm::dvec3(moved), glm::dvec3(moved + 10)}, 0.5);
   for (const Model model : {Model::emission, Model::cone}) {
     Scene scene = plainScene(transfer, perspectiveCamera({25, 30, 40}, {5, 5, 5}, 0.5, 32), 0.5);
@@ -129,7 +122,7 @@ TEST_CASE("Voxels far apart are rendered without what lies between them", "[shad
   if (!context) return;
   const glm::ivec3 far(20'000, -20'000, 20'000);
   const ScalarGrid both = twoBlocks({0, 0, 0}, far, 8), one = twoBlocks({0, 0, 0}, {0, 0, 0}, 8);
-  const TransferFunction transfer = rampFrom(0, 1, 0.2);
+  const TransferFunction transfer = ramp(0.2);
   const auto volume = bricksFor(both, plainScene(transfer, orthographicCamera({4, 40, 4}, {4, 4, 4.1}, 14, 24), 0.5));
   CHECK(volume->bricks.size() <= 16);
   for (const Model model : {Model::emission, Model::cone}) {
@@ -143,7 +136,7 @@ TEST_CASE("Voxels far apart are rendered without what lies between them", "[shad
   scene.sampling.spacing = 0.5;
   checkAgainstReference(*context, both, scene);
   // Were that not nothing, it would be 2e9 bricks of it.
-  scene.transfer = rampFrom(-1, 1, 0.2);
+  scene.transfer = ramp(0.2, -1, 1);
   CHECK_THAT(complaint<InvalidArgument>([&] { renderGrid(*context, both, scene); }),
              Contains("background") && Contains("more than the limit"));
 }
@@ -152,7 +145,7 @@ TEST_CASE("Voxels near the limits of 32-bit indices are rendered or refused", "[
   const auto context = testContext();
   if (!context) return;
   constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
-  const TransferFunction transfer = rampFrom(0, 1, 0.4);
+  const TransferFunction transfer = ramp(0.4);
   // Before the last 4096 voxels, a node of OpenVDB's tree that has no neighbour.
   for (const glm::ivec3& at :
        {glm::ivec3(most - 4200), glm::ivec3(-most + 4200), glm::ivec3(most - 4200, 0, -most + 64)}) {

@@ -1,6 +1,7 @@
 // Fields in bricks and pictures for tests of the renderer.
 #pragma once
 #include <algorithm>
+#include <initializer_list>
 #include <utility>
 #include <vector>
 
@@ -19,14 +20,23 @@ inline const IndexBox kBlock{glm::ivec3(0), glm::ivec3(31)};
 inline const Box kMediumIndex{glm::dvec3(2.3, 3.1, 2.7), glm::dvec3(28.6, 27.9, 28.2)};
 inline constexpr glm::dvec3 kAlbedo(0.9, 0.5, 0.2);
 
-/// Blobs that fade to nothing before the block ends, where slabs are drawn whole or not at all.
-inline double blobs(const glm::ivec3& i) {
-  const glm::dvec3 p(i);
+/// Nothing at the value `empty`, the full medium at `full`.
+inline TransferFunction ramp(double sigma_t, double empty = 0, double full = 1) {
+  const Medium nothing{kAlbedo, 0}, medium{kAlbedo, sigma_t};
+  return empty < full ? TransferFunction({{empty, nothing}, {full, medium}})
+                      : TransferFunction({{full, medium}, {empty, nothing}});
+}
+
+/// The largest of cones that fall from 1 at a centre (xyz) to 0 at a distance (w), and nothing beyond them.
+inline double coneAt(const glm::ivec3& i, std::initializer_list<glm::dvec4> cones) {
   double value = 0;
-  for (const glm::dvec4& blob : {glm::dvec4(11, 12, 20, 8), glm::dvec4(20, 19, 12, 9), glm::dvec4(18, 9, 16, 5)})
-    value = std::max(value, 1 - glm::length(p - glm::dvec3(blob)) / blob.w);
+  for (const glm::dvec4& cone : cones)
+    value = std::max(value, 1 - glm::length(glm::dvec3(i) - glm::dvec3(cone)) / cone.w);
   return value;
 }
+
+/// Blobs that fade to nothing before the block ends, where slabs are drawn whole or not at all.
+inline double blobs(const glm::ivec3& i) { return coneAt(i, {{11, 12, 20, 8}, {20, 19, 12, 9}, {18, 9, 16, 5}}); }
 /// Both kinds, on the block.
 inline std::vector<Camera> blobCameras() {
   return {orthographicCamera({45, 5, 40}, {16, 16, 16}, 40, 40), perspectiveCamera({36, 2, 38}, {16, 16, 16}, 0.8, 40)};

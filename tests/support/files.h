@@ -19,6 +19,7 @@ inline void writeBytes(const std::filesystem::path& path, const std::string& byt
   if (!out.flush()) throw std::runtime_error("cannot write " + path.string());
 }
 
+/// What is in a file so far; nothing where there is none.
 inline std::string readBytes(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};

@@ -13,9 +13,6 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kAssets = "'" UMBRICK_ASSETS "'/";
-const std::string kHead = kAssets + "headsq_256x256x94_uint16le.raw.gz --dims 256 256 94 --type u16 --bits-stored 15 ";
-
 struct Failing {
   TemporaryFolder folder;
   // One line of message, the status, and no file left behind.
@@ -61,9 +58,8 @@ TEST_CASE("The head scan converts, and info tells what is in the result", "[tool
 
 TEST_CASE("A .vdb converts to .vdb grid by grid", "[tools]") {
   const TemporaryFolder folder;
-  const std::string smoke = kAssets + "densityAndHeat.vdb ";
-  CHECK(runProgram(folder, "convert " + smoke + "-o both.vdb").status == 0);
-  CHECK(runProgram(folder, "convert " + smoke + "--grid heat --half --tolerance 0.01 -o heat.vdb").status == 0);
+  CHECK(runProgram(folder, "convert " + kSmoke + "-o both.vdb").status == 0);
+  CHECK(runProgram(folder, "convert " + kSmoke + "--grid heat --half --tolerance 0.01 -o heat.vdb").status == 0);
   const auto grids = [&](const std::string& file) {
     return nlohmann::json::parse(runProgram(folder, "info --json " + file).out).at("grids");
   };
@@ -129,7 +125,7 @@ TEST_CASE("Failed conversions exit 1 with one line and leave nothing behind", "[
   failing.check("convert short.raw --dims 10 10 1 --type u8 -o none/o.vdb", 1, "none/o.vdb: cannot write");
   failing.check("convert none.nrrd -o o.vdb", 1, "none.nrrd: no such file");
   failing.check("convert broken.vdb -o o.vdb", 1, "broken.vdb: truncated or corrupt");
-  failing.check("convert " + kAssets + "densityAndHeat.vdb --grid smoke -o o.vdb", 1,
+  failing.check("convert " + kSmoke + "--grid smoke -o o.vdb", 1,
                 "no grid \"smoke\": the file has \"density\" (float), \"heat\" (float)");
   failing.check("convert short.raw --dims 10 10 1 --type u8 --crop 0 0 0 9 10 0 -o o.vdb", 1,
                 "inside (0 0 0) to (9 9 0), found (0 0 0) to (9 10 0)");

@@ -10,9 +10,7 @@ using Catch::Contains;
 
 TEST_CASE("A plan of a small volume says what the conversion then says, and writes nothing", "[tools]") {
   const TemporaryFolder folder;
-  const std::string head = "convert '" UMBRICK_ASSETS
-                           "'/headsq_256x256x94_uint16le.raw.gz --dims 256 256 94 --type u16 --bits-stored 15 "
-                           "--clip-below 501 ";
+  const std::string head = "convert " + kHead + "--clip-below 501 ";
   const ProgramResult plan = runProgram(folder, head + "--plan");
   CHECK(plan.status == 0);
   CHECK(plan.err.empty());

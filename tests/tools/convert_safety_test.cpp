@@ -11,15 +11,14 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kConvertHead =
-    "convert '" UMBRICK_ASSETS "'/headsq_256x256x94_uint16le.raw.gz --dims 256 256 94 --type u16 --bits-stored 15 ";
+const std::string kConvertHead = "convert " + kHead;
 
 // Runs the program by way of a shell command that ends in its arguments. @return the shell's status
 int runBy(const TemporaryFolder& folder, const std::string& how, const std::string& arguments) {
   const std::string at = folder.path().string();
   const int raw =
       std::system(("cd '" + at + "' && (" + how + " '" UMBRICK_PROGRAM "' " + arguments + ") >.out 2>.err").c_str());
-  return WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
+  return exitStatus(raw);
 }
 
 }  // namespace
@@ -72,7 +71,7 @@ TEST_CASE("An interrupted conversion says so, fails and leaves nothing", "[tools
 TEST_CASE("A terminal is shown the share, the rate and the time left, each pass by itself", "[tools]") {
   const TemporaryFolder folder;
   // script(1) gives the program a terminal and writes down what appears there.
-  const auto seen = [&] { return bytesSoFar(folder.path() / "seen"); };
+  const auto seen = [&] { return readBytes(folder.path() / "seen"); };
   const ProgramResult result = interruptProgram(
       folder, "convert /dev/zero --dims 4000 4000 4000 --type u8 -o a.vdb",
       [&] { return seen().find(" left") != std::string::npos; }, "script -q -e -f -c 'sh .run' seen");

@@ -15,11 +15,6 @@
 
 namespace umbrick {
 
-/// What is in a file so far; nothing where there is none yet.
-inline std::string bytesSoFar(const std::filesystem::path& file) {
-  return std::filesystem::exists(file) ? readBytes(file) : std::string();
-}
-
 /// Is a process the program, and does it handle SIGINT by itself? Until it does, an interrupt ends it as any other. The
 /// shell that it was before handles SIGINT too.
 inline bool catchesInterrupt(pid_t pid) {
@@ -50,19 +45,15 @@ inline ProgramResult interruptProgram(
   };
   pid_t pid = 0;
   const bool started = waitUntil([&] {
-    const std::string text = bytesSoFar(in(".pid"));
+    const std::string text = readBytes(in(".pid"));
     if (text.ends_with('\n')) pid = std::stoi(text);
     return pid > 0 && catchesInterrupt(pid);
   });
   const bool prepared = started && waitUntil(ready);
   const bool ended = run.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   if (pid > 0 && !ended) ::kill(pid, prepared ? SIGINT : SIGKILL);
-  const int raw = run.get();
-  ProgramResult result;
-  result.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
-  result.out = readBytes(in(".out"));
-  result.err = readBytes(in(".err"));
-  for (const char* name : {".run", ".pid", ".out", ".err"}) std::filesystem::remove(in(name));
+  const ProgramResult result = takeResult(folder, run.get());
+  for (const char* name : {".run", ".pid"}) std::filesystem::remove(in(name));
   CAPTURE(arguments, result.err);
   REQUIRE(prepared);
   REQUIRE_FALSE(ended);

@@ -11,25 +11,31 @@
 
 namespace umbrick {
 
-/// The bundled smoke, as an argument.
+/// The bundled volumes, as arguments.
 inline const std::string kSmoke = "'" UMBRICK_ASSETS "/densityAndHeat.vdb' ";
+inline const std::string kHead =
+    "'" UMBRICK_ASSETS "/headsq_256x256x94_uint16le.raw.gz' --dims 256 256 94 --type u16 --bits-stored 15 ";
 
 struct ProgramResult {
   int status = -1;  // exit status; 128 + signal when it was killed
   std::string out, err;
 };
 
+inline int exitStatus(int waited) { return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited); }
+
+/// What is in the files .out and .err of a run that is over, which go.
+inline ProgramResult takeResult(const TemporaryFolder& folder, int waited) {
+  ProgramResult result{exitStatus(waited), readBytes(folder.path() / ".out"), readBytes(folder.path() / ".err")};
+  std::filesystem::remove(folder.path() / ".out");
+  std::filesystem::remove(folder.path() / ".err");
+  return result;
+}
+
 /// @param arguments  as typed into a shell, in `folder`
 inline ProgramResult runProgram(const TemporaryFolder& folder, const std::string& arguments) {
   const std::string at = folder.path().string();
   const int raw = std::system(("cd '" + at + "' && '" UMBRICK_PROGRAM "' " + arguments + " >.out 2>.err").c_str());
-  ProgramResult result;
-  result.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
-  result.out = readBytes(folder.path() / ".out");
-  result.err = readBytes(folder.path() / ".err");
-  std::filesystem::remove(folder.path() / ".out");
-  std::filesystem::remove(folder.path() / ".err");
-  return result;
+  return takeResult(folder, raw);
 }
 
 inline std::size_t filesIn(const TemporaryFolder& folder) {
