@@ -110,21 +110,43 @@ class Classifier {
   }
 
   // A 2D function is bilinear between lattice lines, so along a ray of degree six in between: interpolated by a cubic
-  // in each quarter of the cell, at the nodes of its 3/8 rule.
+  // in each quarter of the cell, or in what lattice lines leave of it. The cubic's four nodes lie inside of a piece,
+  // where a step at one of its ends has only one side.
   template <class Visit>
   void forEachFitted(const Cubic& value, const Cubic& gradient, const Visit& visit) const {
-    constexpr int pieces = 4;
-    for (int i = 0; i < pieces; ++i) {
-      const double begin = static_cast<double>(i) / pieces, h = 1.0 / pieces;
+    std::vector<double> cuts{0, 0.25, 0.5, 0.75, 1};
+    addCrossings(value, transfer_.values(), cuts);
+    addCrossings(gradient, transfer_.gradients(), cuts);
+    std::sort(cuts.begin(), cuts.end());
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      const double begin = cuts[i], h = cuts[i + 1] - begin;
+      if (!(h > 1e-12)) continue;
       std::array<double, 4> y;
       for (std::size_t k = 0; k < 4; ++k) {
-        const double s = begin + h * static_cast<double>(k) / 3;
+        const double s = begin + h * (2 * static_cast<double>(k) + 1) / 8;
         y[k] = transfer_(value(s), std::max(0.0, gradient(s))).sigma_t;
       }
       if (y[0] == 0 && y[1] == 0 && y[2] == 0 && y[3] == 0) continue;
-      visit(CellPiece{begin, begin + h, throughThirds(y, begin, h), nullptr});
+      visit(CellPiece{begin, begin + h, throughThirds(y, begin + h / 8, 0.75 * h), nullptr});
     }
   }
+
+  // Appends the places in (0, 1) where a cubic takes one of the values of an axis.
+  static void addCrossings(const Cubic& cubic, const std::vector<double>& axis, std::vector<double>& cuts) {
+    std::array<double, 2> turns{};
+    const int count = cubic.turns(turns);
+    double begin = 0;
+    for (int i = 0; i <= count; ++i) {
+      const double end = i < count ? turns[static_cast<std::size_t>(i)] : 1;
+      const double first = cubic(begin), last = cubic(end);
+      const auto from = std::upper_bound(axis.begin(), axis.end(), std::min(first, last));
+      const auto to = std::lower_bound(from, axis.end(), std::max(first, last));
+      for (auto point = from; point != to; ++point) cuts.push_back(cubic.solve(*point, begin, end));
+      begin = end;
+    }
+  }
+
+  // The cubic through y at `begin` and at one, two and three thirds of h behind it.
 
   static Cubic throughThirds(const std::array<double, 4>& y, double begin, double h);
 

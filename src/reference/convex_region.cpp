@@ -8,7 +8,7 @@
 
 namespace umbrick {
 
-ConvexRegion::ConvexRegion(const Scene& scene, const IndexBox& domain, const glm::dmat4& indexToWorld, bool behindEye) {
+ConvexRegion::ConvexRegion(const Scene& scene, const IndexBox& box, const glm::dmat4& indexToWorld, bool behindEye) {
   std::vector<glm::dvec4> world = scene.clipPlanes;
   for (int axis = 0; axis < 3; ++axis) {
     glm::dvec4 low(0), high(0);
@@ -20,8 +20,8 @@ ConvexRegion::ConvexRegion(const Scene& scene, const IndexBox& domain, const glm
       world.push_back(low);
       world.push_back(high);
     }
-    low.w = -static_cast<double>(domain.min[axis]);
-    high.w = static_cast<double>(domain.max[axis]);
+    low.w = -static_cast<double>(box.min[axis]);
+    high.w = static_cast<double>(box.max[axis]);
     planes_.push_back(low);
     planes_.push_back(high);
   }

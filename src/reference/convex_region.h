@@ -13,9 +13,9 @@ namespace umbrick {
 /// Half-spaces dot(xyz, point) + w >= 0 in index space.
 class ConvexRegion {
  public:
-  /// The domain, the clip planes and the clip box of the scene and what of space the camera sees.
+  /// The box, the clip planes and the clip box of the scene and what of space the camera sees.
   /// @param behindEye  also what lies behind the plane of the eye
-  ConvexRegion(const Scene& scene, const IndexBox& domain, const glm::dmat4& indexToWorld, bool behindEye);
+  ConvexRegion(const Scene& scene, const IndexBox& box, const glm::dmat4& indexToWorld, bool behindEye);
 
   /// The part of the ray with t >= begin that lies inside.
   Interval clip(const IndexRay& ray, double begin) const;

@@ -100,6 +100,7 @@ class Field {
   /// @param skipEmpty  false: keep transparent blocks as well, and let rays visit each cell
   Field(const ScalarGrid& grid, const Classifier& classifier, bool skipEmpty);
 
+  /// Active voxels, and others that differ from the background, grown by one.
   const IndexBox& domain() const { return domain_; }
   Accessor accessor() const { return Accessor(*tree_); }
   std::uint64_t nonFiniteVoxels() const { return nonFinite_; }

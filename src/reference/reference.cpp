@@ -181,7 +181,7 @@ ReferencePicture renderReference(const ScalarGrid& grid, const Scene& scene, con
   picture.stats.blocks = field.blocks();
   const EyeRays rays(scene.camera, indexToWorld);
   const bool behindEye = scene.model == Model::coneRay || scene.model == Model::ambient;
-  const ConvexRegion region(scene, field.domain(), indexToWorld, behindEye);
+  const ConvexRegion region(scene, mediumBox(*scene.transfer, field.domain()), indexToWorld, behindEye);
   const LightSet* const given = lights ? &*lights : nullptr;
   const std::vector<LightDirection> directions = directionsOf(scene, options, given);
   const ReferenceSpace space{field, classifier, rays, region, scene, given, directions};

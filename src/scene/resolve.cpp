@@ -27,4 +27,9 @@ Scene resolveScene(const Scene& scene, const Box& worldBounds, const glm::dmat4&
   return resolved;
 }
 
+IndexBox mediumBox(const TransferFunction& transfer, const IndexBox& domain) {
+  if (!transfer.is2d() || domain.empty()) return domain;
+  return {domain.min - 1, domain.max + 1};
+}
+
 }  // namespace umbrick

@@ -59,19 +59,20 @@ struct ReferencePicture {
 ///   V = mean over the model's directions of T from the point to where the medium ends, 1 for `emission`
 /// and for `lights` with the sum of radiance_k T_k in place of V, see LightDirection.
 /// The medium is the trilinear interpolation of the voxels (and of the gradient magnitudes at voxels, for a 2D transfer
-/// function), classified afterwards, inside the clip planes, the clip box and the domain: active voxels and others that
-/// differ from the background, grown by one. Nothing nearer than nearDistance is seen or occludes; for `cone` and
-/// `lights`, as in a sweep that begins at the eye, neither is what lies behind the eye.
+/// function), classified afterwards, inside the clip planes, the clip box and mediumBox (scene/resolve.h), whose faces
+/// are where a visible background ends; no other scene is cut by them. Nothing nearer than nearDistance is seen or
+/// occludes; for `cone` and `lights`, as in a sweep that begins at the eye, neither is what lies behind the eye.
 ///
 /// Quadrature: light comes from lightDirections. A ray meets voxel cells in order. In a cell the value along the ray is
 /// a cubic; a 1D function is linear between its points, so the optical depth over each piece is a polynomial that is
 /// integrated exactly. V is evaluated at the centre of the scattering of each stretch of the ray; stretches are halved
 /// until that changes the radiance by less than the tolerance (of all light there is), and end where less than a
-/// hundredth of it, at most 1e-6, gets through. A 2D function, whose extinction is of degree six along a cell, is taken
-/// for a cubic over each quarter of it. Monte Carlo: delta tracking to one collision per path with majorants per block
-/// of 8^3 cells (Woodcock et al. 1965), ratio tracking along one direction from there, of a light chosen by power
-/// (Novák et al. 2014, doi:10.1145/2661229.2661292). Numbers come from one stream per pixel: the picture is the same
-/// for any number of threads.
+/// hundredth of it, at most 1e-6, gets through. A 2D function is cut where the ray crosses the lines of its lattice;
+/// its extinction, of degree six in between, is taken for a cubic over each quarter of a cell or less. Monte Carlo:
+/// delta tracking to one collision per path with majorants per block of 8^3 cells (Woodcock et al. 1965), ratio
+/// tracking along one direction from there, of a light chosen by power (Novák et al. 2014,
+/// doi:10.1145/2661229.2661292). Numbers come from one stream per pixel: the picture is the same for any number of
+/// threads.
 ///
 /// Sources of the model: Max 1995, doi:10.1109/2945.468400; Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
 /// @param scene  resolved, see resolveScene

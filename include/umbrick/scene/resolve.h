@@ -16,4 +16,11 @@ Scene resolveScene(const Scene& scene, const Box& worldBounds, const glm::dmat4&
 /// Length of a voxel's shortest edge, world units.
 double shortestVoxelEdge(const glm::dmat4& indexToWorld);
 
+/// The box, in index coordinates, that holds the medium: where the background is visible, the medium ends at its faces;
+/// where it is not, nothing lies beyond it anyway. Renderers and reference use the same one.
+/// @param domain  active voxels, and others that differ from the background, grown by one voxel: where interpolated
+///                values may differ from the background. Gradient magnitudes may differ from 0 one voxel farther out,
+///                so the box of a 2D function is larger by that.
+IndexBox mediumBox(const TransferFunction& transfer, const IndexBox& domain);
+
 }  // namespace umbrick
