@@ -125,7 +125,8 @@ void applySampling(const SceneOptions& options, Scene& scene) {
   apply(options.segments, sampling.segments);
   apply(options.eyeBits, sampling.bits);
   apply(options.saturation, sampling.saturation);
-  apply(options.tableSize, sampling.tableSize);
+  if (options.tableSize)
+    std::cerr << "--table-size has no effect any more: transfer functions are integrated exactly, without a table\n";
   if (options.unbricked) scene.bricks.bricked = false;
   if (options.noCulling) scene.bricks.culling = false;
   apply(options.interior, scene.bricks.interior);
@@ -236,7 +237,7 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
       ->group(sampling);
   command
       .add_option("--table-size", o.tableSize,
-                  "entries of the transfer table along an axis, 2 to 4096, or the next power of two [256]")
+                  "no effect: there is no table any more; kept so that earlier commands work")
       ->group(sampling);
   command
       .add_option(

@@ -9,6 +9,6 @@ layout(location = 0) out vec4 eye;
 layout(location = 1) out vec4 aux;
 
 void main() {
-  eye = evaluateSlab(slab_centre).light;
+  eye = evaluateSlab(slab_centre).eye;
   if (kAux != 0) aux = vec4(eye.a, eye.a * slab_centre.w, 0.0, eye.a);
 }

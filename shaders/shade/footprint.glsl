@@ -18,10 +18,10 @@ float meanOverFootprint(vec2 uv) {
   return sum * (1.0 / float(kTaps));
 }
 
-// What leaves a slab of which `share` is filled with a medium of extinction sigma_t.
-float occlusionBehind(vec2 uv, float sigma_t, float share, float spacing) {
-  if (kAlgorithm == 3) return meanOverFootprint(uv) * transmittance(sigma_t, share * spacing);
+// What leaves a slab of thickness `spacing` and of optical depth tau along the slice normal.
+float occlusionBehind(vec2 uv, float tau, float spacing) {
+  if (kAlgorithm == 3) return meanOverFootprint(uv) * exp(-tau);
   float sum = 0.0;
-  for (int i = 0; i < kTaps; ++i) sum += visibility(uv + taps[i].xy) * transmittance(sigma_t, share * taps[i].z);
+  for (int i = 0; i < kTaps; ++i) sum += visibility(uv + taps[i].xy) * exp(-tau * (taps[i].z / spacing));
   return sum * (1.0 / float(kTaps));
 }

@@ -7,6 +7,5 @@ flat in vec4 slab_centre;
 layout(location = 0) out float tau;
 
 void main() {
-  Slab slab = evaluateSlab(slab_centre);
-  tau = slab.sigma_t * slab.share * 2.0 * half_spacing;
+  tau = evaluateSlab(slab_centre).tau;
 }

@@ -1,30 +1,177 @@
-// The medium of a segment of a view ray: means of (sigma_s, sigma_t) between its front and its back, 1/world unit, associated
-// colour.
-//   kQuadrature 0  pre-integrated: the value runs linearly from front to back
-//               1  the medium at the middle
-//               2  the medium at the middle, by value and gradient magnitude
+// What segments of a view ray scatter and absorb. A transfer function is linear between its control points, so a segment is
+// integrated stretch by stretch (see umbrick/optics/transfer_stretches.h): no table stands between the function and the picture.
+//   kQuadrature 0  1D function; the value runs linearly from the front of the segment to its back
+//               1  1D function; the medium at the middle
+//               2  2D function; value and gradient magnitude run linearly from front to back
+//               3  2D function; the medium at the middle
 layout(binding = 0) uniform sampler3D atlas;      // r: value, g: gradient magnitude, in texel units
-layout(binding = 1) uniform sampler2D transfer;   // 0: by (front, back); 1: by value, one row; 2: by (value, gradient)
-uniform vec4 transfer_map;                        // to table coordinates: xy per texel unit, zw those of empty space
-uniform vec2 empty_texel;                         // x: value of empty space, texel units; y: what rounding may add to it
+// RGBA32F, one column a stretch of the values, as many as a power of two; the last stretch is repeated. Ends are in texel
+// units, infinite ones 1e38:
+//   row 0     lower end, upper end; 1D: sigma_t at the lower end and at the upper one, 1/world unit
+//   1D, rows 1 and 2   albedo at the lower end and at the upper one
+//   2D, row 1          lower end and upper end of the stretches of the gradients, one a column
+//       from row 2     the media (albedo, sigma_t) at the four corners of each cell: columns 2 i and 2 i + 1, rows
+//                      2 + 2 j and 3 + 2 j for stretch i of the values and j of the gradients
+layout(binding = 1) uniform sampler2D transfer;
+uniform vec3 empty_texel;    // x: what empty space reads as; y: what rounding may add to that; z: what it is, texel units
 
-// Distance from the value of empty space. That has a node of the table to itself, which may be all that is transparent
-// of a medium that is solid elsewhere: it must be hit exactly.
-float fromEmpty(float value) {
-  float distance = value - empty_texel.x;
-  return abs(distance) <= empty_texel.y ? 0.0 : distance;
+// What a segment, or a part of one, sends to the eye and lets through.
+struct Slab {
+  vec4 eye;   // premultiplied colour for light of radiance 1, and opacity
+  float tau;  // optical depth
+};
+
+void addPiece(inout Slab slab, vec3 albedo, float tau) {
+  slab.eye += (1.0 - slab.eye.a) * vec4(albedo, 1.0) * oneMinusExp(tau);
+  slab.tau += tau;
 }
 
-// Table coordinate of the value at a point, which neighbouring pre-integrated segments share.
-float endCoordinate(vec3 point) {
-  return fromEmpty(textureLod(atlas, point, 0.0).r) * transfer_map.x + transfer_map.z;
+// Empty space may be all that is transparent of a medium that is solid elsewhere: it must be hit exactly.
+float snapped(float value) { return abs(value - empty_texel.x) <= empty_texel.y ? empty_texel.z : value; }
+
+// The number of the stretch that a value lies in, which is that of control points at or below it. By bisection of the upper
+// ends in a row of 2^steps columns.
+int stretchOf(float value, int row, int steps) {
+  int number = 0;
+  for (int step = 1 << (steps - 1); step > 0; step >>= 1)
+    if (value >= texelFetch(transfer, ivec2(number + step - 1, row), 0).g) number += step;
+  return number;
 }
 
-vec4 rampMedium(float front, float back) { return textureLod(transfer, vec2(front, back), 0.0); }
+// Where a value lies between the ends of a stretch; anywhere where those are infinitely far.
+float placeIn(vec4 ends, float value) { return clamp((value - ends.r) / max(ends.g - ends.r, 1e-37), 0.0, 1.0); }
 
-vec4 pointMedium(vec3 point) {
-  vec2 texel = textureLod(atlas, point, 0.0).rg;
-  texel.r = fromEmpty(texel.r);
-  if (kQuadrature == 1) texel.g = 0.0;
-  return textureLod(transfer, texel * transfer_map.xy + transfer_map.zw, 0.0);
+// A stretch of a 1D function, as rows 0 to 2 hold it.
+struct Stretch {
+  vec4 ends, low, high;
+};
+
+// A function whose stretches are not too many for that is held in uniforms, too, where a software rasteriser reads it several
+// times as fast as from a texture. Up to 24 upper ends stand by fours once more: to compare a value with all of them is faster
+// than to bisect.
+uniform vec4 stretches[3 * max(kUniformStretches, 1)];
+uniform vec4 few_ends[6];
+
+Stretch stretchAt(int number) {
+  if (kUniformStretches == 0)
+    return Stretch(texelFetch(transfer, ivec2(number, 0), 0), texelFetch(transfer, ivec2(number, 1), 0),
+                   texelFetch(transfer, ivec2(number, 2), 0));
+  return Stretch(stretches[3 * number], stretches[3 * number + 1], stretches[3 * number + 2]);
+}
+
+int endsBelow(float value, vec4 ends) { return int(dot(vec4(greaterThanEqual(vec4(value), ends)), vec4(1.0))); }
+
+int valueStretchOf(float value) {
+  if (kUniformStretches == 0) return stretchOf(value, 0, kValueSteps);
+  int number = 0;
+  if (kUniformStretches > 25) {
+    for (int step = 1 << (kValueSteps - 1); step > 0; step >>= 1)
+      if (value >= stretches[3 * min(number + step - 1, kUniformStretches - 1)].g) number += step;
+    return min(number, kUniformStretches - 1);
+  }
+  number = endsBelow(value, few_ends[0]);
+  if (kUniformStretches > 5) number += endsBelow(value, few_ends[1]);
+  if (kUniformStretches > 9) number += endsBelow(value, few_ends[2]);
+  if (kUniformStretches > 13) number += endsBelow(value, few_ends[3]);
+  if (kUniformStretches > 17) number += endsBelow(value, few_ends[4]);
+  if (kUniformStretches > 21) number += endsBelow(value, few_ends[5]);
+  return number;
+}
+
+// A point of a ray as the function sees it.
+struct End {
+  vec2 value;    // and gradient magnitude, texel units
+  ivec2 stretch;
+};
+
+End endAt(vec3 point) {
+  End end;
+  end.value = textureLod(atlas, point, 0.0).rg;
+  end.value.r = clamp(snapped(end.value.r), -1e38, 1e38);
+  end.stretch.x = valueStretchOf(end.value.r);
+  end.stretch.y = kQuadrature > 1 ? stretchOf(end.value.g, 1, kGradientSteps) : 0;
+  return end;
+}
+
+// A piece of length `ray` within one stretch, over which the value runs from `front` to `back`.
+void addStretch(inout Slab slab, Stretch stretch, float front, float back, float ray) {
+  vec2 place = vec2(placeIn(stretch.ends, front), placeIn(stretch.ends, back));
+  vec2 sigma_t = stretch.ends.b + place * (stretch.ends.a - stretch.ends.b);
+  float tau = 0.5 * (sigma_t.x + sigma_t.y) * ray;
+  float lit_place = place.x + scatteringCentroid(sigma_t.x, sigma_t.y, tau) * (place.y - place.x);
+  addPiece(slab, stretch.low.rgb + lit_place * (stretch.high.rgb - stretch.low.rgb), tau);
+}
+
+// A segment whose value runs from front to back through the stretches in between. Most segments stay in one.
+void addRamp(inout Slab slab, End front, End back, float ray) {
+  int number = front.stretch.x, last = back.stretch.x, towards = number < last ? 1 : -1;
+  float per_value = 1.0 / (back.value.r - front.value.r);  // of no matter where both are equal
+  float value = front.value.r, done = 0.0;
+  while (true) {
+    Stretch stretch = stretchAt(number);
+    float end = number == last ? back.value.r : towards > 0 ? stretch.ends.g : stretch.ends.r;
+    float until = number == last ? 1.0 : clamp((end - front.value.r) * per_value, done, 1.0);
+    addStretch(slab, stretch, value, end, (until - done) * ray);
+    if (number == last) break;
+    number += towards;
+    value = end;
+    done = until;
+  }
+}
+
+// The medium of a 2D function in one cell of its lattice: albedo and sigma_t.
+vec4 mediumIn(ivec2 cell, vec2 value) {
+  vec2 place = vec2(placeIn(texelFetch(transfer, ivec2(cell.x, 0), 0), value.x),
+                    placeIn(texelFetch(transfer, ivec2(cell.y, 1), 0), value.y));
+  ivec2 corner = ivec2(2 * cell.x, 2 + 2 * cell.y);
+  vec4 a = texelFetch(transfer, corner, 0), b = texelFetch(transfer, corner + ivec2(1, 0), 0);
+  vec4 c = texelFetch(transfer, corner + ivec2(0, 1), 0), d = texelFetch(transfer, corner + ivec2(1, 1), 0);
+  vec4 low = a + place.x * (b - a), high = c + place.x * (d - c);
+  return low + place.y * (high - low);
+}
+
+// A piece of a segment within one cell, by the two nodes of Gauss and Legendre.
+void addCell(inout Slab slab, ivec2 cell, vec2 front, vec2 back, float ray) {
+  vec4 first = mediumIn(cell, front + 0.21132487 * (back - front)), second = mediumIn(cell, front + 0.78867513 * (back - front));
+  addPiece(slab, first.rgb, 0.5 * first.a * ray);
+  addPiece(slab, second.rgb, 0.5 * second.a * ray);
+}
+
+// Likewise for a 2D function: the segment is cut where it crosses the lines of the lattice.
+void addPath(inout Slab slab, End front, End back, float ray) {
+  ivec2 cell = front.stretch, last = back.stretch, towards = sign(last - cell);
+  vec2 change = back.value - front.value;
+  float done = 0.0;
+  while (true) {
+    vec2 until = vec2(2.0);  // where each of the two axes leaves its stretch
+    for (int axis = 0; axis < 2; ++axis) {
+      vec2 ends = texelFetch(transfer, ivec2(cell[axis], axis), 0).rg;
+      float end = towards[axis] > 0 ? ends.g : ends.r;
+      if (cell[axis] != last[axis]) until[axis] = clamp((end - front.value[axis]) / change[axis], done, 1.0);
+    }
+    int axis = until.x <= until.y ? 0 : 1;
+    float end = min(until[axis], 1.0);
+    addCell(slab, cell, front.value + done * change, front.value + end * change, (end - done) * ray);
+    if (cell == last) break;
+    done = end;
+    cell[axis] += towards[axis];
+  }
+}
+
+// A segment of length `ray`, world units, between two points of which the ends are known.
+void addSegment(inout Slab slab, End front, End back, float ray) {
+  if (kQuadrature == 0)
+    addRamp(slab, front, back, ray);
+  else
+    addPath(slab, front, back, ray);
+}
+
+// A segment whose medium is that at its middle.
+void addMiddle(inout Slab slab, End middle, float ray) {
+  if (kQuadrature == 1) {
+    addStretch(slab, stretchAt(middle.stretch.x), middle.value.r, middle.value.r, ray);
+  } else {
+    vec4 medium = mediumIn(middle.stretch, middle.value);
+    addPiece(slab, medium.rgb, medium.a * ray);
+  }
 }

@@ -9,5 +9,5 @@ layout(location = 0) out float occlusion;
 
 void main() {
   Slab slab = evaluateSlab(slab_centre);
-  occlusion = occlusionBehind(previousPoint(), slab.sigma_t, slab.share, 2.0 * half_spacing);
+  occlusion = occlusionBehind(previousPoint(), slab.tau / rayStretch(screenPoint()), 2.0 * half_spacing);
 }

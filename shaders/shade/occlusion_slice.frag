@@ -15,7 +15,7 @@ void main() {
   Slab slab = evaluateSlab(slab_centre);
   vec2 uv = previousPoint();
   float seen = visibility(uv);
-  eye = vec4(slab.light.rgb * seen, slab.light.a);
-  occlusion = occlusionBehind(uv, slab.sigma_t, slab.share, 2.0 * half_spacing);
+  eye = vec4(slab.eye.rgb * seen, slab.eye.a);
+  occlusion = occlusionBehind(uv, slab.tau / rayStretch(screenPoint()), 2.0 * half_spacing);
   if (kAux != 0) aux = vec4(eye.a * seen, eye.a * slab_centre.w, 0.0, eye.a);
 }

@@ -7,6 +7,7 @@ layout(binding = 8) uniform sampler2DArray visibility;
 layout(binding = 9) uniform sampler2DArray visibility_weight;
 uniform vec4 lattice_map;  // view coordinates across to visibility's coordinates: xy scale, zw offset
 uniform vec3 whole_light;  // that nothing is in the way of
+uniform float brightest;   // light of this radiance is 1 in the eye buffer
 flat in vec4 slab_centre;
 flat in float slice_layer;
 layout(location = 0) out vec4 eye;
@@ -29,8 +30,7 @@ void main() {
   float weighted = kColoured != 0 ? light.a : light.g;
   float stretch = rayStretch(p);
   float path = weighted > 0.0 ? (share / weighted - 1.0) / stretch : 1.0;
-  float tau = slab.sigma_t * slab.share * 2.0 * half_spacing * stretch;
-  float self = selfShadow(tau, path);
-  eye = vec4(slab.light.rgb * self * (kColoured != 0 ? light.rgb : share * whole_light), slab.light.a);
+  float self = selfShadow(slab.tau, path);
+  eye = vec4(slab.eye.rgb * self * (kColoured != 0 ? light.rgb : share * whole_light) / brightest, slab.eye.a);
   if (kAux != 0) aux = vec4(eye.a * self * share, eye.a * slab_centre.w, 0.0, eye.a);
 }

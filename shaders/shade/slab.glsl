@@ -1,15 +1,11 @@
 // What one fragment finds in its slab.
 #include "optics/slab.glsl"
+#include "optics/ramp.glsl"
 #include "shade/ray.glsl"
 #include "shade/clip.glsl"
 #include "shade/medium.glsl"
 
-struct Slab {
-  vec4 light;     // what an unoccluded slab scatters to the eye, premultiplied by its opacity, and that opacity
-  float sigma_t;  // mean extinction, 1/world unit
-  float share;    // of the slab's thickness that clip planes leave
-};
-
+// Of the part of the slab that clip planes leave, along the fragment's view ray.
 Slab evaluateSlab(vec4 slab_centre) {
   vec2 p = screenPoint();
   vec3 middle = slabMiddle(slab_centre, p);
@@ -23,19 +19,16 @@ Slab evaluateSlab(vec4 slab_centre) {
   float ray = rayStretch(p) * half_spacing * thickness / float(kSegments);  // world length of a segment
   vec3 segment = half_step * (thickness / float(kSegments));
   vec3 front = middle + kept.x * half_step;
-  float front_end = kQuadrature == 0 ? endCoordinate(front) : 0.0;
-  Slab slab = Slab(vec4(0.0), 0.0, 0.5 * thickness);
+  Slab slab = Slab(vec4(0.0), 0.0);
+  if (kQuadrature == 1 || kQuadrature == 3) {
+    for (int i = 0; i < kSegments; ++i) addMiddle(slab, endAt(front + (float(i) + 0.5) * segment), ray);
+    return slab;
+  }
+  End front_end = endAt(front);
   for (int i = 0; i < kSegments; ++i) {
-    vec4 medium;
-    if (kQuadrature == 0) {
-      float back_end = endCoordinate(front + float(i + 1) * segment);
-      medium = rampMedium(front_end, back_end);
-      front_end = back_end;
-    } else {
-      medium = pointMedium(front + (float(i) + 0.5) * segment);
-    }
-    slab.light += (1.0 - slab.light.a) * medium * (ray * slabFactor(medium.a * ray));
-    slab.sigma_t += medium.a * (1.0 / float(kSegments));
+    End back_end = endAt(front + float(i + 1) * segment);
+    addSegment(slab, front_end, back_end, ray);
+    front_end = back_end;
   }
   return slab;
 }

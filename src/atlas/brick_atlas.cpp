@@ -38,16 +38,35 @@ TexelScale unormScale(const Bricks& volume, VoxelFormat format) {
   const double codes = format == VoxelFormat::unorm8 ? 255 : 65535;
   const double extent = static_cast<double>(volume.value.max) - static_cast<double>(volume.value.min);
   const bool wholeNumbers = volume.exactFormat == VoxelFormat::unorm8 || volume.exactFormat == VoxelFormat::unorm16;
-  const double step = wholeNumbers && extent <= codes ? 1 : extent > 0 ? extent / codes : 1;
-  return {step * codes, static_cast<double>(volume.value.min)};
+  const bool exact = wholeNumbers && extent <= codes;
+  const double step = exact ? 1 : extent > 0 ? extent / codes : 1;
+  return {step * codes, static_cast<double>(volume.value.min), exact ? 0 : step};
 }
 
 }  // namespace
 
+TexelScale texelScale(const Bricks& volume, VoxelFormat format) {
+  const double largest =
+      std::max(std::abs(static_cast<double>(volume.value.min)), std::abs(static_cast<double>(volume.value.max)));
+  switch (format) {
+    case VoxelFormat::unorm8:
+    case VoxelFormat::unorm16:
+      return unormScale(volume, format);
+    case VoxelFormat::half:
+      // Half of a unit in the last of 11 places, and of 2^-24 near zero; larger values than 65504 are cut off.
+      return {1, 0,
+              volume.exactFormat == VoxelFormat::half ? 0 : std::max({largest * 0x1p-11, 0x1p-25, largest - 65504})};
+    case VoxelFormat::float32:
+      break;
+  }
+  const double anchor = volume.anchor;
+  return {1, anchor, anchor != 0 ? (largest + std::abs(anchor)) * 0x1p-24 : 0};
+}
+
 BrickAtlas::BrickAtlas(const GlContext& context, const Bricks& volume, std::vector<Brick> bricks,
                        const AtlasOptions& options)
     : gl_(context.gl()), volume_(volume), bricks_(std::move(bricks)), format_(options.format) {
-  if (format_ == VoxelFormat::unorm8 || format_ == VoxelFormat::unorm16) valueScale_ = unormScale(volume, format_);
+  valueScale_ = texelScale(volume, format_);
   const int edge = options.maxTextureEdge > 0 ? std::min(options.maxTextureEdge, context.maxTextureEdge3d())
                                               : context.maxTextureEdge3d();
   planTextures(options, edge);
@@ -146,30 +165,29 @@ void BrickAtlas::release(std::int32_t brick) {
 }
 
 double BrickAtlas::encode(std::span<const float> values, std::span<const float> gradients, std::byte* texels) const {
-  // Everything fits itself and float, and 8-bit whole numbers fit 16 bits. Large ones do not fit half.
-  const bool exact = format_ == volume_.exactFormat || format_ == VoxelFormat::float32 ||
-                     (format_ == VoxelFormat::unorm16 && volume_.exactFormat == VoxelFormat::unorm8);
+  const bool exact = valueScale_.rounding == 0;
   double error = 0;
-  const auto store = [&](auto codeOf, auto valueOf) {
+  const auto store = [&](auto codeOf, auto gradientCodeOf, auto valueOf) {
     using Code = decltype(codeOf(0.0f));
     auto* out = reinterpret_cast<Code*>(texels);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const Code code = codeOf(values[i]);
       *out++ = code;
-      if (!gradients.empty()) *out++ = codeOf(gradients[i]);
+      if (!gradients.empty()) *out++ = gradientCodeOf(gradients[i]);
       if (!exact) error = std::max(error, std::abs(valueOf(code) - static_cast<double>(values[i])));
     }
   };
   const auto storeUnorm = [&]<class Code>(Code most) {
     const double step = valueScale_.scale / most;
     const double perStep = 1 / step;
-    store(
-        [&](float v) {
-          return static_cast<Code>(std::clamp((static_cast<double>(v) - valueScale_.offset) * perStep + 0.5, 0.0,
-                                              static_cast<double>(most)));
-        },
-        [&](Code code) { return valueScale_.offset + code * step; });
+    const auto codeOf = [&](float v) {
+      return static_cast<Code>(
+          std::clamp((static_cast<double>(v) - valueScale_.offset) * perStep + 0.5, 0.0, static_cast<double>(most)));
+    };
+    store(codeOf, codeOf, [&](Code code) { return valueScale_.offset + code * step; });
   };
+  const auto halfOf = [](float v) { return Imath::half(std::clamp(v, -65504.0f, 65504.0f)); };
+  const double anchor = valueScale_.offset;
   switch (format_) {
     case VoxelFormat::unorm8:
       storeUnorm(std::uint8_t{255});
@@ -178,11 +196,11 @@ double BrickAtlas::encode(std::span<const float> values, std::span<const float> 
       storeUnorm(std::uint16_t{65535});
       break;
     case VoxelFormat::half:
-      store([](float v) { return Imath::half(std::clamp(v, -65504.0f, 65504.0f)); },
-            [](Imath::half code) { return static_cast<double>(static_cast<float>(code)); });
+      store(halfOf, halfOf, [](Imath::half code) { return static_cast<double>(static_cast<float>(code)); });
       break;
     case VoxelFormat::float32:
-      store([](float v) { return v; }, [](float code) { return static_cast<double>(code); });
+      store([&](float v) { return static_cast<float>(v - anchor); }, [](float gradient) { return gradient; },
+            [&](float code) { return code + anchor; });
       break;
   }
   return error;

@@ -58,25 +58,27 @@ class GridBricks final : public Bricks {
     const int reach = options.apron + (options.gradients ? 1 : 0);
     VoxelSurvey survey = surveyVoxels(grid_->tree(), background, options.interior, reach);
     value = survey.value;
+    anchor = survey.anchor;
     exactFormat = survey.exactFormat;
     nonFiniteVoxels = survey.nonFiniteVoxels;
     if (!survey.hasNonFinite) reader_.setAllFinite();
     if (survey.extent.empty()) return;
-    setDomain(survey.extent, reach);
+    setDomain(survey.extent);
     collectBricks(survey.cells);
   }
 
-  // Makes one brick of the domain.
+  // Makes one brick of all that slabs may reach from.
   void unite() {
     if (domain.empty()) return;
-    const glm::i64vec3 extent = domain.extent();
+    const IndexBox box = reach();
+    const glm::i64vec3 extent = box.extent();
     const glm::dvec3 edge = glm::dvec3(extent) + 2.0 * layout.apron;
     if (edge.x * edge.y * edge.z > 2147483648.0)
       throw InvalidArgument("one brick of the whole grid would have " + print(glm::i64vec3(edge)) +
                             " voxels, more than 2^31 = 2147483648");
     layout.interior = glm::ivec3(extent);
-    // The domain begins and ends with a layer of background, so it sees each value and a gradient of zero.
-    bricks = {{domain.min, value, gradient}};
+    // It begins and ends with a layer of background, so it sees each value and a gradient of zero.
+    bricks = {{box.min, value, gradient}};
   }
 
   void read(const glm::ivec3& origin, std::span<float> values, std::span<float> gradients) const override {
@@ -120,22 +122,22 @@ class GridBricks final : public Bricks {
                       "a brick with its apron");
   }
 
-  void setDomain(const IndexBox& extent, int reach) {
+  void setDomain(const IndexBox& extent) {
     const glm::i64vec3 first = glm::i64vec3(extent.min) - std::int64_t(1);
     const glm::i64vec3 last = glm::i64vec3(extent.max) + std::int64_t(1);
     checkedBox(first, last, "the grid, grown by one voxel,");
     domain = {glm::ivec3(first), glm::ivec3(last)};
-    // Every cell that meets the domain must be readable.
-    const std::int64_t interior = layout.interior.x;
+    // Every cell that slabs may reach the domain from must be readable.
+    const std::int64_t interior = layout.interior.x, margin = layout.apron + (hasGradients ? 1 : 0);
     glm::i64vec3 lowest, highest;
     for (int axis = 0; axis < 3; ++axis) {
-      lowest[axis] = cellOf(first[axis], interior) * interior - reach;
-      highest[axis] = (cellOf(last[axis], interior) + 1) * interior - 1 + reach;
+      lowest[axis] = cellOf(first[axis] - margin, interior) * interior - margin;
+      highest[axis] = (cellOf(last[axis] + margin, interior) + 1) * interior - 1 + margin;
     }
     checkedBox(lowest, highest, "the lattice of bricks with their aprons");
   }
 
-  // Keeps the cells that meet the domain and hold anything but background, with their ranges.
+  // Keeps the cells that hold anything but background, with their ranges.
   void collectBricks(const std::vector<glm::ivec3>& cells) {
     std::vector<Brick> found(cells.size());
     std::vector<char> keep(cells.size(), 0);
@@ -143,13 +145,7 @@ class GridBricks final : public Bricks {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size(), 4), [&](const auto& range) {
       std::vector<float>& slab = slabs.local();
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
-        // 64 bits: the cell may lie beyond the domain, and then beyond the last coordinate.
-        const glm::i64vec3 first = glm::i64vec3(cells[i]) * glm::i64vec3(layout.interior);
-        const glm::i64vec3 last = first + glm::i64vec3(layout.interior - 1);
-        if (glm::any(glm::lessThan(last, glm::i64vec3(domain.min))) ||
-            glm::any(glm::greaterThan(first, glm::i64vec3(domain.max))))
-          continue;
-        const glm::ivec3 origin(first);
+        const glm::ivec3 origin = cells[i] * layout.interior;
         found[i] = {origin, reader_.range(brickBox(origin, layout.apron)), gradientRange(origin, slab)};
         keep[i] = found[i].value != Range{background, background} || found[i].gradient.max > 0;
       }

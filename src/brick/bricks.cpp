@@ -19,23 +19,30 @@ std::string printCount(long double count) {
 }
 }  // namespace
 
+IndexBox Bricks::reach() const {
+  if (domain.empty()) return domain;
+  const int margin = layout.apron + (hasGradients ? 1 : 0);
+  return {domain.min - margin, domain.max + margin};
+}
+
 std::vector<Brick> backgroundBricks(const Bricks& bricks, std::size_t limit) {
   if (bricks.domain.empty()) return {};
-  // Cells that meet the domain, counted from a brick: a lattice of one cell does not begin at 0.
+  const IndexBox reach = bricks.reach();
+  // Cells that meet it, counted from a brick: a lattice of one cell does not begin at 0.
   const glm::i64vec3 phase(bricks.bricks.empty() ? glm::ivec3(0) : bricks.bricks.front().origin);
   glm::i64vec3 first, last;
   long double cells = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t interior = bricks.layout.interior[axis];
-    first[axis] = floorDivide(bricks.domain.min[axis] - phase[axis], interior);
-    last[axis] = floorDivide(bricks.domain.max[axis] - phase[axis], interior);
+    first[axis] = floorDivide(reach.min[axis] - phase[axis], interior);
+    last[axis] = floorDivide(reach.max[axis] - phase[axis], interior);
     cells *= static_cast<long double>(last[axis] - first[axis] + 1);
   }
   // All bricks lie among these cells, each in its own.
   const long double count = std::max(0.0L, cells - static_cast<long double>(bricks.bricks.size()));
   if (count > static_cast<long double>(limit))
     throw InvalidArgument("the background value " + std::to_string(bricks.background) + " fills " + printCount(count) +
-                          " bricks of the domain, more than the limit of " + std::to_string(limit));
+                          " bricks of the volume's box, more than the limit of " + std::to_string(limit));
   std::vector<Brick> result;
   result.reserve(static_cast<std::size_t>(count));
   auto next = bricks.bricks.begin();  // in the same order

@@ -11,8 +11,9 @@
 namespace umbrick {
 
 struct VoxelSurvey {
-  IndexBox extent;  // active voxels and all others that differ from the background
-  Range value;      // the background included
+  IndexBox extent;   // active voxels and all others that differ from the background
+  Range value;       // the background included
+  float anchor = 0;  // see Bricks
   VoxelFormat exactFormat = VoxelFormat::float32;
   std::uint64_t nonFiniteVoxels = 0;  // active
   bool hasNonFinite = false;          // active or inactive

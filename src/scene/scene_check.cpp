@@ -81,7 +81,6 @@ std::optional<Complaint> findComplaint(const Scene& scene) {
   check.requireEither(sampling.bits, 16, 32, "sampling.bits");
   check.require(sampling.saturation >= 0 && sampling.saturation < 1, "sampling.saturation", print(sampling.saturation),
                 "in [0, 1)");
-  check.requireWithin(sampling.tableSize, 2, 4096, "sampling.tableSize");
 
   const OcclusionOptions& occlusion = scene.occlusion;
   check.require(occlusion.aperture >= 0 && occlusion.aperture < std::numbers::pi / 2, "occlusion.theta",

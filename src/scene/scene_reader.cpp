@@ -108,7 +108,6 @@ void readSampling(const JsonValue& value, SamplingOptions& sampling) {
   read(value, "segments", sampling.segments);
   read(value, "bits", sampling.bits);
   read(value, "saturation", sampling.saturation);
-  read(value, "tableSize", sampling.tableSize);
 }
 
 void readOcclusion(const JsonValue& value, OcclusionOptions& occlusion) {

@@ -52,8 +52,7 @@ std::string printedSampling(const SamplingOptions& sampling) {
                      {"quadrature", printed(kQuadratures, sampling.quadrature)},
                      {"segments", printed(sampling.segments)},
                      {"bits", printed(sampling.bits)},
-                     {"saturation", jsonNumber(sampling.saturation)},
-                     {"tableSize", printed(sampling.tableSize)}});
+                     {"saturation", jsonNumber(sampling.saturation)}});
 }
 
 std::string printedOcclusion(const OcclusionOptions& occlusion) {

@@ -23,11 +23,12 @@ std::uint64_t FragmentCounter::total() const {
 }
 
 ShaderConstants slabConstants(const Frame& frame) {
-  return {{"kPerspective", frame.camera.projection == Projection::perspective},
-          {"kClipPlanes", static_cast<int>(frame.planes.size())},
-          {"kQuadrature", frame.transfer.shaderMode()},
-          {"kSegments", frame.scene.sampling.segments},
-          {"kAux", frame.targets.options.aux}};
+  ShaderConstants constants{{"kPerspective", frame.camera.projection == Projection::perspective},
+                            {"kClipPlanes", static_cast<int>(frame.planes.size())},
+                            {"kSegments", frame.scene.sampling.segments},
+                            {"kAux", frame.targets.options.aux}};
+  frame.transfer.setConstants(constants);
+  return constants;
 }
 
 void setSlabUniforms(GlProgram& program, const Frame& frame) {

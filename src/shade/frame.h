@@ -56,7 +56,8 @@ struct Frame {
   const Scene& scene;
   Camera camera;
   IndexView view;
-  std::vector<glm::dvec4> planes;  // in view coordinates
+  std::vector<glm::dvec4> planes;  // that cut slabs, in view coordinates
+  std::vector<glm::dvec4> bounds;  // beyond which there is nothing to draw: those planes and the box of the medium
   ProxySlices slices;
   const BrickAtlas& atlas;
   const TransferLookup& transfer;
@@ -95,6 +96,8 @@ class SlicePass {
   virtual void fill(Frame& frame, std::int64_t first, std::int64_t last);
   /// Slices [first, last), after fill().
   virtual void draw(Frame& frame, std::int64_t first, std::int64_t last) = 0;
+  /// Light of this radiance is 1 in the eye buffer: 1, or more where fixed point would cut brighter light off.
+  virtual double brightest() const { return 1; }
   /// What is special about the last picture.
   virtual void addTo(RenderStats&) const {}
 };

@@ -76,6 +76,8 @@ class OrdinatesPass : public SlicePass {
     }
   }
 
+  double brightest() const override { return brightest_; }
+
   void addTo(RenderStats& stats) const override {
     const auto texels = [](const glm::ivec2& size) {
       return static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
@@ -100,6 +102,7 @@ class OrdinatesPass : public SlicePass {
         frame.sample.lights.empty() ? lightDirections(scene, scene.occlusion.directions) : frame.sample.lights;
     light_ = glm::dvec3(0);
     for (const LightDirection& light : lights) light_ += light.radiance;
+    brightest_ = frame.scene.sampling.bits == 16 ? std::max({1.0, light_.r, light_.g, light_.b}) : 1;
     const double power = light_.r + light_.g + light_.b;
     coloured_ = false;
     slopes_.clear();
@@ -198,12 +201,15 @@ class OrdinatesPass : public SlicePass {
     lightView_.size = lattice_.size;
     lightView_.origin -= glm::dvec3(centre, 0);
     lightView_.eyeIndex += centre.x * frame.view.toIndex[0] + centre.y * frame.view.toIndex[1];
-    lightPlanes_ = frame.planes;
-    for (glm::dvec4& plane : lightPlanes_) plane.w += plane.x * centre.x + plane.y * centre.y;
+    const auto seenFrom = [&](std::vector<glm::dvec4> planes) {
+      for (glm::dvec4& plane : planes) plane.w += plane.x * centre.x + plane.y * centre.y;
+      return planes;
+    };
+    lightPlanes_ = seenFrom(frame.planes);
     std::vector<glm::ivec3> origins;
     for (const Brick& brick : frame.atlas.bricks()) origins.push_back(brick.origin);
-    lightSlices_ = cutSlices(lightView_, origins, frame.atlas.layout().interior, lightPlanes_, frame.slices.spacing,
-                             frame.slices.phase);
+    lightSlices_ = cutSlices(lightView_, origins, frame.atlas.layout().interior, seenFrom(frame.bounds),
+                             frame.slices.spacing, frame.slices.phase);
     extents_.occluding = polygonExtents(lightSlices_, lightView_, centre - lattice_.offset(), lattice_.texel);
     for (std::size_t i = 0; i < needed_.size(); ++i)
       extents_.occluding[i] = extents_.occluding[i].within(needed_[i].grown(2));
@@ -325,6 +331,7 @@ class OrdinatesPass : public SlicePass {
     program.set("lattice_map",
                 glm::vec4(1.0 / (lattice_.texel * texels), -(glm::dvec2(lattice_.first) + lattice_.shift) / texels));
     program.set("whole_light", glm::vec3(light_));
+    program.set("brightest", static_cast<float>(brightest_));
   }
 
   // Brings light to the slices of a run.
@@ -453,6 +460,7 @@ class OrdinatesPass : public SlicePass {
   std::vector<glm::dvec2> roundings_;  // by direction, see RenderSample
   std::vector<glm::vec4> radiance_;    // by direction: rgb, and its share of the light
   glm::dvec3 light_{0};                // sum of the radiances
+  double brightest_ = 1;               // see SlicePass
   bool coloured_ = false;              // the directions' radiances differ in more than brightness
   std::optional<Camera> aimedFrom_;    // whose directions of the scene these are
   std::size_t group_ = 1;              // directions that one shader takes through a slice

@@ -13,11 +13,9 @@ namespace umbrick {
 
 int requiredApron(const Scene& resolved, const glm::dmat4& indexToWorld) {
   const IndexView view = indexView(resolved.camera, indexToWorld);
-  double reach = 0;
-  if (resolved.sampling.quadrature == Quadrature::preintegrated) {
-    const glm::dvec3 axes = slabReach(view, resolved.sampling.spacing);
-    reach = std::max({axes.x, axes.y, axes.z});
-  }
+  // Whatever the quadrature: segments and planes that cut slabs have samples anywhere in a slab.
+  const glm::dvec3 axes = slabReach(view, resolved.sampling.spacing);
+  const double reach = std::max({axes.x, axes.y, axes.z});
   // Half a voxel belongs to every apron: a brick's space ends half-way between its last voxel and the first ghost. What
   // rounding may add is left to the texture filter.
   const double wanted = std::ceil(0.5 + reach - 1e-9);

@@ -31,13 +31,14 @@ void appendBoxPlanes(std::vector<ClipPlane>& planes, const Box& box) {
   }
 }
 
-// Half-spaces that keep the inside of the volume's domain: index coordinates from domain.min to domain.max.
-void appendDomainPlanes(std::vector<ClipPlane>& planes, const Bricks& volume) {
-  const glm::dmat4 toIndex = glm::inverse(volume.indexToWorld);
+// Half-spaces that keep the inside of a box of index coordinates, in world units like all planes: their distances are
+// those of the camera's.
+void appendIndexBoxPlanes(std::vector<ClipPlane>& planes, const IndexBox& box, const glm::dmat4& indexToWorld) {
+  const glm::dmat4 toIndex = glm::inverse(indexToWorld);
   for (int axis = 0; axis < 3; ++axis) {
     const glm::dvec4 coordinate(toIndex[0][axis], toIndex[1][axis], toIndex[2][axis], toIndex[3][axis]);
-    planes.push_back(coordinate - glm::dvec4(0, 0, 0, volume.domain.min[axis]));
-    planes.push_back(glm::dvec4(0, 0, 0, volume.domain.max[axis]) - coordinate);
+    planes.push_back(coordinate - glm::dvec4(0, 0, 0, box.min[axis]));
+    planes.push_back(glm::dvec4(0, 0, 0, box.max[axis]) - coordinate);
   }
 }
 
@@ -67,13 +68,14 @@ class SliceRenderer::Implementation {
       : gl_(context.gl()), volume_(volume), scene_(scene), options_(options) {
     checkScene(context);
     const SamplingOptions& sampling = scene.sampling;
-    transfer_.emplace(gl_, *scene.transfer, sampling, volume);
+    const VoxelFormat format = parseVoxelFormat(scene.bricks.format, volume);
+    transfer_.emplace(gl_, *scene.transfer, sampling, volume, format);
     const Range background{volume.background, volume.background};
     backgroundVisible_ = !volume.domain.empty() && transfer_->isVisible(background, {0, 0});
     std::vector<Brick> bricks = visibleBricks(volume, *transfer_, scene.bricks, backgroundVisible_);
     origins_ = originsOf(bricks);
     AtlasOptions atlas;
-    atlas.format = parseVoxelFormat(scene.bricks.format, volume);
+    atlas.format = format;
     atlas.budgetBytes = options.budgetBytes > 0 ? options.budgetBytes : scene.bricks.budgetMiB << 20;
     atlas.maxTextureBytes = options.maxTextureBytes;
     atlas.maxTextureEdge = options.maxTextureEdge;
@@ -209,7 +211,6 @@ class SliceRenderer::Implementation {
   }
 
   void checkReach(const IndexView& view) const {
-    if (transfer_->shaderMode() != 0) return;
     const glm::dvec3 reach = slabReach(view, scene_.sampling.spacing);
     if (std::max({reach.x, reach.y, reach.z}) > volume_.layout.apron - 0.5 + 1e-6)
       throw InvalidArgument("render: slabs reach beyond the apron of " + std::to_string(volume_.layout.apron) +
@@ -219,9 +220,19 @@ class SliceRenderer::Implementation {
   std::vector<glm::dvec4> viewPlanes(const Camera& camera) const {
     std::vector<ClipPlane> planes = scene_.clipPlanes;
     if (scene_.clipBox) appendBoxPlanes(planes, *scene_.clipBox);
-    if (backgroundVisible_) appendDomainPlanes(planes, volume_);
+    if (backgroundVisible_)
+      appendIndexBoxPlanes(planes, mediumBox(*scene_.transfer, volume_.domain), volume_.indexToWorld);
     for (ClipPlane& plane : planes) plane = planeInView(plane, camera);
     if (camera.nearDistance > 0) planes.emplace_back(0, 0, 1, -camera.nearDistance);
+    return planes;
+  }
+
+  // The box of the medium cuts no slab where the background is invisible, but nothing lies beyond it.
+  std::vector<glm::dvec4> viewBounds(const Camera& camera, std::vector<glm::dvec4> planes) const {
+    if (backgroundVisible_ || volume_.domain.empty()) return planes;
+    std::vector<ClipPlane> box;
+    appendIndexBoxPlanes(box, mediumBox(*scene_.transfer, volume_.domain), volume_.indexToWorld);
+    for (const ClipPlane& plane : box) planes.push_back(planeInView(plane, camera));
     return planes;
   }
 
@@ -240,14 +251,15 @@ class SliceRenderer::Implementation {
     const IndexView view = indexView(camera, volume_.indexToWorld);
     checkReach(view);
     std::vector<glm::dvec4> planes = viewPlanes(camera);
+    std::vector<glm::dvec4> bounds = viewBounds(camera, planes);
     const double spacing = scene_.sampling.spacing;
-    ProxySlices slices = cutSlices(view, origins_, volume_.layout.interior, planes, spacing);
+    ProxySlices slices = cutSlices(view, origins_, volume_.layout.interior, bounds, spacing);
     // The first slab of another phase begins before or behind the eye: there must be nothing.
     if (sample.phase != 0.5 && slices.first > 0)
-      slices = cutSlices(view, origins_, volume_.layout.interior, planes, spacing, sample.phase);
-    frame_.emplace(Frame{gl_, scene_, camera, view, std::move(planes), std::move(slices), *atlas_, *transfer_,
-                         *targets_, *polygons_, FragmentCounter(gl_, options_.countFragments), options_.reverseBricks,
-                         shortestVoxelEdge(volume_.indexToWorld), nearestDepth(view),
+      slices = cutSlices(view, origins_, volume_.layout.interior, bounds, spacing, sample.phase);
+    frame_.emplace(Frame{gl_, scene_, camera, view, std::move(planes), std::move(bounds), std::move(slices), *atlas_,
+                         *transfer_, *targets_, *polygons_, FragmentCounter(gl_, options_.countFragments),
+                         options_.reverseBricks, shortestVoxelEdge(volume_.indexToWorld), nearestDepth(view),
                          PassClock(gl_, options_.timePasses), sample});
     pass_->plan(*frame_);
     std::vector<const ProxySlices*> sweeps{&frame_->slices};
@@ -270,12 +282,13 @@ class SliceRenderer::Implementation {
     const int width = frame.camera.width, height = frame.camera.height;
     picture.colour = readTexture(gl_, targets_->eye, width, height);
     const glm::vec3 ambient(scene_.ambient);
+    const auto brightest = static_cast<float>(pass_->brightest());
     for (std::size_t i = 0; i < picture.colour.pixels.size(); i += 4) {
       float* pixel = &picture.colour.pixels[i];
-      for (int c = 0; c < 4; ++c) pixel[c] = std::min(pixel[c], 1.0f);  // but for roundings it is
+      pixel[3] = std::min(pixel[3], 1.0f);  // but for roundings it is
       const float through = 1 - pixel[3];
       for (int c = 0; c < 3; ++c) {
-        pixel[c] *= ambient[c];
+        pixel[c] *= brightest * ambient[c];
         if (scene_.background) pixel[c] += through * static_cast<float>((*scene_.background)[c]);
       }
       if (scene_.background) pixel[3] = 1;

@@ -3,18 +3,28 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <string>
 #include <vector>
 
-#include "umbrick/optics/transfer_table.h"
+#include "umbrick/core/error.h"
+#include "umbrick/optics/transfer_stretches.h"
 
 namespace umbrick {
 namespace {
 
-// Values this close are one to a driver: what is below the least normal number it may read as 0, and the inverse of
-// their distance has to be a number.
-constexpr double kLeastExtent = 0x1p-120;
+constexpr double kFar = 1e38;  // as in medium.glsl: where the constant ends of a function end
+// Fixed-point texels become floats by a division or a product, and filters add weights up: what a texel is read as may
+// be off by this share of it. For floats that is a unit in the last place.
+constexpr double kReadRounding = 0x1p-22;
+constexpr double kFloatRounding = 0x1p-23;
+
+// medium.glsl compares a value with the upper ends of so many stretches, but for the last, instead of a bisection.
+constexpr std::size_t kComparedStretches = 25;
+// Vectors of uniforms that are left for everything else.
+constexpr GLint kOtherUniforms = 256;
 
 // The function with an extinction that single precision can multiply by a slab's length, and divide by. What is cut off
 // is opaque over any length that a number could tell from 0.
@@ -28,87 +38,176 @@ TransferFunction bounded(const TransferFunction& transfer, double spacing) {
   return TransferFunction(std::move(points));
 }
 
-// The 1D function of the distance from `anchor` in steps: at whole numbers, which no rounding moves, where the table
-// has its nodes.
-TransferFunction inSteps(const TransferFunction& transfer, double anchor, double step) {
-  std::vector<TransferFunction::Point> points;
-  for (std::size_t i = 0; i < transfer.values().size(); ++i)
-    points.push_back({std::clamp((transfer.values()[i] - anchor) / step, -1e300, 1e300), transfer.media()[i]});
-  return TransferFunction(std::move(points));
+// Bisections that find one of so many stretches.
+int bisections(const std::vector<AxisStretch>& stretches) {
+  return std::bit_width(static_cast<unsigned>(stretches.size() - 1));
+}
+
+// Lower and upper ends of the stretches in texel units. A value exactly on a step belongs to the upper side, also where
+// it is read as a little less: steps give way by that much.
+std::vector<glm::vec2> endsInTexels(const std::vector<AxisStretch>& stretches,
+                                    const std::function<double(double)>& toTexel) {
+  std::vector<glm::vec2> ends(stretches.size());
+  double lower = -kFar;
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    double upper = kFar;
+    if (i + 1 < stretches.size()) {
+      upper = toTexel(stretches[i].upper);
+      const bool step = stretches[i].high != stretches[i + 1].low;
+      if (step) upper -= kReadRounding * std::abs(upper);
+      upper = std::clamp(upper, lower, kFar);
+    }
+    ends[i] = {static_cast<float>(lower), static_cast<float>(upper)};
+    lower = upper;
+  }
+  return ends;
+}
+
+// The texture as medium.glsl describes it.
+class StretchTexels {
+ public:
+  StretchTexels(int width, int height)
+      : width_(width),
+        height_(height),
+        texels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), glm::vec4(0)) {}
+  glm::vec4& at(std::size_t column, std::size_t row) {
+    return texels_[row * static_cast<std::size_t>(width_) + column];
+  }
+  const glm::vec4& at(std::size_t column, std::size_t row) const {
+    return texels_[row * static_cast<std::size_t>(width_) + column];
+  }
+  GlTexture upload(const GlFunctions& gl) const {
+    GlTexture texture = makeTexture2d(gl, GL_RGBA32F, width_, height_, GL_NEAREST);
+    gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    gl.TextureSubImage2D(texture.name(), 0, 0, 0, width_, height_, GL_RGBA, GL_FLOAT, texels_.data());
+    return texture;
+  }
+
+ private:
+  int width_, height_;
+  std::vector<glm::vec4> texels_;
+};
+
+StretchTexels texelsOf1d(const TransferFunction& transfer, const std::vector<AxisStretch>& stretches,
+                         const std::vector<glm::vec2>& ends, int width) {
+  StretchTexels texels(width, 3);
+  for (std::size_t column = 0; column < static_cast<std::size_t>(width); ++column) {
+    const std::size_t i = std::min(column, stretches.size() - 1);
+    const Medium &low = transfer.media()[stretches[i].low], &high = transfer.media()[stretches[i].high];
+    texels.at(column, 0) = {ends[i], low.sigma_t, high.sigma_t};
+    texels.at(column, 1) = {glm::vec3(low.albedo), 0};
+    texels.at(column, 2) = {glm::vec3(high.albedo), 0};
+  }
+  return texels;
+}
+
+StretchTexels texelsOf2d(const TransferFunction& transfer, const std::vector<AxisStretch>& values,
+                         const std::vector<glm::vec2>& valueEnds, const std::vector<AxisStretch>& gradients,
+                         const std::vector<glm::vec2>& gradientEnds, int columns, int rows) {
+  StretchTexels texels(std::max(2 * columns, rows), 2 + 2 * rows);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(columns); ++i)
+    texels.at(i, 0) = {valueEnds[std::min(i, values.size() - 1)], 0, 0};
+  for (std::size_t j = 0; j < static_cast<std::size_t>(rows); ++j)
+    texels.at(j, 1) = {gradientEnds[std::min(j, gradients.size() - 1)], 0, 0};
+  for (std::size_t j = 0; j < static_cast<std::size_t>(rows); ++j)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(columns); ++i) {
+      const AxisStretch &v = values[std::min(i, values.size() - 1)], &g = gradients[std::min(j, gradients.size() - 1)];
+      const auto corner = [&](std::size_t value, std::size_t gradient) {
+        const Medium& medium = transfer.media()[gradient * transfer.values().size() + value];
+        return glm::vec4(glm::vec3(medium.albedo), static_cast<float>(medium.sigma_t));
+      };
+      texels.at(2 * i, 2 + 2 * j) = corner(v.low, g.low);
+      texels.at(2 * i + 1, 2 + 2 * j) = corner(v.high, g.low);
+      texels.at(2 * i, 3 + 2 * j) = corner(v.low, g.high);
+      texels.at(2 * i + 1, 3 + 2 * j) = corner(v.high, g.high);
+    }
+  return texels;
+}
+
+void checkPoints(const GlFunctions& gl, const TransferFunction& transfer) {
+  GLint most = 0;
+  gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+  const std::size_t points = std::max(transfer.values().size(), transfer.gradients().size());
+  // A power of two of columns, twice as many for a 2D function.
+  if (2 * std::bit_ceil(points + 1) + 2 > static_cast<std::size_t>(most))
+    throw InvalidArgument("transfer function: it has " + std::to_string(points) +
+                          " control points along an axis, more than the driver's limit of " +
+                          std::to_string(most / 4 - 2));
 }
 
 }  // namespace
 
-TransferLookup::Axis TransferLookup::makeAxis(const Range& values, double anchor, int nodes) {
-  const double low = std::min<double>(values.min, anchor), high = std::max<double>(values.max, anchor);
-  // One value: it is the first node; the other one only has to be apart from it in single precision.
-  if (!(high - low > kLeastExtent)) return {anchor, std::max(1.0, 1e-3 * std::abs(anchor)), 0, 2};
-  // The anchor is node k; the step is the smallest that still reaches both ends.
-  const int k = std::clamp(static_cast<int>(std::lround((anchor - low) / (high - low) * (nodes - 1))),
-                           anchor > low ? 1 : 0, anchor < high ? nodes - 2 : nodes - 1);
-  const double below = k > 0 ? (anchor - low) / k : 0, above = k < nodes - 1 ? (high - anchor) / (nodes - 1 - k) : 0;
-  return {anchor, std::max(below, above), k, nodes};
-}
-
-Range TransferLookup::Axis::around(const Range& values) const {
-  const auto place = [&](double steps) {
-    return static_cast<float>(node(static_cast<int>(std::clamp<double>(steps + anchorNode, 0, nodes - 1))));
-  };
-  Range nodeRange{place(std::floor((values.min - anchor) / step)), place(std::ceil((values.max - anchor) / step))};
-  // Rounding to float must not narrow it.
-  nodeRange.include(Range{std::min(nodeRange.min, values.min), std::max(nodeRange.max, values.max)});
-  return nodeRange;
-}
-
 TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& transfer, const SamplingOptions& sampling,
-                               const Bricks& volume)
+                               const Bricks& volume, VoxelFormat format)
     : transfer_(bounded(transfer, sampling.spacing)),
-      mode_(transfer.is2d()                                    ? 2
-            : sampling.quadrature == Quadrature::preintegrated ? 0
-                                                               : 1) {
-  // An inner anchor needs a node on either side.
-  const auto nodes = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(sampling.tableSize, 3))));
-  value_ = makeAxis(volume.value, volume.background, nodes);
-  if (mode_ == 2) gradient_ = makeAxis(volume.gradient, 0, nodes);
-  std::vector<glm::vec4> entries;
-  int rows = 1;
-  if (mode_ == 0) {
-    const Range covered{static_cast<float>(-value_.anchorNode),
-                        static_cast<float>(value_.nodes - 1 - value_.anchorNode)};
-    entries = preintegrate(inSteps(transfer_, value_.anchor, value_.step), covered, value_.nodes,
-                           sampling.spacing / sampling.segments);
-    rows = value_.nodes;
-  } else {
-    rows = gradient_.nodes;
-    for (int j = 0; j < rows; ++j)
-      for (int i = 0; i < value_.nodes; ++i) {
-        const Medium medium = transfer_(value_.node(i), gradient_.node(j));
-        entries.emplace_back(glm::vec3(medium.sigma_s()), static_cast<float>(medium.sigma_t));
-      }
+      scale_(texelScale(volume, format)),
+      background_(volume.background),
+      emptyRounding_(format == VoxelFormat::half || format == VoxelFormat::float32 ? kFloatRounding
+                                                                                   : 2 * kReadRounding),
+      mode_((transfer.is2d() ? 2 : 0) + (sampling.quadrature == Quadrature::midpoint ? 1 : 0)) {
+  checkPoints(gl, transfer_);
+  const std::vector<AxisStretch> values = axisStretches(transfer_.values());
+  const std::vector<glm::vec2> valueEnds = endsInTexels(values, [&](double value) { return scale_.toTexel(value); });
+  valueSteps_ = bisections(values);
+  if (!transfer_.is2d()) {
+    const StretchTexels texels = texelsOf1d(transfer_, values, valueEnds, 1 << valueSteps_);
+    texture_ = texels.upload(gl);
+    GLint vectors = 0;
+    gl.GetIntegerv(GL_MAX_FRAGMENT_UNIFORM_VECTORS, &vectors);
+    if (3 * static_cast<GLint>(values.size()) + kOtherUniforms <= vectors)
+      for (std::size_t i = 0; i < values.size(); ++i)
+        for (std::size_t row = 0; row < 3; ++row) uniforms_.push_back(texels.at(i, row));
+    return;
   }
-  texture_ = makeTexture2d(gl, GL_RGBA32F, value_.nodes, rows, GL_LINEAR);
-  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  gl.TextureSubImage2D(texture_.name(), 0, 0, 0, value_.nodes, rows, GL_RGBA, GL_FLOAT, entries.data());
+  const std::vector<AxisStretch> gradients = axisStretches(transfer_.gradients());
+  const std::vector<glm::vec2> gradientEnds = endsInTexels(gradients, [](double gradient) { return gradient; });
+  gradientSteps_ = bisections(gradients);
+  texture_ = texelsOf2d(transfer_, values, valueEnds, gradients, gradientEnds, 1 << valueSteps_, 1 << gradientSteps_)
+                 .upload(gl);
+}
+
+// What values of a range may be read as. Empty space is read as what it is.
+Range TransferLookup::widened(const Range& values) const {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const auto slack = [&](double value) {
+    return scale_.rounding + 2 * kReadRounding * std::abs(value - scale_.offset);
+  };
+  Range range = values;
+  if (values.min != background_)
+    range.min = std::nextafter(static_cast<float>(values.min - slack(values.min)), -kInfinity);
+  if (values.max != background_)
+    range.max = std::nextafter(static_cast<float>(values.max + slack(values.max)), kInfinity);
+  return range;
 }
 
 bool TransferLookup::isVisible(const Range& value, const Range& gradient) const {
   if (value.empty()) return false;
-  Range values = value_.around(value);
-  // At a step the table holds the mean of both sides, but a range that begins there has only the upper one.
-  const auto [step, behind] = std::equal_range(transfer_.values().begin(), transfer_.values().end(), values.min);
-  if (behind - step > 1) values.min = std::nextafter(values.min, -std::numeric_limits<float>::infinity());
-  return !transfer_.isTransparent(values, mode_ == 2 ? gradient_.around(gradient) : Range{0, 0});
+  Range gradients{0, 0};
+  if (transfer_.is2d()) {
+    // Half-floats, the coarsest that hold gradients, are off by 2^-11 of a value.
+    const auto slack = static_cast<float>(scale_.rounding > 0 ? 0x1p-10 : 0x1p-20);
+    gradients = {gradient.min * (1 - slack), gradient.max * (1 + slack)};
+  }
+  return !transfer_.isTransparent(widened(value), gradients);
+}
+
+void TransferLookup::setConstants(ShaderConstants& constants) const {
+  constants["kQuadrature"] = mode_;
+  constants["kUniformStretches"] = static_cast<int>(uniforms_.size() / 3);
+  constants["kValueSteps"] = valueSteps_;
+  constants["kGradientSteps"] = gradientSteps_;
 }
 
 void TransferLookup::setUniforms(GlProgram& program, const BrickAtlas& atlas) const {
-  // Texture coordinates of node i are (i + 1/2) / nodes.
-  const double perTexel = atlas.valueScale().scale / (value_.step * value_.nodes);
-  const double perGradient = 1 / (gradient_.step * gradient_.nodes);
-  program.set("transfer_map", glm::vec4(perTexel, perGradient, (value_.anchorNode + 0.5) / value_.nodes,
-                                        (gradient_.anchorNode + 0.5) / gradient_.nodes));
-  // Fixed point becomes float by a division or a product, and filters add weights up: some units in the last place.
-  const double empty = atlas.texelOf(static_cast<float>(value_.anchor));
-  program.set("empty_texel", glm::vec2(empty, std::abs(empty) * 0x1p-21));
+  const double empty = atlas.texelOf(background_);
+  program.set("empty_texel", glm::vec3(empty, std::abs(empty) * emptyRounding_, scale_.toTexel(background_)));
+  if (uniforms_.empty()) return;
+  program.set("stretches", uniforms_);
+  if (uniforms_.size() / 3 > kComparedStretches) return;
+  // No value, clamped to kFar as they are, is above what fills the last four up.
+  std::vector<glm::vec4> ends(6, glm::vec4(2 * static_cast<float>(kFar)));
+  for (std::size_t i = 0; 3 * i + 3 < uniforms_.size(); ++i) ends[i / 4][static_cast<int>(i % 4)] = uniforms_[3 * i].g;
+  program.set("few_ends", ends);
 }
 
 }  // namespace umbrick

@@ -1,42 +1,41 @@
-// The transfer function as the texture that shaders look it up in, and what can be seen through that texture.
+// The transfer function as the texture that shaders integrate it from, and what can be seen through it.
 #pragma once
 #include "umbrick/atlas/brick_atlas.h"
 #include "umbrick/brick/bricks.h"
 #include "umbrick/gl/objects.h"
 #include "umbrick/gl/program.h"
+#include "umbrick/optics/transfer_stretches.h"
 #include "umbrick/scene/scene.h"
 
 namespace umbrick {
 
 class TransferLookup {
  public:
-  /// Nodes stand at equal distances over the volume's values, one of them exactly at the background, so that empty
-  /// space stays as transparent as the function says. There are sampling.tableSize along an axis or more, a power of
-  /// two: then a node's texture coordinate is a number that single precision has. @throw GlError
+  /// @param format  of the atlas's texels
+  /// @throw InvalidArgument  a function of more control points than the driver's textures have texels
+  /// @throw GlError
   TransferLookup(const GlFunctions& gl, const TransferFunction& transfer, const SamplingOptions& sampling,
-                 const Bricks& volume);
+                 const Bricks& volume, VoxelFormat format);
 
-  /// False when no lookup with values (and gradient magnitudes) in these ranges can give anything but 0.
+  /// False when no value (and gradient magnitude) in these ranges, nor what rounding and the format of the texels may
+  /// make of one, gives anything but 0.
   bool isVisible(const Range& value, const Range& gradient) const;
-  /// kQuadrature of shade/medium.glsl.
-  int shaderMode() const { return mode_; }
+  /// Adds kQuadrature, kUniformStretches, kValueSteps and kGradientSteps of shade/medium.glsl.
+  void setConstants(ShaderConstants& constants) const;
   /// Sets what medium.glsl needs to look up the atlas's texels.
   void setUniforms(GlProgram& program, const BrickAtlas& atlas) const;
   GLuint texture() const { return texture_.name(); }
 
  private:
-  // Node i stands at anchor + (i - anchorNode) step: counted from the anchor, which rounding then cannot move.
-  struct Axis {
-    double anchor = 0, step = 1;
-    int anchorNode = 0, nodes = 1;
-    double node(int i) const { return anchor + (i - anchorNode) * step; }
-    Range around(const Range& values) const;  // from the node at or below to the node at or above
-  };
-  static Axis makeAxis(const Range& values, double anchor, int nodes);
+  Range widened(const Range& values) const;
 
   TransferFunction transfer_;
+  TexelScale scale_;
+  float background_;
+  double emptyRounding_;  // share of empty space's texel that it may be read off by
   int mode_;
-  Axis value_, gradient_;
+  int valueSteps_ = 0, gradientSteps_ = 0;  // of a bisection among the stretches of each axis
+  std::vector<glm::vec4> uniforms_;         // rows 0 to 2 of the texture by column, where these are not too many
   GlTexture texture_;
 };
 

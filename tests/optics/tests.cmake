@@ -1,1 +1,1 @@
-umbrick_tests(optics directions_test.cpp medium_test.cpp transfer_function_test.cpp transfer_json_test.cpp transfer_table_test.cpp)
+umbrick_tests(optics directions_test.cpp medium_test.cpp transfer_function_test.cpp transfer_json_test.cpp transfer_stretches_test.cpp)

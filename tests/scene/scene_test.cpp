@@ -51,7 +51,7 @@ Scene randomScene(std::mt19937& random) {
   scene.lights = {{LightFrame::view, ConeLight{{number(-0.1, 0.1), 0.05, 1}, number(0, 1.3), vector(0, 7)}},
                   {LightFrame::world, ConeLight{vector(-1, 1), number(0, 1.5), vector(0, 1)}},
                   {LightFrame::world, ListedLight{{{vector(-1, 1), number(0, 1), vector(0, 1)}, {vector(-1, 1)}}}}};
-  scene.sampling = {number(1e-4, 5), false, Quadrature::midpoint, 5, 16, number(0, 0.1), 1024};
+  scene.sampling = {number(1e-4, 5), false, Quadrature::midpoint, 5, 16, number(0, 0.1)};
   scene.occlusion = {number(0, 1.57), 5, 2, 2, false, 16};
   scene.clipPlanes = {ClipPlane(vector(-1, 1), number(-9, 9)), ClipPlane(vector(-1, 1), number(-9, 9))};
   scene.clipBox = Box{vector(-9, -1), vector(0, 9)};
@@ -244,8 +244,6 @@ TEST_CASE("Every field of a scene has its range, however the scene was made", "[
       {"sampling.segments", [](Scene& s) { s.sampling.segments = 9; }},
       {"sampling.bits", [](Scene& s) { s.sampling.bits = 24; }},
       {"sampling.saturation", [](Scene& s) { s.sampling.saturation = 1; }},
-      {"sampling.tableSize", [](Scene& s) { s.sampling.tableSize = 1; }},
-      {"sampling.tableSize", [](Scene& s) { s.sampling.tableSize = 4097; }},
       {"occlusion.theta", [](Scene& s) { s.occlusion.aperture = std::numbers::pi / 2; }},
       {"occlusion.theta", [](Scene& s) { s.occlusion.aperture = -1e-9; }},
       {"occlusion.footprint", [](Scene& s) { s.occlusion.footprint = 17; }},
@@ -278,4 +276,11 @@ TEST_CASE("The bundled scenes are valid", "[scene]") {
   const Scene head = readScene(fs::path(UMBRICK_ASSETS) / "scenes" / "head.json");
   CHECK(head.model == Model::cone);
   CHECK(head.transfer == loadTransferFunction("ct-head"));
+}
+
+// Pictures of earlier versions have it in their headers.
+TEST_CASE("The size of a table that there is no more is read and means nothing", "[scene]") {
+  const Scene scene = parseScene(R"({"sampling": {"spacing": 0.25, "tableSize": 512}})", "old.json");
+  CHECK(scene.sampling.spacing == 0.25);
+  CHECK(printScene(scene).find("tableSize") == std::string::npos);
 }

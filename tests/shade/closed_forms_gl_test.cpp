@@ -29,7 +29,6 @@ TEST_CASE("A homogeneous sphere has the opacity of its chords, as slices", "[sha
         perspectiveCamera(centre + glm::dvec3(-30, 25, 35), centre, 0.5, 24),
         perspectiveCamera(centre + glm::dvec3(2, -1, 3), centre + glm::dvec3(9, 5, 1), 1.4, 24)}) {
     Scene scene = plainScene(transfer, camera, d);
-    scene.sampling.tableSize = 1024;
     const Picture picture = renderGrid(*context, grid, scene);
     double worst = 0;
     for (int y = 0; y < camera.height; ++y)
@@ -66,7 +65,6 @@ TEST_CASE("Two slabs blend in order, as slices of any spacing", "[shade][gl]") {
     for (const double d : {0.3, 1.0, 2.6}) {
       Scene scene = plainScene(slabs.transfer, orthographicCamera({12, 9, above ? 60 : -50}, {12, 12, 12}, 8, 16), d);
       scene.clipBox = Box{glm::dvec3(1), glm::dvec3(23)};
-      scene.sampling.tableSize = 1024;
       const Picture picture = renderGrid(*context, grid, scene);
       const double stretch = 1 / std::abs(cameraFrame(scene.camera).forward.z);
       const double bins = 24.0 / 1023 * 4 * 0.4 * stretch;  // four edges, each displaced by a bin at most

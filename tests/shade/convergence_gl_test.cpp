@@ -30,7 +30,6 @@ TEST_CASE("Emission converges to the reference at second order in the slice dist
       Scene scene = smoothScene(Model::emission, 32);
       if (parallel) scene.camera = orthographicCamera(scene.camera.eye, scene.camera.lookAt, 22, 32);
       scene.sampling.quadrature = quadrature;
-      scene.sampling.tableSize = 512;
       const Image exact = renderReference(grid, scene).colour;
       std::vector<double> steps, errors;
       // In a medium that ends nowhere a single phase of the slices can be better than the rule: three of them are not.
@@ -58,7 +57,6 @@ TEST_CASE("Pictures of slices converge with the voxel size and the pixel size at
   if (!context) return;
   Scene scene = smoothScene(Model::emission, 16);
   scene.sampling.spacing = 0.1;
-  scene.sampling.tableSize = 512;
   std::vector<double> sizes{3, 1.5, 1}, errors;
   const Image exact = renderReference(smoothGrid(0.25), scene).colour;
   for (const double h : sizes)

@@ -105,7 +105,6 @@ TEST_CASE("A thin shell of a steep field is seen by pre-integration at any phase
   for (const double phase : {0.0, 0.3, 1.1, 1.9}) {
     const Camera camera = orthographicCamera({16, 16, 60 + phase}, {16, 16, 0}, 20, 16);
     Scene scene = plainScene(transfer, camera, 2.5);
-    scene.sampling.tableSize = 1024;
     const FieldBricks volume = fieldFor(
         scene, [](const glm::ivec3& i) { return i.z / 40.0; }, kSmoothBlock);
     const Picture picture = renderPicture(*context, volume, scene);

@@ -55,7 +55,6 @@ TEST_CASE("Light by ordinates converges to that of the same directions", "[shade
       scene.method = Method::ordinates;
       scene.occlusion.aperture = theta;
       scene.occlusion.directions = directions;
-      scene.sampling.tableSize = 512;
       const Image exact = exactOrdinates(grid, scene, 1e-4);
       std::vector<double> steps, errors;
       for (const double d : {2.0, 1.0, 0.5, 0.25}) {

@@ -177,7 +177,6 @@ TEST_CASE("Two slabs under one direction, as the light of each says", "[shade][g
     for (const double d : {0.3, 1.0}) {
       Scene scene = ordinatesScene(slabs.transfer, straightCamera(false, 60, 16), d, 0, 1);
       scene.camera.viewHeight = 8;
-      scene.sampling.tableSize = 1024;
       setLights(scene, {lightFrom(towards)});
       const Picture picture = renderGrid(*context, grid, scene);
       const double light = 1 / glm::normalize(towards).z, tauA = 0.4 * 3.3, tauB = 0.15 * 4.35;
@@ -341,8 +340,10 @@ TEST_CASE("A picture by ordinates does not depend on the ones before", "[shade][
   const auto context = testContext();
   if (!context) return;
   Scene scene = ordinatesScene(ramp({0.9, 0.5, 0.2}, 1.2), blobCameras()[0], 0.8, 1.2, 20);
-  scene.sampling.quadrature = Quadrature::midpoint;
-  const FieldBricks volume = fieldFor(scene, blobs, kBlock);
+  FieldOptions options;
+  options.interior = scene.bricks.interior;
+  options.apron = 2;  // for the widest of the views
+  const FieldBricks volume(blobs, kBlock, options);
   const Picture alone = renderPicture(*context, volume, scene, kLayers);
   SliceRenderer renderer(*context, volume, scene, kLayers);
   for (const Camera& between :

@@ -25,7 +25,13 @@ struct AtlasOptions {
 /// Texels to grid values: value = offset + texel * scale, where a texel is what a shader reads.
 struct TexelScale {
   double scale = 1, offset = 0;
+  double rounding = 0;  // largest |voxel - texel| that the format may cause, grid units; 0: the format is exact
+  double toTexel(double value) const { return (value - offset) / scale; }
 };
+
+/// How an atlas of this format stores the values of a volume. Whole numbers are stored as they are where they fit,
+/// other values are spread over the codes of a fixed-point format. 32-bit floats hold the distance from volume.anchor.
+TexelScale texelScale(const Bricks& volume, VoxelFormat format);
 
 /// A pool of slots, all in textures of one size, filled as bricks are required. When every brick fits, each is uploaded
 /// once; else the caller releases bricks that the sweep has left behind. Bricks of one value share a slot.

@@ -46,18 +46,24 @@ class Bricks {
 
   BrickLayout layout;
   glm::dmat4 indexToWorld{1};  // affine
-  // Active voxels, and others that differ from the background, grown by one: the medium is defined in [domain.min,
-  // domain.max].
+  // Active voxels, and others that differ from the background, grown by one.
   IndexBox domain;
   Range value;     // over all voxels, the background included
   Range gradient;  // {0, 0} without gradients
   float background = 0;
+  // A value near which most voxels lie that are not background, where they lie together far from 0 (pressures around
+  // 101 325, say); else 0. Single precision has more digits for distances from it than for the values themselves.
+  float anchor = 0;
   bool hasGradients = false;
   VoxelFormat exactFormat = VoxelFormat::float32;
   std::uint64_t nonFiniteVoxels = 0;  // active NaN or infinite voxels, read as background
-  // Of the cells that meet the domain, those that hold anything but background in interior or apron, or a gradient;
-  // ascending in z, then y, then x.
+  // The cells that hold anything but background in interior or apron, or a gradient; ascending in z, then y, then x.
+  // Those beyond the domain are among them whose aprons reach into it: slabs with their middle there may do so, too.
   std::vector<Brick> bricks;
+
+  /// The box from which a slab or a gradient may reach into the domain: the domain grown by the apron, and by one more
+  /// with gradients.
+  IndexBox reach() const;
 
   /// Voxels of the cell whose first owned voxel is `origin` (any lattice cell, also one not in `bricks`), x fastest,
   /// edge() voxels along each axis beginning at origin - apron. Safe to call from several threads.
@@ -67,7 +73,7 @@ class Bricks {
   virtual void read(const glm::ivec3& origin, std::span<float> values, std::span<float> gradients = {}) const = 0;
 };
 
-/// Cells of the lattice inside the domain that are not in `bricks`: what must be drawn when the background is visible.
+/// Cells of the lattice that meet reach() and are not in `bricks`: what must be drawn when the background is visible.
 /// @throw InvalidArgument  more than `limit`: says how many and names the background value
 std::vector<Brick> backgroundBricks(const Bricks& bricks, std::size_t limit = 1u << 20);
 

@@ -61,7 +61,6 @@ struct SamplingOptions {
   /// in many slices is made of: use 32 bits there.
   int bits = 32;
   double saturation = 1e-3;  // pixels with less transmittance than this are shaded no more; 0: never
-  int tableSize = 256;       // entries of the transfer table along an axis, 2 to 4096; a power of two, or the next one
   bool operator==(const SamplingOptions&) const = default;
 };
 
@@ -124,8 +123,8 @@ struct Scene {
 ///                "directions"   list [{direction, weight, colour}, ...]
 ///                "environment"  file (EXR), up, front, scale; up and front are [0, 1, 0] and [0, 0, 1] in the view,
 ///                               [0, 0, 1] and [0, -1, 0] in the world, the same at azimuth 0 and elevation 0
-///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), segments, bits, saturation,
-///              tableSize
+///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), segments, bits, saturation
+///              (tableSize, of scenes made by earlier versions, is read and means nothing)
 ///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits, directions, scale
 ///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]
 ///   bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16", "half", "float32"), budgetMiB

@@ -7,7 +7,7 @@
 
 namespace umbrick {
 
-/// Apron voxels that slabs of a resolved scene read beyond a brick.
+/// Apron voxels that slabs of a resolved scene read beyond a brick: half a slab along the view rays.
 /// @throw InvalidArgument  a spacing of so many voxels that the apron would be wider than a brick
 int requiredApron(const Scene& resolved, const glm::dmat4& indexToWorld);
 

@@ -69,6 +69,11 @@ struct Picture {
   RenderStats stats;
 };
 
+/// A slab is cut into segments along the view ray. Over a segment the value runs linearly, and the transfer function is
+/// integrated stretch by stretch between its control points: opacity exactly, colour with what is behind dimmed by what
+/// is in front (Engel, Kraus, Ertl 2001, doi:10.1145/383507.383515, without their table). So the picture depends
+/// neither on where values lie nor on how far others lie apart, and no peak of the function is missed.
+///
 /// For every slab with mean medium (sigma_s, sigma_t), eye path d_e and slice distance d, front to back, from O = 1, C
 /// = A = 0:
 ///   alpha = 1 - exp(-sigma_t d_e)

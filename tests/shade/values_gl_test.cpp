@@ -1,0 +1,141 @@
+// Pictures must not depend on where values lie, how far apart, how far others lie from them, and how fine slices are.
+#include "shade/hard_case.h"
+
+using namespace umbrick;
+
+namespace {
+
+// Blobs with values from `offset` to `offset` + `range`, and one voxel far from all others where it is asked for.
+ScalarGrid blobGrid(double offset, double range, double background, bool outlier = false) {
+  return makeFilled(
+      glm::ivec3(24), glm::ivec3(0),
+      [&](const glm::ivec3& i) {
+        // In front of nothing and behind nothing: a corner.
+        if (outlier && i == glm::ivec3(22, 1, 1)) return -9999.0;
+        return offset + range * smallBlobs(i);
+      },
+      static_cast<float>(background));
+}
+
+// The same function of the place in the range, transparent where empty space is.
+TransferFunction rampOf(double offset, double range) {
+  return TransferFunction({{offset + 0.1 * range, {kAlbedo, 0}},
+                           {offset + 0.4 * range, {kAlbedo, 0.05}},
+                           {offset + 0.6 * range, {{0.3, 0.5, 0.9}, 0.5}},
+                           {offset + range, {{0.9, 0.9, 0.9}, 1}}});
+}
+
+double errorOf(const GlContext& context, const ScalarGrid& grid, const Scene& scene) {
+  return rmsDifference(renderGrid(context, grid, scene).colour, renderReference(grid, scene).colour);
+}
+
+}  // namespace
+
+TEST_CASE("The error does not depend on offset, range, background and outliers", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const Scene plain = plainScene(rampOf(0, 1), smallCameras()[1], 0.5);
+  const double base = errorOf(*context, blobGrid(0, 1, 0), plain);
+  CHECK(base < 2e-3);
+  for (const double offset : {0.0, 290.0, 101325.0, 1e6})
+    for (const double range : {1e-3, 1.0, 100.0, 1e6})
+      for (const bool farBackground : {false, true})
+        for (const bool outlier : {false, true}) {
+          // Voxels are single precision: what they cannot tell apart nobody can render.
+          if (range < offset * 0x1p-20) continue;
+          INFO("offset " << offset << ", range " << range << ", background 0: " << farBackground << ", outlier "
+                         << outlier);
+          const double background = farBackground ? 0 : offset;
+          if (farBackground && offset > 0 && offset < range) continue;  // then 0 is one of the values
+          const ScalarGrid grid = blobGrid(offset, range, background, outlier);
+          Scene scene = plain;
+          scene.transfer = rampOf(offset, range);
+          // Twice the error of the plain case, and that of voxels rounded to 24 bits, whose steps an interpolation
+          // hits differently: of a slope of sigma_t of 2.25 over the range along a ray of some 20 units.
+          const double steps = std::abs(offset) * 0x1p-24 / range;
+          CHECK(errorOf(*context, grid, scene) < 2 * base + 2.25 * 20 * steps);
+        }
+}
+
+// Labels are whole numbers, and a function holds "at a step and above" what its second side says.
+TEST_CASE("Values exactly on a step belong to its upper side in every format", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = makeFilled(glm::ivec3(20), glm::ivec3(0), [](const glm::ivec3& i) {
+    return i.x < 4 || i.x > 15 || i.y < 4 || i.y > 15 || i.z < 4 || i.z > 15 ? 0.0 : i.x < 10 ? 2.0 : 3.0;
+  });
+  const TransferFunction labels({{2, {glm::dvec3(1, 0, 0), 0}},
+                                 {2, {glm::dvec3(1, 0, 0), 0.1}},
+                                 {3, {glm::dvec3(1, 0, 0), 0.1}},
+                                 {3, {glm::dvec3(0, 1, 0), 0.4}}});
+  // Along the faces, where rays through the middle of a label meet nothing but that label and empty space.
+  Scene scene = plainScene(labels, orthographicCamera({9.5, 9.5, 60}, glm::dvec3(9.5), 20, 20), 0.5);
+  scene.camera.up = {0, 1, 0};
+  const Image exact = renderReference(grid, scene).colour;
+  for (const std::string format : {"unorm8", "unorm16", "half", "float32"})
+    for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint}) {
+      INFO(format << ", midpoint " << (quadrature == Quadrature::midpoint));
+      scene.bricks.format = format;
+      scene.sampling.quadrature = quadrature;
+      const Image found = renderGrid(*context, grid, scene).colour;
+      for (const int x : {6, 7, 12, 13})
+        for (int channel = 0; channel < 4; ++channel) {
+          INFO("pixel " << x << ", channel " << channel);
+          // The midpoint rule meets a label up to half a slab too soon or late at either end: an optical depth of 0.05
+          // and 0.2 in front of others.
+          CHECK(found.at(x, 10)[channel] == Approx(exact.at(x, 10)[channel]).margin(0.04));
+        }
+      CHECK(found.at(6, 10)[1] < 1e-6);  // no share of the label beyond the step
+    }
+}
+
+TEST_CASE("A peak of any width keeps its optical depth, however fine the slices", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = blobGrid(0, 1, 0);
+  for (const double halfWidth : {1e-2, 1e-3, 1e-5}) {
+    // The same optical depth along a given slope of values.
+    const double most = 0.05 / halfWidth;
+    Scene scene = plainScene(
+        TransferFunction({{0.5 - halfWidth, {kAlbedo, 0}}, {0.5, {kAlbedo, most}}, {0.5 + halfWidth, {kAlbedo, 0}}}),
+        smallCameras()[1], 0.25);
+    const Image exact = renderReference(grid, scene).colour;
+    CHECK(largestAlpha(exact) > 0.3);
+    for (const auto& [spacing, segments] : {std::pair(6.0, 8), std::pair(1.0, 2), std::pair(0.5, 1), std::pair(0.25, 1),
+                                            std::pair(0.25, 4), std::pair(0.25, 8)}) {
+      scene.sampling.spacing = spacing;
+      scene.sampling.segments = segments;
+      const double error = rmsDifference(renderGrid(*context, grid, scene).colour, exact);
+      INFO("half-width " << halfWidth << ", spacing " << spacing << " in " << segments << ", error " << error);
+      // A ray's value is taken as linear over a segment. Where it turns close to the peak, the whole peak is gained or
+      // lost; that happens to a share of the rays which falls with the length of segments, so the root mean square
+      // falls with its root or, where peaks are as wide as what a segment spans, faster.
+      CHECK(error < 0.07 * std::sqrt(spacing / segments));
+    }
+  }
+}
+
+TEST_CASE("A 2D function is exact between its lattice lines, steps and narrow peaks included", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = blobGrid(1000, 1, 1000);
+  const Medium none{kAlbedo, 0}, thin{{0.2, 0.9, 0.4}, 0.3}, dense{kAlbedo, 60};
+  // Nothing below 1000.2; a thin medium up to a peak of half-width 0.001 at 1000.6, denser at larger gradients.
+  const std::vector<double> values{1000.2, 1000.2, 1000.599, 1000.6, 1000.601};
+  const std::vector<double> gradients{0, 0.1, 0.3};
+  const std::vector<Medium> media{none,  thin, thin, thin, thin, none,  thin, thin,
+                                  dense, thin, none, thin, thin, dense, thin};
+  Scene scene = plainScene(TransferFunction(values, gradients, media), smallCameras()[1], 0.5);
+  const Image exact = renderReference(grid, scene).colour;
+  CHECK(largestAlpha(exact) > 0.3);
+  double coarser = 1;
+  for (const auto& [spacing, segments] : {std::pair(2.0, 4), std::pair(0.5, 2), std::pair(0.25, 4)}) {
+    scene.sampling.spacing = spacing;
+    scene.sampling.segments = segments;
+    const double error = rmsDifference(renderGrid(*context, grid, scene).colour, exact);
+    INFO("spacing " << spacing << " in " << segments << ", error " << error);
+    CHECK(error < coarser);
+    coarser = error;
+  }
+  CHECK(coarser < 3e-3);
+}
