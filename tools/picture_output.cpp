@@ -1,5 +1,6 @@
 #include "picture_output.h"
 
+#include <algorithm>
 #include <iostream>
 
 #include "command.h"
@@ -9,6 +10,18 @@
 namespace umbrick::tools {
 namespace {
 bool isExr(const std::filesystem::path& path) { return path.extension() == ".exr"; }
+
+// Says how many colours a file of half-floats cuts off.
+void tellClipped(const std::filesystem::path& path, const std::vector<ImageLayer>& layers) {
+  constexpr float kMost = 65504;
+  if (layers.empty()) return;
+  const std::vector<float>& values = layers.front().image.pixels;
+  const auto clipped = std::count_if(values.begin(), values.end(), [](float value) { return value > kMost; });
+  if (clipped > 0)
+    std::cerr << path.string() << ": " << clipped
+              << " values are above 65504, the most that half-floats hold, and are cut off there; --exr-pixel float "
+                 "keeps them\n";
+}
 }  // namespace
 
 std::shared_ptr<PictureOutput> addPictureOutput(CLI::App& command, const std::string& exrPixel,
@@ -70,6 +83,7 @@ void writeOutputs(const PictureOutput& output, const std::vector<ImageLayer>& la
       ExrOptions options;
       options.pixel = output.exrPixel == "half" ? ExrPixel::half : ExrPixel::float32;
       options.metadata = metadata;
+      if (options.pixel == ExrPixel::half) tellClipped(path, layers);
       writeExr(path, layers, options);
     } else {
       PngOptions options;

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 
+#include "check/border_check.h"
 #include "check/brick_check.h"
 #include "check/picture_check.h"
 #include "check/result.h"
@@ -79,13 +80,20 @@ class Checker {
   std::vector<InvariantResult> run() {
     cutAll();
     // Views x (edges in slices, two models of about 13 pictures) and the bricks themselves.
-    steps_ = static_cast<double>(bricks_.size() + 1 + views_.size() * (bricks_.size() + 28));
+    steps_ = static_cast<double>(bricks_.size() + 2 + views_.size() * (bricks_.size() + 28));
     checkBricks();
     precision_ = samplerPrecision(context_, *bricks_.begin()->second, scene_.bricks.format);
     chooseReference();
     for (const CheckView& view : views_) checkSlicesOf(view);
     for (const CheckView& view : views_)
       for (const Model model : {Model::emission, Model::cone}) checkPicturesOf(view, model);
+    step("pieces of the volume and their borders");
+    checkBorder(
+        context_, grid_, scene_,
+        [&](const ScalarGrid& piece, const BrickOptions& how) {
+          return options_.cut ? options_.cut(piece, how) : brickGrid(piece, how);
+        },
+        border_);
     return collect();
   }
 
@@ -376,6 +384,7 @@ class Checker {
     add(cone_.skipped, "");
     add(cone_.jumps, "not measured: no parallel view along the faces");
     for (ModelResults* model : {&emission_, &cone_}) add(model->order, "");
+    add(border_, "not measured: the background is visible, or no leaf of the grid");
     return results;
   }
 
@@ -402,6 +411,9 @@ class Checker {
   InvariantResult values_ = makeResult(3, "interpolated values equal BoxSampler's",
                                        "displacement of samples that explains the difference, voxels",
                                        "rounding of texture coordinates, precision of the sampler");
+  InvariantResult border_ = makeResult(7, "the border of pieces of the volume is whole",
+                                       "largest difference of colour from the piece with room around it",
+                                       "rounding of texture coordinates and sums");
   InvariantResult ranges_ =
       makeResult(4, "ranges hold all voxels of a brick", "voxels outside their brick's range", "exact: none");
 };

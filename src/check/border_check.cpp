@@ -1,0 +1,106 @@
+#include "check/border_check.h"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "check/result.h"
+#include "umbrick/scene/resolve.h"
+#include "umbrick/shade/prepare.h"
+#include "umbrick/shade/slice_renderer.h"
+
+namespace umbrick {
+namespace {
+
+using openvdb::Coord;
+using openvdb::CoordBBox;
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+// The leaf in the middle of those through which something is seen, or nothing.
+const Leaf* visibleLeaf(const openvdb::FloatGrid& grid, const TransferFunction& transfer) {
+  std::vector<const Leaf*> leaves;
+  grid.tree().getNodes(leaves);
+  std::erase_if(leaves, [&](const Leaf* leaf) {
+    Range range;
+    for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
+      if (std::isfinite(*voxel)) range.include(*voxel);
+    return range.empty() || transfer.isTransparent(range, {0, 0});
+  });
+  return leaves.empty() ? nullptr : leaves[leaves.size() / 2];
+}
+
+// The voxels of a box by themselves, with room around them where it is asked for.
+ScalarGrid piece(const ScalarGrid& grid, const CoordBBox& box, bool roomAround) {
+  const auto copy = openvdb::FloatGrid::create(grid.grid->background());
+  copy->setTransform(grid.grid->transform().copy());
+  const auto from = grid.grid->getConstAccessor();
+  auto to = copy->getAccessor();
+  for (auto voxel = box.begin(); voxel; ++voxel) {
+    float value = 0;
+    if (from.probeValue(*voxel, value))
+      to.setValueOn(*voxel, value);
+    else if (value != copy->background())
+      to.setValueOff(*voxel, value);
+  }
+  if (roomAround) {
+    to.setValueOn(box.min().offsetBy(-64), copy->background());
+    to.setValueOn(box.max().offsetBy(64), copy->background());
+  }
+  ScalarGrid result = grid;
+  result.grid = copy;
+  return result;
+}
+
+}  // namespace
+
+void checkBorder(const GlContext& context, const ScalarGrid& grid, const Scene& scene,
+                 const std::function<std::unique_ptr<Bricks>(const ScalarGrid&, const BrickOptions&)>& cut,
+                 InvariantResult& result) {
+  const float background = std::isfinite(grid.grid->background()) ? grid.grid->background() : 0;
+  const Leaf* leaf = visibleLeaf(*grid.grid, *scene.transfer);
+  if (!leaf || !scene.transfer->isTransparent({background, background}, {0, 0})) return;
+  for (int residue = 0; residue < 8; ++residue) {
+    const Coord first = leaf->origin().offsetBy(-8 - residue), last = leaf->origin().offsetBy(7 + residue);
+    const CoordBBox box(first, last);
+    const ScalarGrid alone = piece(grid, box, false);
+    if (alone.activeBox().empty()) continue;
+    Scene wide = scene;
+    wide.clipPlanes.clear();
+    wide.clipBox.reset();
+    wide.model = Model::emission;
+    applyQuality(std::array{Quality::draft, Quality::normal, Quality::high}[static_cast<std::size_t>(residue % 3)],
+                 wide);
+    wide.bricks.interior = 0;
+    wide.camera = Camera{};
+    wide.camera.width = wide.camera.height = 64;
+    wide.camera.projection = residue % 2 == 0 ? Projection::orthographic : Projection::perspective;
+    // Around the piece, each time from somewhere else, so that each of its faces is in front or behind some time.
+    wide.orbit = Orbit{0.8 * residue, 0.9 - 0.25 * residue};
+    const std::string spacing = std::to_string(wide.sampling.spacing);
+    wide = resolveScene(wide, alone.worldBounds(), alone.indexToWorld());
+    BrickOptions options;
+    options.apron = requiredApron(wide, alone.indexToWorld());
+    options.interior = brickInterior(wide, alone.indexToWorld(), alone.worldBounds());
+    options.gradients = scene.transfer->is2d();
+    const auto draw = [&](const ScalarGrid& volume) {
+      const std::unique_ptr<Bricks> bricks = cut(volume, options);
+      return SliceRenderer(context, *bricks, wide).render().colour;
+    };
+    const Image found = draw(alone), whole = draw(piece(grid, box, true));
+    double largest = 0;
+    for (std::size_t i = 0; i < found.pixels.size(); ++i)
+      largest = std::max(largest, std::abs(static_cast<double>(found.pixels[i]) - whole.pixels[i]));
+    // The same samples, at other places of a texture.
+    constexpr double kRounding = 1e-4;
+    addMeasurement(result, largest, kRounding, found.pixels.size() / 4,
+                   "voxels " + std::to_string(first.x()) + ", " + std::to_string(first.y()) + ", " +
+                       std::to_string(first.z()) + " to " + std::to_string(last.x()) + ", " + std::to_string(last.y()) +
+                       ", " + std::to_string(last.z()) + ", slabs of " + spacing + " voxels");
+  }
+}
+
+}  // namespace umbrick
