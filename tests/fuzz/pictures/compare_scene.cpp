@@ -1,0 +1,245 @@
+#include "fuzz/pictures/compare_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <glm/mat3x3.hpp>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "fuzz/pictures/dice.h"
+#include "fuzz/pictures/same_scene.h"
+#include "fuzz/pictures/slab_picture.h"
+#include "umbrick/brick/brick_grid.h"
+#include "umbrick/core/error.h"
+#include "umbrick/core/stopwatch.h"
+#include "umbrick/reference/reference.h"
+#include "umbrick/scene/resolve.h"
+#include "umbrick/shade/prepare.h"
+#include "umbrick/shade/slice_renderer.h"
+
+namespace umbrick {
+namespace {
+
+// What the table of the transfer function may cost beside the slabs: a bin of 256 is 0.4 % of the range.
+constexpr double kFloor = 3e-3;
+// Two integrators that know no bricks, slabs of a sixteenth of a voxel: a ray that grazes what is solid meets it in one
+// of them, and kinks inside of a slab are cut straight.
+constexpr double kFineSlabs = 5e-3;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+PictureDistance distance(const Image& a, const Image& b) {
+  PictureDistance result;
+  if (a.pixels.size() != b.pixels.size()) return {kInfinity, kInfinity};
+  double sum = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    const double difference = std::abs(double(a.pixels[i]) - double(b.pixels[i]));
+    // A difference that is no number is the largest of all.
+    result.max = std::max(result.max, std::isfinite(difference) ? difference : kInfinity);
+    sum += std::isfinite(difference) ? difference * difference : kInfinity;
+  }
+  result.rms = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, a.pixels.size())));
+  return result;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+struct Rendered {
+  Image colour;
+  RenderStats stats;
+  IndexBox domain;
+};
+
+Rendered render(const GlContext& context, const ScalarGrid& grid, Scene scene, const RenderOptions& options = {}) {
+  const glm::dmat4 toWorld = grid.indexToWorld();
+  scene.bricks.interior = brickInterior(scene, toWorld, grid.worldBounds());
+  BrickOptions cut;
+  cut.interior = scene.bricks.interior;
+  cut.apron = requiredApron(scene, toWorld);
+  cut.gradients = scene.transfer->is2d();
+  const std::unique_ptr<Bricks> bricks = scene.bricks.bricked ? brickGrid(grid, cut) : unbrickedGrid(grid, cut);
+  Picture picture = SliceRenderer(context, *bricks, scene, options).render();
+  return {std::move(picture.colour), picture.stats, bricks->domain};
+}
+
+// Displaces all samples by what rounding may move them. The camera moves with the clip planes: those are cut per ray.
+Scene displaced(const Scene& scene, const glm::dmat4& toWorld, double voxels) {
+  Scene moved = scene;
+  const glm::dvec3 shift = glm::dmat3(toWorld) * glm::dvec3(voxels, 0.7 * voxels, -0.8 * voxels);
+  moved.camera.eye += shift;
+  moved.camera.lookAt += shift;
+  return moved;
+}
+
+class Comparer {
+ public:
+  Comparer(const GlContext& context, const RandomScene& random, const CompareOptions& options)
+      : context_(context),
+        grid_(random.grid),
+        scene_(random.scene),
+        options_(options),
+        toWorld_(grid_.indexToWorld()),
+        emission_(scene_.model == Model::emission) {}
+
+  SceneComparison compare() {
+    const Stopwatch watch;
+    if (attempt("base", [&] { base_ = render(context_, grid_, scene_); })) {
+      attempt("reference", [&] { compareWithReference(); });
+      attempt("rounding", [&] { measureRounding(); });
+      compareVariants();
+    }
+    result_.seconds = watch.elapsedMs() / 1000;
+    return std::move(result_);
+  }
+
+ private:
+  // What throws is a failure of its own.
+  template <class Action>
+  bool attempt(const std::string& what, const Action& action) {
+    try {
+      action();
+      return true;
+    } catch (const Error& error) {
+      result_.failures.push_back(what + ": " + error.what());
+      return false;
+    }
+  }
+
+  void require(const std::string& what, const PictureDistance& found, double limit) {
+    if (!(found.rms <= limit))
+      result_.failures.push_back(what + ": RMSE " + number(found.rms) + ", limit " + number(limit) + ", largest " +
+                                 number(found.max));
+  }
+
+  // Fixed point: each slab may be rounded by one and a half steps, see SamplingOptions.
+  double bitsAllowance(const Scene& scene, const Rendered& rendered) const {
+    return scene.sampling.bits == 16 ? static_cast<double>(rendered.stats.slices) * 1.5 * 0x1p-16 : 0;
+  }
+
+  void compareWithReference() {
+    ReferenceOptions reference;
+    reference.directions = 64;
+    reference.tolerance = emission_ ? 1e-4 : 2e-3;
+    const Image exact = renderReference(grid_, scene_, reference).colour;
+    double alpha = 0;
+    for (std::size_t i = 3; i < exact.pixels.size(); i += 4) alpha += exact.pixels[i];
+    result_.opacity = 4 * alpha / static_cast<double>(exact.pixels.size());
+    result_.render = distance(base_.colour, exact);
+    if (!emission_) {
+      result_.renderLimit = result_.fineLimit = result_.fineSlabsLimit = kInfinity;
+      require("base", result_.render, std::numeric_limits<double>::max());
+      return;
+    }
+    // Radiance is in units of L_a, where that is larger than 1.
+    const double brightest = std::max({1.0, scene_.ambient.r, scene_.ambient.g, scene_.ambient.b});
+    result_.slabs = distance(slabPicture(grid_, scene_, base_.domain), exact);
+    result_.renderLimit =
+        1.25 * result_.slabs.rms + brightest * (kFloor + scene_.sampling.saturation + bitsAllowance(scene_, base_));
+    require("base", result_.render, result_.renderLimit);
+    if (!options_.fine) return;
+    Scene fine = scene_;
+    fine.sampling.spacing = std::min(fine.sampling.spacing, 0.25 * shortestVoxelEdge(toWorld_));
+    fine.sampling.segments = 4;
+    fine.sampling.quadrature = Quadrature::preintegrated;
+    fine.sampling.bits = 32;
+    fine.sampling.tableSize = std::max(fine.sampling.tableSize, 256);
+    result_.fineSlabs = distance(slabPicture(grid_, fine, base_.domain), exact);
+    result_.fineSlabsLimit = brightest * kFineSlabs;
+    require("reference", result_.fineSlabs, result_.fineSlabsLimit);
+    const Rendered rendered = render(context_, grid_, fine);
+    result_.fineRender = distance(rendered.colour, exact);
+    result_.fineLimit = 1.25 * result_.fineSlabs.rms + brightest * (kFloor + scene_.sampling.saturation);
+    require("fine", result_.fineRender, result_.fineLimit);
+  }
+
+  // As the check of invariants has it: texture coordinates are rounded to some units in the last place of 24 bits.
+  void measureRounding() {
+    const double voxels = 16 * 0x1p-25 * (base_.stats.textureEdge + 64);
+    const PictureDistance moved =
+        distance(render(context_, grid_, displaced(scene_, toWorld_, voxels)).colour, base_.colour);
+    const double lastPlace = scene_.sampling.bits == 16 ? 0x1p-16 : 0x1p-24;
+    const double brightest = std::max({1.0, scene_.ambient.r, scene_.ambient.g, scene_.ambient.b});
+    rounding_ = 4 * moved.rms + brightest * 4 * static_cast<double>(base_.stats.slices + 16) * lastPlace;
+  }
+
+  void compareVariant(const std::string& name, double limit, const std::function<std::optional<Image>()>& picture) {
+    attempt(name, [&] {
+      const std::optional<Image> colour = picture();
+      if (!colour) return;
+      const PictureDistance from = distance(*colour, base_.colour);
+      result_.variants.push_back({name, from, limit});
+      require(name, from, limit);
+    });
+  }
+
+  void compareVariants() {
+    Scene wide = scene_;
+    wide.bricks.interior = kMostInterior;
+    std::vector<SameScene> same = sameScenes(grid_, scene_, requiredApron(wide, toWorld_), options_.seed);
+    Dice dice(options_.seed, 78);
+    while (static_cast<int>(same.size()) > std::max(0, options_.variants))
+      same.erase(same.begin() + dice.below(static_cast<int>(same.size())));
+    for (const SameScene& variant : same)
+      compareVariant(variant.name, rounding_ + saturation(),
+                     [&] { return render(context_, variant.grid, variant.scene).colour; });
+    RenderOptions reversed;
+    reversed.reverseBricks = true;
+    compareVariant("reversed", 0, [&] { return render(context_, grid_, scene_, reversed).colour; });
+    compareVariant("small budget", rounding_ + saturation(), [&] { return withSmallPool(); });
+    if (scene_.sampling.saturation > 0)
+      compareVariant("not saturated", rounding_ + saturation(), [&] {
+        Scene scene = scene_;
+        scene.sampling.saturation = 0;
+        return render(context_, grid_, scene).colour;
+      });
+  }
+
+  // Bricks decide how often saturated pixels are looked for, so that each picture leaves out as much.
+  double saturation() const {
+    double brightest = 1;
+    for (int c = 0; c < 3; ++c) {
+      brightest = std::max(brightest, scene_.ambient[c]);
+      if (scene_.background) brightest = std::max(brightest, (*scene_.background)[c]);
+    }
+    return brightest * scene_.sampling.saturation;
+  }
+
+  // The smallest pool that holds what one slice needs, by a few trials; none where there are few bricks.
+  std::optional<Image> withSmallPool() const {
+    if (base_.stats.uploadedBricks < 4) return std::nullopt;
+    for (double share = 1.0 / 8; share < 1; share *= 1.7) {
+      RenderOptions pool;
+      pool.budgetBytes = static_cast<std::uint64_t>(share * static_cast<double>(base_.stats.textureBytes));
+      try {
+        return render(context_, grid_, scene_, pool).colour;
+      } catch (const InvalidArgument&) {
+        // A slice needs more than this.
+      }
+    }
+    return std::nullopt;
+  }
+
+  const GlContext& context_;
+  const ScalarGrid& grid_;
+  const Scene& scene_;
+  const CompareOptions options_;
+  const glm::dmat4 toWorld_;
+  const bool emission_;
+  Rendered base_;
+  double rounding_ = 0;
+  SceneComparison result_;
+};
+
+}  // namespace
+
+SceneComparison compareScene(const GlContext& context, const RandomScene& random, const CompareOptions& options) {
+  return Comparer(context, random, options).compare();
+}
+
+}  // namespace umbrick

@@ -1,0 +1,56 @@
+// How far a random scene's pictures are from what they should be.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fuzz/pictures/random_scene.h"
+#include "umbrick/gl/context.h"
+
+namespace umbrick {
+
+/// Of two pictures, over all pixels and linear premultiplied R, G, B and A.
+struct PictureDistance {
+  double rms = 0, max = 0;
+};
+
+struct VariantDistance {
+  std::string name;
+  PictureDistance from;  // the scene's own picture
+  double limit = 0;      // of rms
+};
+
+struct SceneComparison {
+  PictureDistance render;  // the scene's picture from the reference
+  /// Emission: what its slabs alone make of the scene (slabPicture) from the reference, which is what the picture may
+  /// be off by; 0 else.
+  PictureDistance slabs;
+  /// The same of slices a quarter of a voxel apart in four segments; emission only.
+  PictureDistance fineRender, fineSlabs;
+  double renderLimit = 0, fineLimit = 0, fineSlabsLimit = 0;  // of rms; infinite where there is none
+  std::vector<VariantDistance> variants;
+  double opacity = 0;  // mean alpha of the reference
+  double seconds = 0;
+  /// One line per limit that was not kept; "base", "fine", "reference" or the name of a variant comes first. What was
+  /// refused or not finite is a failure, too.
+  std::vector<std::string> failures;
+};
+
+struct CompareOptions {
+  /// So many of the variants, chosen by `seed`; fewer than all where a second a scene is too much.
+  int variants = 100;
+  bool fine = true;
+  std::uint64_t seed = 1;
+};
+
+/// Renders the scene and its variants, and has the reference integrate it.
+///
+/// Emission is held to what its slabs can do: with e the RMSE of slabPicture, the limit is 1.25 e + kFloor. Fine slabs
+/// are held to the same with their own e, so that pictures must converge where slabs do; fine slabs and the reference,
+/// which are two integrators without bricks, to each other. Cones and lights are compared with the reference, without a
+/// limit. Variants of every model must agree but for rounding, which is known by what a displacement of all samples by
+/// as much changes.
+/// @pre `context` is current
+SceneComparison compareScene(const GlContext& context, const RandomScene& random, const CompareOptions& options = {});
+
+}  // namespace umbrick
