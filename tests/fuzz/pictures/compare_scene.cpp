@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <glm/mat3x3.hpp>
 #include <limits>
 #include <memory>
@@ -32,13 +33,18 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 PictureDistance distance(const Image& a, const Image& b) {
   PictureDistance result;
-  if (a.pixels.size() != b.pixels.size()) return {kInfinity, kInfinity};
+  if (a.pixels.size() != b.pixels.size()) return {kInfinity, kInfinity, {}};
   double sum = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    const double difference = std::abs(double(a.pixels[i]) - double(b.pixels[i]));
+    double difference = std::abs(double(a.pixels[i]) - double(b.pixels[i]));
     // A difference that is no number is the largest of all.
-    result.max = std::max(result.max, std::isfinite(difference) ? difference : kInfinity);
-    sum += std::isfinite(difference) ? difference * difference : kInfinity;
+    if (!std::isfinite(difference)) difference = kInfinity;
+    if (difference > result.max) {
+      const int pixel = static_cast<int>(i / 4);
+      result.max = difference;
+      result.worst = {pixel % a.width, pixel / a.width};
+    }
+    sum += difference * difference;
   }
   result.rms = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, a.pixels.size())));
   return result;
@@ -50,31 +56,41 @@ std::string number(double value) {
   return text;
 }
 
-struct Rendered {
+std::string pixelOf(const Image& image, const glm::ivec2& at) {
+  const float* pixel = image.at(at.x, at.y);
+  return number(pixel[0]) + " " + number(pixel[1]) + " " + number(pixel[2]) + " " + number(pixel[3]);
+}
+
+// A picture, and what is needed for another one of the same bricks.
+struct Rendering {
+  std::unique_ptr<Bricks> bricks;
+  std::unique_ptr<SliceRenderer> renderer;
   Image colour;
   RenderStats stats;
-  IndexBox domain;
 };
 
-Rendered render(const GlContext& context, const ScalarGrid& grid, Scene scene, const RenderOptions& options = {}) {
+Rendering render(const GlContext& context, const ScalarGrid& grid, Scene scene, const RenderOptions& options = {}) {
   const glm::dmat4 toWorld = grid.indexToWorld();
   scene.bricks.interior = brickInterior(scene, toWorld, grid.worldBounds());
   BrickOptions cut;
   cut.interior = scene.bricks.interior;
   cut.apron = requiredApron(scene, toWorld);
   cut.gradients = scene.transfer->is2d();
-  const std::unique_ptr<Bricks> bricks = scene.bricks.bricked ? brickGrid(grid, cut) : unbrickedGrid(grid, cut);
-  Picture picture = SliceRenderer(context, *bricks, scene, options).render();
-  return {std::move(picture.colour), picture.stats, bricks->domain};
+  Rendering rendering;
+  rendering.bricks = scene.bricks.bricked ? brickGrid(grid, cut) : unbrickedGrid(grid, cut);
+  rendering.renderer = std::make_unique<SliceRenderer>(context, *rendering.bricks, scene, options);
+  Picture picture = rendering.renderer->render();
+  rendering.colour = std::move(picture.colour);
+  rendering.stats = picture.stats;
+  return rendering;
 }
 
-// Displaces all samples by what rounding may move them. The camera moves with the clip planes: those are cut per ray.
-Scene displaced(const Scene& scene, const glm::dmat4& toWorld, double voxels) {
-  Scene moved = scene;
+// Displaces all samples by what rounding may move them. Clip planes stay: those are cut per ray.
+Camera displaced(Camera camera, const glm::dmat4& toWorld, double voxels) {
   const glm::dvec3 shift = glm::dmat3(toWorld) * glm::dvec3(voxels, 0.7 * voxels, -0.8 * voxels);
-  moved.camera.eye += shift;
-  moved.camera.lookAt += shift;
-  return moved;
+  camera.eye += shift;
+  camera.lookAt += shift;
+  return camera;
 }
 
 class Comparer {
@@ -111,15 +127,17 @@ class Comparer {
     }
   }
 
-  void require(const std::string& what, const PictureDistance& found, double limit) {
-    if (!(found.rms <= limit))
-      result_.failures.push_back(what + ": RMSE " + number(found.rms) + ", limit " + number(limit) + ", largest " +
-                                 number(found.max));
+  void require(const std::string& what, const Image& found, const Image& right, const PictureDistance& from,
+               double limit) {
+    if (from.rms <= limit) return;
+    result_.failures.push_back(what + ": RMSE " + number(from.rms) + ", limit " + number(limit) + ", pixel " +
+                               std::to_string(from.worst.x) + " " + std::to_string(from.worst.y) + " is " +
+                               pixelOf(found, from.worst) + ", should be " + pixelOf(right, from.worst));
   }
 
   // Fixed point: each slab may be rounded by one and a half steps, see SamplingOptions.
-  double bitsAllowance(const Scene& scene, const Rendered& rendered) const {
-    return scene.sampling.bits == 16 ? static_cast<double>(rendered.stats.slices) * 1.5 * 0x1p-16 : 0;
+  double bitsAllowance() const {
+    return scene_.sampling.bits == 16 ? static_cast<double>(base_.stats.slices) * 1.5 * 0x1p-16 : 0;
   }
 
   void compareWithReference() {
@@ -133,70 +151,84 @@ class Comparer {
     result_.render = distance(base_.colour, exact);
     if (!emission_) {
       result_.renderLimit = result_.fineLimit = result_.fineSlabsLimit = kInfinity;
-      require("base", result_.render, std::numeric_limits<double>::max());
+      require("base", base_.colour, exact, result_.render, std::numeric_limits<double>::max());
       return;
     }
     // Radiance is in units of L_a, where that is larger than 1.
     const double brightest = std::max({1.0, scene_.ambient.r, scene_.ambient.g, scene_.ambient.b});
-    result_.slabs = distance(slabPicture(grid_, scene_, base_.domain), exact);
+    result_.slabs = distance(slabPicture(grid_, scene_, base_.bricks->domain), exact);
     result_.renderLimit =
-        1.25 * result_.slabs.rms + brightest * (kFloor + scene_.sampling.saturation + bitsAllowance(scene_, base_));
-    require("base", result_.render, result_.renderLimit);
-    if (!options_.fine) return;
+        1.25 * result_.slabs.rms + brightest * (kFloor + scene_.sampling.saturation + bitsAllowance());
+    require("base", base_.colour, exact, result_.render, result_.renderLimit);
     Scene fine = scene_;
     fine.sampling.spacing = std::min(fine.sampling.spacing, 0.25 * shortestVoxelEdge(toWorld_));
     fine.sampling.segments = 4;
     fine.sampling.quadrature = Quadrature::preintegrated;
     fine.sampling.bits = 32;
     fine.sampling.tableSize = std::max(fine.sampling.tableSize, 256);
-    result_.fineSlabs = distance(slabPicture(grid_, fine, base_.domain), exact);
+    const Image slabs = slabPicture(grid_, fine, base_.bricks->domain);
+    result_.fineSlabs = distance(slabs, exact);
     result_.fineSlabsLimit = brightest * kFineSlabs;
-    require("reference", result_.fineSlabs, result_.fineSlabsLimit);
-    const Rendered rendered = render(context_, grid_, fine);
-    result_.fineRender = distance(rendered.colour, exact);
+    require("reference", exact, slabs, result_.fineSlabs, result_.fineSlabsLimit);
+    const Image rendered = render(context_, grid_, fine).colour;
+    result_.fineRender = distance(rendered, exact);
     result_.fineLimit = 1.25 * result_.fineSlabs.rms + brightest * (kFloor + scene_.sampling.saturation);
-    require("fine", result_.fineRender, result_.fineLimit);
+    require("fine", rendered, exact, result_.fineRender, result_.fineLimit);
   }
 
   // As the check of invariants has it: texture coordinates are rounded to some units in the last place of 24 bits.
   void measureRounding() {
     const double voxels = 16 * 0x1p-25 * (base_.stats.textureEdge + 64);
-    const PictureDistance moved =
-        distance(render(context_, grid_, displaced(scene_, toWorld_, voxels)).colour, base_.colour);
+    const Picture shifted = base_.renderer->render(displaced(scene_.camera, toWorld_, voxels));
+    const PictureDistance moved = distance(shifted.colour, base_.colour);
     const double lastPlace = scene_.sampling.bits == 16 ? 0x1p-16 : 0x1p-24;
     const double brightest = std::max({1.0, scene_.ambient.r, scene_.ambient.g, scene_.ambient.b});
     rounding_ = 4 * moved.rms + brightest * 4 * static_cast<double>(base_.stats.slices + 16) * lastPlace;
   }
 
-  void compareVariant(const std::string& name, double limit, const std::function<std::optional<Image>()>& picture) {
-    attempt(name, [&] {
-      const std::optional<Image> colour = picture();
-      if (!colour) return;
-      const PictureDistance from = distance(*colour, base_.colour);
-      result_.variants.push_back({name, from, limit});
-      require(name, from, limit);
-    });
+  // A picture that should be the scene's own.
+  struct Variant {
+    std::string name;
+    double limit = 0;
+    std::function<std::optional<Image>()> picture;  // none where it would be the same scene
+  };
+
+  std::vector<Variant> variants() {
+    std::vector<Variant> all;
+    Scene wide = scene_;
+    wide.bricks.interior = kMostInterior;
+    const double limit = rounding_ + saturation();
+    for (SameScene& same : sameScenes(grid_, scene_, requiredApron(wide, toWorld_), options_.seed))
+      all.push_back({same.name, limit,
+                     [this, same = std::move(same)] { return render(context_, same.grid, same.scene).colour; }});
+    all.push_back({"reversed", 0, [this] {
+                     RenderOptions reversed;
+                     reversed.reverseBricks = true;
+                     return render(context_, grid_, scene_, reversed).colour;
+                   }});
+    all.push_back({"small budget", limit, [this] { return withSmallPool(); }});
+    if (scene_.sampling.saturation > 0)
+      all.push_back({"not saturated", limit, [this] {
+                       Scene scene = scene_;
+                       scene.sampling.saturation = 0;
+                       return render(context_, grid_, scene).colour;
+                     }});
+    return all;
   }
 
   void compareVariants() {
-    Scene wide = scene_;
-    wide.bricks.interior = kMostInterior;
-    std::vector<SameScene> same = sameScenes(grid_, scene_, requiredApron(wide, toWorld_), options_.seed);
+    std::vector<Variant> chosen;
+    attempt("variants", [&] { chosen = variants(); });
     Dice dice(options_.seed, 78);
-    while (static_cast<int>(same.size()) > std::max(0, options_.variants))
-      same.erase(same.begin() + dice.below(static_cast<int>(same.size())));
-    for (const SameScene& variant : same)
-      compareVariant(variant.name, rounding_ + saturation(),
-                     [&] { return render(context_, variant.grid, variant.scene).colour; });
-    RenderOptions reversed;
-    reversed.reverseBricks = true;
-    compareVariant("reversed", 0, [&] { return render(context_, grid_, scene_, reversed).colour; });
-    compareVariant("small budget", rounding_ + saturation(), [&] { return withSmallPool(); });
-    if (scene_.sampling.saturation > 0)
-      compareVariant("not saturated", rounding_ + saturation(), [&] {
-        Scene scene = scene_;
-        scene.sampling.saturation = 0;
-        return render(context_, grid_, scene).colour;
+    while (static_cast<int>(chosen.size()) > std::max(0, options_.variants))
+      chosen.erase(chosen.begin() + dice.below(static_cast<int>(chosen.size())));
+    for (const Variant& variant : chosen)
+      attempt(variant.name, [&] {
+        const std::optional<Image> colour = variant.picture();
+        if (!colour) return;
+        const PictureDistance from = distance(*colour, base_.colour);
+        result_.variants.push_back({variant.name, from, variant.limit});
+        require(variant.name, *colour, base_.colour, from, variant.limit);
       });
   }
 
@@ -231,7 +263,7 @@ class Comparer {
   const CompareOptions options_;
   const glm::dmat4 toWorld_;
   const bool emission_;
-  Rendered base_;
+  Rendering base_;
   double rounding_ = 0;
   SceneComparison result_;
 };

@@ -1,6 +1,7 @@
 // How far a random scene's pictures are from what they should be.
 #pragma once
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace umbrick {
 /// Of two pictures, over all pixels and linear premultiplied R, G, B and A.
 struct PictureDistance {
   double rms = 0, max = 0;
+  glm::ivec2 worst{0};  // the pixel of `max`, row 0 at the bottom
 };
 
 struct VariantDistance {
@@ -37,9 +39,8 @@ struct SceneComparison {
 };
 
 struct CompareOptions {
-  /// So many of the variants, chosen by `seed`; fewer than all where a second a scene is too much.
+  /// So many of the variants, chosen by `seed`: each takes a table of the transfer function, which is most of the time.
   int variants = 100;
-  bool fine = true;
   std::uint64_t seed = 1;
 };
 

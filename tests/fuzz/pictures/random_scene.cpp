@@ -9,6 +9,7 @@
 
 #include "fuzz/pictures/dice.h"
 #include "fuzz/pictures/random_grid.h"
+#include "fuzz/pictures/slab_picture.h"
 #include "support/test_scenes.h"
 #include "umbrick/core/error.h"
 #include "umbrick/scene/resolve.h"
@@ -237,7 +238,7 @@ void sampleAtRandom(Dice& dice, Scene& scene, std::string& name) {
   sampling.segments = dice.chance(0.4) ? 1 : dice.whole(2, 8);
   sampling.bits = dice.chance(0.88) ? 32 : 16;
   sampling.saturation = dice.chance(0.5) ? 0 : 1e-3;
-  sampling.tableSize = dice.chance(0.8) ? 256 : dice.of({128, 512, 1024});
+  sampling.tableSize = dice.chance(0.75) ? 256 : dice.chance(0.9) ? 128 : dice.of({512, 1024});
   name += std::string(sampling.quadrature == Quadrature::midpoint ? "midpoint " : "") + number(sampling.spacing) +
           " x " + std::to_string(sampling.segments);
   if (sampling.bits == 16) name += ", 16 bits";
@@ -296,6 +297,18 @@ void illuminateAtRandom(Dice& dice, SceneKind kind, Scene& scene, std::string& n
   }
 }
 
+// By a picture of a few pixels and thick slabs.
+bool showsSomething(const ScalarGrid& grid, Scene scene, double edge) {
+  scene.camera.width = scene.camera.height = 10;
+  scene.sampling.spacing = edge;
+  scene.sampling.segments = 2;
+  const IndexBox active = grid.activeBox();
+  const Image image = slabPicture(grid, scene, {active.min - 1, active.max + 1});
+  double alpha = 0;
+  for (std::size_t i = 3; i < image.pixels.size(); i += 4) alpha += image.pixels[i];
+  return alpha > 2;  // of 100 pixels
+}
+
 }  // namespace
 
 SceneKind parseSceneKind(std::string_view name) {
@@ -317,8 +330,16 @@ RandomScene randomScene(std::uint64_t seed, SceneKind kind, int largest) {
   scene.transfer = function.chance(0.2) ? randomFunction2d(function, grid, edge, functionName)
                                         : randomFunction1d(function, grid, edge, functionName);
   scene.orbit.reset();
-  scene.camera = randomCamera(view, grid.grid, largest, viewName);
-  clipAtRandom(clipping, grid.grid, scene, clipName);
+  // Views that show nothing teach little: another one is drawn, some times.
+  for (int i = 0; i < 8; ++i) {
+    viewName.clear();
+    clipName.clear();
+    scene.clipPlanes.clear();
+    scene.clipBox.reset();
+    scene.camera = randomCamera(view, grid.grid, largest, viewName);
+    clipAtRandom(clipping, grid.grid, scene, clipName);
+    if (showsSomething(grid.grid, scene, edge)) break;
+  }
   sampleAtRandom(rest, scene, restName);
   illuminateAtRandom(light, kind, scene, lightName);
   scene.bricks.interior = rest.chance(0.4) ? 0 : rest.of({8, 16, 24, 32, 48});
