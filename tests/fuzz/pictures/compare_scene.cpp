@@ -26,9 +26,8 @@ namespace {
 
 // What the table of the transfer function may cost beside the slabs: a bin of 256 is 0.4 % of the range.
 constexpr double kFloor = 3e-3;
-// Two integrators that know no bricks, slabs of a sixteenth of a voxel: a ray that grazes what is solid meets it in one
-// of them, and kinks inside of a slab are cut straight.
-constexpr double kFineSlabs = 5e-3;
+// Two integrators that know no bricks: a ray that grazes what is solid meets it in one of them.
+constexpr double kReferenceFloor = 1e-3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 PictureDistance distance(const Image& a, const Image& b) {
@@ -150,7 +149,7 @@ class Comparer {
     result_.opacity = 4 * alpha / static_cast<double>(exact.pixels.size());
     result_.render = distance(base_.colour, exact);
     if (!emission_) {
-      result_.renderLimit = result_.fineLimit = result_.fineSlabsLimit = kInfinity;
+      result_.renderLimit = result_.fineLimit = result_.referenceLimit = kInfinity;
       require("base", base_.colour, exact, result_.render, std::numeric_limits<double>::max());
       return;
     }
@@ -168,17 +167,28 @@ class Comparer {
     fine.sampling.tableSize = std::max(fine.sampling.tableSize, 256);
     const Image slabs = slabPicture(grid_, fine, base_.bricks->domain);
     result_.fineSlabs = distance(slabs, exact);
-    result_.fineSlabsLimit = brightest * kFineSlabs;
-    require("reference", exact, slabs, result_.fineSlabs, result_.fineSlabsLimit);
+    // What slabs still lack at half of their thickness is no more than the halving changed, when their error falls with
+    // the thickness at least. Of peaks that rays graze, few pixels tell: twice that.
+    fine.sampling.segments = 8;
+    const Image finest = slabPicture(grid_, fine, base_.bricks->domain);
+    fine.sampling.segments = 4;
+    result_.reference = distance(exact, finest);
+    result_.referenceLimit = 2 * distance(slabs, finest).rms + brightest * kReferenceFloor;
+    require("reference", exact, finest, result_.reference, result_.referenceLimit);
     const Image rendered = render(context_, grid_, fine).colour;
     result_.fineRender = distance(rendered, exact);
     result_.fineLimit = 1.25 * result_.fineSlabs.rms + brightest * (kFloor + scene_.sampling.saturation);
     require("fine", rendered, exact, result_.fineRender, result_.fineLimit);
   }
 
-  // As the check of invariants has it: texture coordinates are rounded to some units in the last place of 24 bits.
+  // As the check of invariants has it: texture coordinates are rounded to some units in the last place of 24 bits. So
+  // is the value that is interpolated, which a value that changes by all of its range from voxel to voxel makes a
+  // distance.
   void measureRounding() {
-    const double voxels = 16 * 0x1p-25 * (base_.stats.textureEdge + 64);
+    const Range value = base_.bricks->value;
+    const double magnitude = std::max(std::abs(double(value.min)), std::abs(double(value.max)));
+    const double ofValue = value.extent() > 0 ? magnitude / value.extent() : 0;
+    const double voxels = 16 * 0x1p-25 * (base_.stats.textureEdge + 64 + ofValue);
     const Picture shifted = base_.renderer->render(displaced(scene_.camera, toWorld_, voxels));
     const PictureDistance moved = distance(shifted.colour, base_.colour);
     const double lastPlace = scene_.sampling.bits == 16 ? 0x1p-16 : 0x1p-24;
