@@ -165,15 +165,13 @@ class Comparer {
     fine.sampling.quadrature = Quadrature::preintegrated;
     fine.sampling.bits = 32;
     fine.sampling.tableSize = std::max(fine.sampling.tableSize, 256);
-    const Image slabs = slabPicture(grid_, fine, base_.bricks->domain);
-    result_.fineSlabs = distance(slabs, exact);
-    // What slabs still lack at half of their thickness is no more than the halving changed, when their error falls with
-    // the thickness at least. Of peaks that rays graze, few pixels tell: twice that.
-    fine.sampling.segments = 8;
-    const Image finest = slabPicture(grid_, fine, base_.bricks->domain);
-    fine.sampling.segments = 4;
+    result_.fineSlabs = distance(slabPicture(grid_, fine, base_.bricks->domain), exact);
+    // What is left at eighths of cells is a third of what halving them changed, by their order; of peaks that rays
+    // graze, few pixels tell: all of it.
+    const Image finest = cellPicture(grid_, fine, base_.bricks->domain, 8);
+    const PictureDistance halving = distance(cellPicture(grid_, fine, base_.bricks->domain, 4), finest);
     result_.reference = distance(exact, finest);
-    result_.referenceLimit = 2 * distance(slabs, finest).rms + brightest * kReferenceFloor;
+    result_.referenceLimit = halving.rms + brightest * kReferenceFloor;
     require("reference", exact, finest, result_.reference, result_.referenceLimit);
     const Image rendered = render(context_, grid_, fine).colour;
     result_.fineRender = distance(rendered, exact);

@@ -29,7 +29,7 @@ struct SceneComparison {
   PictureDistance slabs;
   /// The same of slices a quarter of a voxel apart in four segments; emission only.
   PictureDistance fineRender, fineSlabs;
-  PictureDistance reference;  // from slabs of half of that thickness, which know no bricks either; emission only
+  PictureDistance reference;  // the reference's picture from cellPicture, another integrator; emission only
   double renderLimit = 0, fineLimit = 0, referenceLimit = 0;  // of rms; infinite where there is none
   std::vector<VariantDistance> variants;
   double opacity = 0;  // mean alpha of the reference
@@ -48,10 +48,10 @@ struct CompareOptions {
 /// Renders the scene and its variants, and has the reference integrate it.
 ///
 /// Emission is held to what its slabs can do: with e the RMSE of slabPicture, the limit is 1.25 e + kFloor. Fine slabs
-/// are held to the same with their own e, so that pictures must converge where slabs do. The reference is held to slabs
-/// of 1/32 voxel, by as much as these differ from slabs of 1/16. Cones and lights are compared with the reference,
-/// without a limit. Variants of every model must agree but for rounding, which is known by what a displacement of all
-/// samples by as much changes.
+/// are held to the same with their own e, so that pictures must converge where slabs do. The reference is held to
+/// cellPicture, which knows no bricks either, by as much as that changes with the parts of a cell. Cones and lights are
+/// compared with the reference, without a limit. Variants of every model must agree but for rounding, which is known by
+/// what a displacement of all samples by as much changes.
 /// @pre `context` is current
 SceneComparison compareScene(const GlContext& context, const RandomScene& random, const CompareOptions& options = {});
 

@@ -5,8 +5,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -99,18 +99,20 @@ struct Gathered {
   bool dark() const { return transmittance < 1e-7; }
 };
 
-// A stretch of a segment where extinction and albedo run linearly, from 0 to 1: in steps of a quarter of optical depth.
+// A stretch of a segment where extinction and albedo run linearly, from 0 to 1: in steps of a tenth of optical depth,
+// each with the albedo at the centre of its extinction.
 void addLinear(Gathered& ray, const Medium& first, const Medium& last, double length) {
-  const double slope = last.sigma_t - first.sigma_t;
+  const double slope = last.sigma_t - first.sigma_t, wanted = 0.1 / length;
   for (double at = 0; at < 1 && !ray.dark();) {
-    const double sigma_t = std::max(0.0, first.sigma_t + at * slope), wanted = 0.25 / length;
-    // wanted = sigma_t h + slope h^2 / 2
+    const double sigma_t = std::max(0.0, first.sigma_t + at * slope);
+    // wanted = sigma_t h + slope h^2 / 2, or never when extinction falls to nothing before.
     const double root = sigma_t * sigma_t + 2 * slope * wanted;
-    double step = root > 0 ? 2 * wanted / (sigma_t + std::sqrt(root)) : 1;
-    step = std::min(step, 1 - at);
-    const double middle = at + 0.5 * step;
-    const double tau = std::max(0.0, (first.sigma_t + middle * slope) * step * length);
-    ray.add(first.albedo + middle * (last.albedo - first.albedo), tau);
+    const double step = std::min(root > 0 ? 2 * wanted / (sigma_t + std::sqrt(root)) : 1, 1 - at);
+    const double depth = (sigma_t + 0.5 * slope * step) * step;
+    if (depth > 0) {
+      const double centre = at + step * step * (0.5 * sigma_t + slope * step / 3) / depth;
+      ray.add(first.albedo + centre * (last.albedo - first.albedo), depth * length);
+    }
     at = step < 1e-12 ? 1 : at + step;
   }
 }
@@ -168,27 +170,48 @@ class SlabIntegrator {
       for (const ClipPlane& plane : boxPlanes(whole, grid.indexToWorld())) planes_.push_back(plane);
   }
 
-  Gathered along(const ViewRay& ray) const {
+  Gathered alongSlabs(const ViewRay& ray) const {
     Gathered gathered;
-    DepthInterval kept = keptDepths(ray, planes_);
-    kept.first = std::max(kept.first, scene_.camera.nearDistance);
-    const DepthInterval around = keptDepths(ray, around_);
+    const DepthInterval kept = keptOf(ray), seen = within(kept, ray);
+    if (!(seen.length() > 0)) return gathered;
     const double spacing = scene_.sampling.spacing;
-    if (!(kept.length() > 0) || !(around.length() > 0)) return gathered;
-    const double nearest = std::max(kept.first, around.first), farthest = std::min(kept.last, around.last);
-    const auto first = static_cast<std::int64_t>(std::floor(nearest / spacing));
-    const auto last = static_cast<std::int64_t>(std::floor(farthest / spacing));
-    for (std::int64_t i = std::max<std::int64_t>(0, first); i <= last && !gathered.dark(); ++i) {
-      const double front = std::max(kept.first, static_cast<double>(i) * spacing);
-      const double back = std::min(kept.last, static_cast<double>(i + 1) * spacing);
-      if (back > front) addSlab(gathered, ray, front, back);
+    const auto first = static_cast<std::int64_t>(std::floor(seen.first / spacing));
+    const auto last = static_cast<std::int64_t>(std::floor(seen.last / spacing));
+    for (std::int64_t i = std::max<std::int64_t>(0, first); i <= last && !gathered.dark(); ++i)
+      addSlab(gathered, ray, std::max(kept.first, static_cast<double>(i) * spacing),
+              std::min(kept.last, static_cast<double>(i + 1) * spacing), scene_.sampling.segments);
+    return gathered;
+  }
+
+  Gathered alongCells(const ViewRay& ray, int parts) const {
+    Gathered gathered;
+    const DepthInterval seen = within(keptOf(ray), ray);
+    if (!(seen.length() > 0)) return gathered;
+    const glm::dvec3 from = indexAt(ray, seen.first), to = indexAt(ray, seen.last);
+    std::vector<double> cuts{seen.first, seen.last};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double way = to[axis] - from[axis];
+      for (double face = std::ceil(std::min(from[axis], to[axis])); face < std::max(from[axis], to[axis]); ++face)
+        cuts.push_back(std::clamp(seen.first + (face - from[axis]) / way * seen.length(), seen.first, seen.last));
     }
+    std::sort(cuts.begin(), cuts.end());
+    for (std::size_t i = 1; i < cuts.size() && !gathered.dark(); ++i)
+      addSlab(gathered, ray, cuts[i - 1], cuts[i], parts);
     return gathered;
   }
 
  private:
-  void addSlab(Gathered& gathered, const ViewRay& ray, double front, double back) const {
-    const int segments = scene_.sampling.segments;
+  DepthInterval keptOf(const ViewRay& ray) const {
+    DepthInterval kept = keptDepths(ray, planes_);
+    kept.first = std::max(kept.first, scene_.camera.nearDistance);
+    return kept;
+  }
+  DepthInterval within(const DepthInterval& kept, const ViewRay& ray) const {
+    const DepthInterval around = keptDepths(ray, around_);
+    return {std::max(kept.first, around.first), std::min(kept.last, around.last)};
+  }
+  void addSlab(Gathered& gathered, const ViewRay& ray, double front, double back, int segments) const {
+    if (!(back > front)) return;
     const double depth = (back - front) / segments, length = depth * ray.stretch();
     const bool ramps = !transfer_.is2d() && scene_.sampling.quadrature == Quadrature::preintegrated;
     double before = ramps ? valueAt(ray, front) : 0;
@@ -216,16 +239,12 @@ class SlabIntegrator {
   std::vector<ClipPlane> planes_, around_;
 };
 
-}  // namespace
-
-Image slabPicture(const ScalarGrid& grid, const Scene& scene, const IndexBox& domain) {
+Image picture(const Scene& scene, const std::function<Gathered(const ViewRay&)>& along) {
   Image image(scene.camera.width, scene.camera.height);
-  if (domain.empty()) return image;
-  const SlabIntegrator integrator(grid, scene, domain);
   tbb::parallel_for(tbb::blocked_range<int>(0, image.height), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y)
       for (int x = 0; x < image.width; ++x) {
-        const Gathered ray = integrator.along(viewRay(scene.camera, x + 0.5, y + 0.5));
+        const Gathered ray = along(viewRay(scene.camera, x + 0.5, y + 0.5));
         glm::dvec3 light = scene.ambient * ray.light;
         if (scene.background) light += ray.transmittance * *scene.background;
         for (int c = 0; c < 3; ++c) image.at(x, y)[c] = static_cast<float>(light[c]);
@@ -233,6 +252,18 @@ Image slabPicture(const ScalarGrid& grid, const Scene& scene, const IndexBox& do
       }
   });
   return image;
+}
+
+}  // namespace
+
+Image slabPicture(const ScalarGrid& grid, const Scene& scene, const IndexBox& domain) {
+  const SlabIntegrator integrator(grid, scene, domain);
+  return picture(scene, [&](const ViewRay& ray) { return integrator.alongSlabs(ray); });
+}
+
+Image cellPicture(const ScalarGrid& grid, const Scene& scene, const IndexBox& domain, int parts) {
+  const SlabIntegrator integrator(grid, scene, domain);
+  return picture(scene, [&](const ViewRay& ray) { return integrator.alongCells(ray, parts); });
 }
 
 }  // namespace umbrick

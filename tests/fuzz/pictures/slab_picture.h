@@ -16,4 +16,9 @@ namespace umbrick {
 /// @param scene   resolved; emission, whatever its model is
 Image slabPicture(const ScalarGrid& grid, const Scene& scene, const IndexBox& domain);
 
+/// The same with other slabs: each stretch of a ray between two faces of voxel cells in so many parts. The interpolated
+/// value has its kinks at those faces, so that this converges with the square of the parts also where a narrow peak of
+/// the function meets a kink, which slabs of any one thickness cut off.
+Image cellPicture(const ScalarGrid& grid, const Scene& scene, const IndexBox& domain, int parts);
+
 }  // namespace umbrick
