@@ -28,6 +28,9 @@ namespace {
 constexpr double kFloor = 3e-3;
 // Two integrators that know no bricks: a ray that grazes what is solid meets it in one of them.
 constexpr double kReferenceFloor = 1e-3;
+// Light of a lattice: which texel a path goes through may turn on a rounding, and the extent of the volume decides how
+// large texels are.
+constexpr double kLattice = 3e-3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 PictureDistance distance(const Image& a, const Image& b) {
@@ -92,6 +95,17 @@ Camera displaced(Camera camera, const glm::dmat4& toWorld, double voxels) {
   return camera;
 }
 
+// 1, or more where light or background are brighter.
+double brightestOf(const Scene& scene) {
+  glm::dvec3 arriving(1);
+  if (scene.model == Model::lights) {
+    arriving = glm::dvec3(0);
+    for (const LightDirection& light : lightDirections(scene, 1)) arriving += light.radiance;
+  }
+  const glm::dvec3 light = glm::max(scene.ambient * arriving, scene.background.value_or(glm::dvec3(0)));
+  return std::max({1.0, light.r, light.g, light.b});
+}
+
 class Comparer {
  public:
   Comparer(const GlContext& context, const RandomScene& random, const CompareOptions& options)
@@ -100,7 +114,8 @@ class Comparer {
         scene_(random.scene),
         options_(options),
         toWorld_(grid_.indexToWorld()),
-        emission_(scene_.model == Model::emission) {}
+        emission_(scene_.model == Model::emission),
+        brightest_(brightestOf(scene_)) {}
 
   SceneComparison compare() {
     const Stopwatch watch;
@@ -139,44 +154,56 @@ class Comparer {
     return scene_.sampling.bits == 16 ? static_cast<double>(base_.stats.slices) * 1.5 * 0x1p-16 : 0;
   }
 
-  void compareWithReference() {
+  // The reference by the directions that the renderer takes: their number is no error of the picture. The paper's own
+  // method takes none.
+  Image exactPicture() const {
     ReferenceOptions reference;
-    reference.directions = 64;
     reference.tolerance = emission_ ? 1e-4 : 2e-3;
-    const Image exact = renderReference(grid_, scene_, reference).colour;
-    double alpha = 0;
-    for (std::size_t i = 3; i < exact.pixels.size(); i += 4) alpha += exact.pixels[i];
-    result_.opacity = 4 * alpha / static_cast<double>(exact.pixels.size());
-    result_.render = distance(base_.colour, exact);
-    if (!emission_) {
-      result_.renderLimit = result_.fineLimit = result_.referenceLimit = kInfinity;
-      require("base", base_.colour, exact, result_.render, std::numeric_limits<double>::max());
-      return;
-    }
-    // Radiance is in units of L_a, where that is larger than 1.
-    const double brightest = std::max({1.0, scene_.ambient.r, scene_.ambient.g, scene_.ambient.b});
-    result_.slabs = distance(slabPicture(grid_, scene_, base_.bricks->domain), exact);
-    result_.renderLimit =
-        1.25 * result_.slabs.rms + brightest * (kFloor + scene_.sampling.saturation + bitsAllowance());
-    require("base", base_.colour, exact, result_.render, result_.renderLimit);
+    if (!emission_ && scene_.method == Method::ordinates)
+      reference.lights = lightDirections(scene_, scene_.occlusion.directions);
+    reference.directions = 64;
+    return renderReference(grid_, scene_, reference).colour;
+  }
+
+  Scene fineScene() const {
     Scene fine = scene_;
     fine.sampling.spacing = std::min(fine.sampling.spacing, 0.25 * shortestVoxelEdge(toWorld_));
     fine.sampling.segments = 4;
     fine.sampling.quadrature = Quadrature::preintegrated;
-    fine.sampling.bits = 32;
-    fine.sampling.tableSize = std::max(fine.sampling.tableSize, 256);
-    result_.fineSlabs = distance(slabPicture(grid_, fine, base_.bricks->domain), exact);
-    // What is left at eighths of cells is a third of what halving them changed, by their order; of peaks that rays
-    // graze, few pixels tell: all of it.
-    const Image finest = cellPicture(grid_, fine, base_.bricks->domain, 8);
-    const PictureDistance halving = distance(cellPicture(grid_, fine, base_.bricks->domain, 4), finest);
-    result_.reference = distance(exact, finest);
-    result_.referenceLimit = halving.rms + brightest * kReferenceFloor;
-    require("reference", exact, finest, result_.reference, result_.referenceLimit);
+    fine.sampling.bits = fine.occlusion.bits = 32;
+    if (fine.method == Method::ordinates) fine.occlusion.scale = 3;
+    return fine;
+  }
+
+  void compareWithReference() {
+    const Image exact = exactPicture();
+    double alpha = 0;
+    for (std::size_t i = 3; i < exact.pixels.size(); i += 4) alpha += exact.pixels[i];
+    result_.opacity = 4 * alpha / static_cast<double>(exact.pixels.size());
+    result_.render = distance(base_.colour, exact);
+    const IndexBox& domain = base_.bricks->domain;
+    const Scene fine = fineScene();
+    // What is not finite is wrong for every model.
+    double limit = std::numeric_limits<double>::max(), fineLimit = limit;
+    if (emission_) {
+      result_.slabs = distance(slabPicture(grid_, scene_, domain), exact);
+      limit = 1.25 * result_.slabs.rms + brightest_ * (kFloor + scene_.sampling.saturation + bitsAllowance());
+      result_.fineSlabs = distance(slabPicture(grid_, fine, domain), exact);
+      fineLimit = 1.25 * result_.fineSlabs.rms + brightest_ * (kFloor + scene_.sampling.saturation);
+      // What is left at eighths of cells is a third of what halving them changed, by their order; of peaks that rays
+      // graze, few pixels tell: all of it.
+      const Image finest = cellPicture(grid_, fine, domain, 8);
+      const PictureDistance halving = distance(cellPicture(grid_, fine, domain, 4), finest);
+      result_.reference = distance(exact, finest);
+      result_.referenceLimit = halving.rms + brightest_ * kReferenceFloor;
+      require("reference", exact, finest, result_.reference, result_.referenceLimit);
+    }
+    result_.renderLimit = limit;
+    require("base", base_.colour, exact, result_.render, limit);
     const Image rendered = render(context_, grid_, fine).colour;
     result_.fineRender = distance(rendered, exact);
-    result_.fineLimit = 1.25 * result_.fineSlabs.rms + brightest * (kFloor + scene_.sampling.saturation);
-    require("fine", rendered, exact, result_.fineRender, result_.fineLimit);
+    result_.fineLimit = fineLimit;
+    require("fine", rendered, exact, result_.fineRender, fineLimit);
   }
 
   // As the check of invariants has it: texture coordinates are rounded to some units in the last place of 24 bits. So
@@ -190,8 +217,8 @@ class Comparer {
     const Picture shifted = base_.renderer->render(displaced(scene_.camera, toWorld_, voxels));
     const PictureDistance moved = distance(shifted.colour, base_.colour);
     const double lastPlace = scene_.sampling.bits == 16 ? 0x1p-16 : 0x1p-24;
-    const double brightest = std::max({1.0, scene_.ambient.r, scene_.ambient.g, scene_.ambient.b});
-    rounding_ = 4 * moved.rms + brightest * 4 * static_cast<double>(base_.stats.slices + 16) * lastPlace;
+    rounding_ = 4 * moved.rms + brightest_ * 4 * static_cast<double>(base_.stats.slices + 16) * lastPlace;
+    if (!emission_) rounding_ += brightest_ * kLattice;
   }
 
   // A picture that should be the scene's own.
@@ -241,14 +268,7 @@ class Comparer {
   }
 
   // Bricks decide how often saturated pixels are looked for, so that each picture leaves out as much.
-  double saturation() const {
-    double brightest = 1;
-    for (int c = 0; c < 3; ++c) {
-      brightest = std::max(brightest, scene_.ambient[c]);
-      if (scene_.background) brightest = std::max(brightest, (*scene_.background)[c]);
-    }
-    return brightest * scene_.sampling.saturation;
-  }
+  double saturation() const { return brightest_ * scene_.sampling.saturation; }
 
   // The smallest pool that holds what one slice needs, by a few trials; none where there are few bricks.
   std::optional<Image> withSmallPool() const {
@@ -271,6 +291,7 @@ class Comparer {
   const CompareOptions options_;
   const glm::dmat4 toWorld_;
   const bool emission_;
+  const double brightest_;  // radiance that a picture may have; errors are relative to it
   Rendering base_;
   double rounding_ = 0;
   SceneComparison result_;

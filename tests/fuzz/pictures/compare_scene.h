@@ -27,10 +27,10 @@ struct SceneComparison {
   /// Emission: what its slabs alone make of the scene (slabPicture) from the reference, which is what the picture may
   /// be off by; 0 else.
   PictureDistance slabs;
-  /// The same of slices a quarter of a voxel apart in four segments; emission only.
+  /// The same of slices a quarter of a voxel apart in four segments.
   PictureDistance fineRender, fineSlabs;
   PictureDistance reference;  // the reference's picture from cellPicture, another integrator; emission only
-  double renderLimit = 0, fineLimit = 0, referenceLimit = 0;  // of rms; infinite where there is none
+  double renderLimit = 0, fineLimit = 0, referenceLimit = 0;  // of rms; the largest number where there is none
   std::vector<VariantDistance> variants;
   double opacity = 0;  // mean alpha of the reference
   double seconds = 0;
@@ -50,8 +50,8 @@ struct CompareOptions {
 /// Emission is held to what its slabs can do: with e the RMSE of slabPicture, the limit is 1.25 e + kFloor. Fine slabs
 /// are held to the same with their own e, so that pictures must converge where slabs do. The reference is held to
 /// cellPicture, which knows no bricks either, by as much as that changes with the parts of a cell. Cones and lights are
-/// compared with the reference, without a limit. Variants of every model must agree but for rounding, which is known by
-/// what a displacement of all samples by as much changes.
+/// compared with the reference by the same directions, without a limit. Variants of every model must agree but for
+/// rounding, which is known by what a displacement of all samples by as much changes.
 /// @pre `context` is current
 SceneComparison compareScene(const GlContext& context, const RandomScene& random, const CompareOptions& options = {});
 

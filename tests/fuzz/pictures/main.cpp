@@ -75,13 +75,13 @@ nlohmann::ordered_json describe(std::uint64_t seed, const RandomScene& random, c
   json["seconds"] = found.seconds;
   const auto add = [&](const char* name, const PictureDistance& distance, double limit) {
     json[name] = {{"rms", distance.rms}, {"max", distance.max}};
-    if (std::isfinite(limit)) json[name]["limit"] = limit;
+    if (limit < 1e30) json[name]["limit"] = limit;
   };
   const bool emission = random.scene.model == Model::emission;
   add("render", found.render, found.renderLimit);
+  add("fine", found.fineRender, found.fineLimit);
   if (emission) {
     add("slabs", found.slabs, INFINITY);
-    add("fine", found.fineRender, found.fineLimit);
     add("fine_slabs", found.fineSlabs, INFINITY);
     add("reference", found.reference, found.referenceLimit);
   }
@@ -134,9 +134,9 @@ int run(const Arguments& arguments) {
     const SceneComparison found = compareScene(*context, random, options);
     if (lines.is_open()) lines << describe(seed, random, found).dump() << std::endl;
     tallies["base"].rms.push_back(found.render.rms);
+    tallies["fine"].rms.push_back(found.fineRender.rms);
     if (random.scene.model == Model::emission) {
       tallies["base, slabs alone"].rms.push_back(found.slabs.rms);
-      tallies["fine"].rms.push_back(found.fineRender.rms);
       tallies["fine, slabs alone"].rms.push_back(found.fineSlabs.rms);
       tallies["reference"].rms.push_back(found.reference.rms);
     }

@@ -162,6 +162,11 @@ TransferFunction randomFunction2d(Dice& dice, const RandomGrid& grid, double edg
       media.push_back({randomColour(dice), nothing || dice.chance(0.3) ? 0 : dice.uniform() * sigma_t});
     }
   media[turned ? media.size() - shares.size() : media.size() - 1].sigma_t = sigma_t;
+  if (dice.chance(0.08)) {
+    const double haze = dice.scaleBetween(0.003, 0.05) / edge;
+    for (Medium& medium : media) medium.sigma_t += haze;
+    name += ", background seen";
+  }
   return {values, gradients, media};
 }
 
@@ -175,6 +180,7 @@ Camera randomCamera(Dice& dice, const ScalarGrid& grid, int largest, std::string
   camera.height = dice.chance(0.7) ? camera.width : dice.whole(largest / 2, largest);
   camera.lookAt = bounds.centre() + 0.2 * radius * dice.point(glm::dvec3(-1), glm::dvec3(1));
   glm::dvec3 direction = dice.direction();
+  bool along = false;
   camera.up = dice.direction();
   if (dice.chance(0.25)) {
     // Straight at faces of the grid, also where slices coincide with voxels.
@@ -182,7 +188,8 @@ Camera randomCamera(Dice& dice, const ScalarGrid& grid, int largest, std::string
     const auto other = static_cast<glm::length_t>((axis + 1) % 3);
     const glm::dvec3 a(toWorld[axis]), b(toWorld[other]), c(toWorld[(other + 1) % 3]);
     direction = glm::normalize(glm::cross(b, c)) * (dice.chance(0.5) ? 1.0 : -1.0);
-    camera.up = a == direction ? c : b;
+    camera.up = b + 0.1 * c;
+    along = true;
     name += "along an axis, ";
   }
   if (glm::length(glm::cross(camera.up, direction)) < 0.1)
@@ -202,6 +209,14 @@ Camera randomCamera(Dice& dice, const ScalarGrid& grid, int largest, std::string
     name += "fov " + number(camera.fov);
   }
   camera.eye = camera.lookAt + distance * direction;
+  if (along && dice.chance(0.5)) {
+    // A whole or half number of voxels from the origin, as slices often are apart.
+    const glm::dvec3 index(glm::inverse(toWorld) * glm::dvec4(camera.eye, 1));
+    const glm::dvec3 shift(toWorld * glm::dvec4(0.5 * glm::round(2.0 * index) - index, 0));
+    camera.eye += shift;
+    camera.lookAt += shift;
+    name += ", on the lattice";
+  }
   if (dice.chance(0.15)) {
     camera.nearDistance = std::max(0.0, distance + radius * dice.between(-1, 0.5));
     name += ", near plane";
@@ -238,7 +253,6 @@ void sampleAtRandom(Dice& dice, Scene& scene, std::string& name) {
   sampling.segments = dice.chance(0.4) ? 1 : dice.whole(2, 8);
   sampling.bits = dice.chance(0.88) ? 32 : 16;
   sampling.saturation = dice.chance(0.5) ? 0 : 1e-3;
-  sampling.tableSize = dice.chance(0.75) ? 256 : dice.chance(0.9) ? 128 : dice.of({512, 1024});
   name += std::string(sampling.quadrature == Quadrature::midpoint ? "midpoint " : "") + number(sampling.spacing) +
           " x " + std::to_string(sampling.segments);
   if (sampling.bits == 16) name += ", 16 bits";

@@ -162,9 +162,9 @@ class SlabIntegrator {
         planes_(scene.clipPlanes) {
     if (scene.clipBox)
       for (const ClipPlane& plane : boxPlanes(*scene.clipBox)) planes_.push_back(plane);
-    const Box whole{glm::dvec3(domain.min), glm::dvec3(domain.max)};
-    // Half a voxel more would do: beyond the domain there is only background.
-    const Box around{whole.min - 2.0, whole.max + 2.0};
+    const double farther = transfer_.is2d() ? 1 : 0;
+    const Box whole{glm::dvec3(domain.min) - farther, glm::dvec3(domain.max) + farther};
+    const Box around{whole.min - 1.0, whole.max + 1.0};  // beyond the medium there is nothing
     around_ = boxPlanes(around, grid.indexToWorld());
     if (transfer_(field_.background()).sigma_t > 0)
       for (const ClipPlane& plane : boxPlanes(whole, grid.indexToWorld())) planes_.push_back(plane);

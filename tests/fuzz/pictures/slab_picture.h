@@ -12,7 +12,8 @@ namespace umbrick {
 /// is left is cut into equal segments. Preintegrated, the value of a segment runs linearly from its front to its back,
 /// and what such a ramp scatters and absorbs is integrated piece by piece of the function; midpoint, and for a 2D
 /// function, the medium is that of the middle. The error of this picture is that of the slabs, and of nothing else.
-/// @param domain  where a visible background ends, see Bricks; nothing ends there when the background is transparent
+/// @param domain  active voxels, and others that differ from the background, grown by one. A visible background ends
+///                there; for a 2D function one voxel farther out, where gradients do
 /// @param scene   resolved; emission, whatever its model is
 Image slabPicture(const ScalarGrid& grid, const Scene& scene, const IndexBox& domain);
 
