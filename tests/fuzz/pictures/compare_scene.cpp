@@ -67,7 +67,7 @@ std::string pixelOf(const Image& image, const glm::ivec2& at) {
 struct Rendering {
   std::unique_ptr<Bricks> bricks;
   std::unique_ptr<SliceRenderer> renderer;
-  Image colour;
+  Image colour, depth;
   RenderStats stats;
 };
 
@@ -83,6 +83,7 @@ Rendering render(const GlContext& context, const ScalarGrid& grid, Scene scene, 
   rendering.renderer = std::make_unique<SliceRenderer>(context, *rendering.bricks, scene, options);
   Picture picture = rendering.renderer->render();
   rendering.colour = std::move(picture.colour);
+  rendering.depth = std::move(picture.depth);
   rendering.stats = picture.stats;
   return rendering;
 }
@@ -156,13 +157,13 @@ class Comparer {
 
   // The reference by the directions that the renderer takes: their number is no error of the picture. The paper's own
   // method takes none.
-  Image exactPicture() const {
+  ReferencePicture exactPicture() const {
     ReferenceOptions reference;
     reference.tolerance = emission_ ? 1e-4 : 2e-3;
     if (!emission_ && scene_.method == Method::ordinates)
       reference.lights = lightDirections(scene_, scene_.occlusion.directions);
     reference.directions = 64;
-    return renderReference(grid_, scene_, reference).colour;
+    return renderReference(grid_, scene_, reference);
   }
 
   Scene fineScene() const {
@@ -176,7 +177,8 @@ class Comparer {
   }
 
   void compareWithReference() {
-    const Image exact = exactPicture();
+    const ReferencePicture reference = exactPicture();
+    const Image& exact = reference.colour;
     double alpha = 0;
     for (std::size_t i = 3; i < exact.pixels.size(); i += 4) alpha += exact.pixels[i];
     result_.opacity = 4 * alpha / static_cast<double>(exact.pixels.size());
@@ -200,10 +202,34 @@ class Comparer {
     }
     result_.renderLimit = limit;
     require("base", base_.colour, exact, result_.render, limit);
-    const Image rendered = render(context_, grid_, fine).colour;
-    result_.fineRender = distance(rendered, exact);
+    RenderOptions layers;
+    layers.visibilityAndDepth = true;
+    const Rendering rendered = render(context_, grid_, fine, layers);
+    result_.fineRender = distance(rendered.colour, exact);
     result_.fineLimit = fineLimit;
-    require("fine", rendered, exact, result_.fineRender, fineLimit);
+    require("fine", rendered.colour, exact, result_.fineRender, fineLimit);
+    compareDepths(rendered, reference, fine);
+  }
+
+  // Depths are those of the middles of slabs, which may be off by half of one; where light comes from depends on
+  // colours as far as those may be off, over the way through the medium. Weighted by opacity, in voxels.
+  void compareDepths(const Rendering& rendered, const ReferencePicture& reference, const Scene& fine) {
+    const double edge = shortestVoxelEdge(toWorld_);
+    double sum = 0;
+    for (std::size_t i = 0; i < rendered.depth.pixels.size(); ++i) {
+      // A visible background makes pictures opaque, but no medium.
+      const double a = rendered.depth.pixels[i], b = reference.depth.pixels[i];
+      const double weight = std::min(rendered.colour.pixels[4 * i + 3], reference.colour.pixels[4 * i + 3]);
+      if (weight <= 0 || (std::isinf(a) && std::isinf(b))) continue;
+      const double difference = weight * std::abs(a - b) / edge;
+      if (!scene_.background || std::isfinite(difference)) sum += difference * difference;
+    }
+    result_.depth = std::sqrt(sum / static_cast<double>(rendered.depth.pixels.size()));
+    const double way = glm::length(grid_.worldBounds().extent()) / edge + 2;
+    result_.depthLimit = 0.5 * fine.sampling.spacing / edge + 2 * result_.fineLimit * way;
+    if (!(result_.depth <= result_.depthLimit))
+      result_.failures.push_back("depth: RMS " + number(result_.depth) + " voxels, limit " +
+                                 number(result_.depthLimit));
   }
 
   // As the check of invariants has it: texture coordinates are rounded to some units in the last place of 24 bits. So

@@ -31,6 +31,7 @@ struct SceneComparison {
   PictureDistance fineRender, fineSlabs;
   PictureDistance reference;  // the reference's picture from cellPicture, another integrator; emission only
   double renderLimit = 0, fineLimit = 0, referenceLimit = 0;  // of rms; the largest number where there is none
+  double depth = 0, depthLimit = 0;  // of the fine picture from the reference, RMS weighted by opacity, voxels
   std::vector<VariantDistance> variants;
   double opacity = 0;  // mean alpha of the reference
   double seconds = 0;

@@ -77,6 +77,7 @@ nlohmann::ordered_json describe(std::uint64_t seed, const RandomScene& random, c
     json[name] = {{"rms", distance.rms}, {"max", distance.max}};
     if (limit < 1e30) json[name]["limit"] = limit;
   };
+  json["depth"] = found.depth;
   const bool emission = random.scene.model == Model::emission;
   add("render", found.render, found.renderLimit);
   add("fine", found.fineRender, found.fineLimit);
@@ -135,6 +136,7 @@ int run(const Arguments& arguments) {
     if (lines.is_open()) lines << describe(seed, random, found).dump() << std::endl;
     tallies["base"].rms.push_back(found.render.rms);
     tallies["fine"].rms.push_back(found.fineRender.rms);
+    tallies["depth"].rms.push_back(found.depth);
     if (random.scene.model == Model::emission) {
       tallies["base, slabs alone"].rms.push_back(found.slabs.rms);
       tallies["fine, slabs alone"].rms.push_back(found.fineSlabs.rms);
@@ -152,7 +154,8 @@ int run(const Arguments& arguments) {
   }
   std::cout << watch.elapsedMs() / 1000
             << " s. RMSE from the reference (base, fine), of the reference from slabs without "
-            << "bricks, from the scene's own picture (the others):\n";
+            << "bricks, of depths, in voxels (depth), from the scene's own "
+            << "picture (the others):\n";
   for (const auto& [name, tally] : tallies)
     std::cout << name << ": " << (tally.rms.empty() ? "" : distribution(tally.rms) + ", ") << tally.rms.size()
               << " scenes, " << tally.failed << " failed\n";
