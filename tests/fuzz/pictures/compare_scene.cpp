@@ -193,11 +193,11 @@ class Comparer {
       result_.fineSlabs = distance(slabPicture(grid_, fine, domain), exact);
       fineLimit = 1.25 * result_.fineSlabs.rms + brightest_ * (kFloor + scene_.sampling.saturation);
       // What is left at eighths of cells is a third of what halving them changed, by their order; of peaks that rays
-      // graze, few pixels tell: all of it.
+      // graze, few pixels tell: twice as much.
       const Image finest = cellPicture(grid_, fine, domain, 8);
       const PictureDistance halving = distance(cellPicture(grid_, fine, domain, 4), finest);
       result_.reference = distance(exact, finest);
-      result_.referenceLimit = halving.rms + brightest_ * kReferenceFloor;
+      result_.referenceLimit = 2 * halving.rms + brightest_ * kReferenceFloor;
       require("reference", exact, finest, result_.reference, result_.referenceLimit);
     }
     result_.renderLimit = limit;
@@ -238,8 +238,16 @@ class Comparer {
   void measureRounding() {
     const Range value = base_.bricks->value;
     const double magnitude = std::max(std::abs(double(value.min)), std::abs(double(value.max)));
-    const double ofValue = value.extent() > 0 ? magnitude / value.extent() : 0;
-    const double voxels = 16 * 0x1p-25 * (base_.stats.textureEdge + 64 + ofValue);
+    // An outlier widens the range, but not the part of it where the function varies.
+    const float varying = scene_.transfer->valueDomain().extent();
+    const double extent = varying > 0 ? std::min(varying, value.extent()) : value.extent();
+    const double ofValue = extent > 0 ? magnitude / extent : 0;
+    // Planes cut at depths from the eye, in single precision, too.
+    const bool cut = !scene_.clipPlanes.empty() || scene_.clipBox || scene_.camera.nearDistance > 0 ||
+                     (*scene_.transfer)(base_.bricks->background).sigma_t > 0;
+    const double depth =
+        cut ? glm::distance(scene_.camera.eye, grid_.worldBounds().centre()) / shortestVoxelEdge(toWorld_) : 0;
+    const double voxels = 16 * 0x1p-25 * (base_.stats.textureEdge + 64 + ofValue + depth);
     const Picture shifted = base_.renderer->render(displaced(scene_.camera, toWorld_, voxels));
     const PictureDistance moved = distance(shifted.colour, base_.colour);
     const double lastPlace = scene_.sampling.bits == 16 ? 0x1p-16 : 0x1p-24;

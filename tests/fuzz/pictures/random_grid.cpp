@@ -279,7 +279,7 @@ openvdb::FloatGrid::Ptr changed(const openvdb::FloatGrid& grid, const std::funct
 // Turned, of unequal axes, sheared or mirrored, as the dice fall; the shortest axis has length `edge`.
 glm::dmat4 crooked(Dice& dice, double edge) {
   glm::dmat4 matrix = glm::rotate(glm::dmat4(1), dice.between(0, 6.28), dice.direction());
-  if (dice.chance(0.6)) matrix = glm::scale(matrix, dice.point(glm::dvec3(1), glm::dvec3(3)));
+  if (dice.chance(0.6)) matrix = glm::scale(matrix, dice.point(glm::dvec3(1), glm::dvec3(dice.chance(0.15) ? 20 : 3)));
   if (dice.chance(0.3)) matrix[2] += dice.between(-0.5, 0.5) * matrix[0];
   if (dice.chance(0.4)) matrix[static_cast<glm::length_t>(dice.below(3))] *= -1.0;
   const double shortest = std::min({glm::length(matrix[0]), glm::length(matrix[1]), glm::length(matrix[2])});

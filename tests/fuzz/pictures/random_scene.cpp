@@ -208,6 +208,14 @@ Camera randomCamera(Dice& dice, const ScalarGrid& grid, int largest, std::string
     distance = radius * dice.between(0.7, 1.2) / std::sin(0.5 * std::min(camera.fov, 1.6));
     name += "fov " + number(camera.fov);
   }
+  if (dice.chance(0.06)) {
+    // From far away, through a telescope.
+    const double factor = dice.scaleBetween(10, 1e4);
+    if (camera.projection == Projection::perspective)
+      camera.fov = 2 * std::atan(std::tan(0.5 * std::min(camera.fov, 1.2)) / factor);
+    distance *= factor;
+    name += ", " + number(factor) + " times as far";
+  }
   camera.eye = camera.lookAt + distance * direction;
   if (along && dice.chance(0.5)) {
     // A whole or half number of voxels from the origin, as slices often are apart.
@@ -232,7 +240,7 @@ void clipAtRandom(Dice& dice, const ScalarGrid& grid, Scene& scene, std::string&
   if (dice.chance(0.25)) {
     const int count = dice.whole(1, 3);
     for (int i = 0; i < count; ++i) {
-      const glm::dvec3 normal = dice.scaleBetween(0.3, 3) * dice.direction();
+      const glm::dvec3 normal = dice.scaleBetween(1e-3, 1e3) * dice.direction();
       scene.clipPlanes.emplace_back(normal, -glm::dot(normal, inside()) + 0.15 * glm::length(normal * extent));
     }
     name += ", " + std::to_string(count) + " planes";
