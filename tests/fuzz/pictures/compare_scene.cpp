@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <glm/mat3x3.hpp>
 #include <limits>
@@ -12,6 +11,7 @@
 
 #include "fuzz/pictures/dice.h"
 #include "fuzz/pictures/same_scene.h"
+#include "fuzz/pictures/short_number.h"
 #include "fuzz/pictures/slab_picture.h"
 #include "umbrick/brick/brick_grid.h"
 #include "umbrick/core/error.h"
@@ -52,15 +52,10 @@ PictureDistance distance(const Image& a, const Image& b) {
   return result;
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 std::string pixelOf(const Image& image, const glm::ivec2& at) {
   const float* pixel = image.at(at.x, at.y);
-  return number(pixel[0]) + " " + number(pixel[1]) + " " + number(pixel[2]) + " " + number(pixel[3]);
+  return shortNumber(pixel[0]) + " " + shortNumber(pixel[1]) + " " + shortNumber(pixel[2]) + " " +
+         shortNumber(pixel[3]);
 }
 
 // A picture, and what is needed for another one of the same bricks.
@@ -145,7 +140,7 @@ class Comparer {
   void require(const std::string& what, const Image& found, const Image& right, const PictureDistance& from,
                double limit) {
     if (from.rms <= limit) return;
-    result_.failures.push_back(what + ": RMSE " + number(from.rms) + ", limit " + number(limit) + ", pixel " +
+    result_.failures.push_back(what + ": RMSE " + shortNumber(from.rms) + ", limit " + shortNumber(limit) + ", pixel " +
                                std::to_string(from.worst.x) + " " + std::to_string(from.worst.y) + " is " +
                                pixelOf(found, from.worst) + ", should be " + pixelOf(right, from.worst));
   }
@@ -228,8 +223,8 @@ class Comparer {
     const double way = glm::length(grid_.worldBounds().extent()) / edge + 2;
     result_.depthLimit = 0.5 * fine.sampling.spacing / edge + 2 * result_.fineLimit * way;
     if (!(result_.depth <= result_.depthLimit))
-      result_.failures.push_back("depth: RMS " + number(result_.depth) + " voxels, limit " +
-                                 number(result_.depthLimit));
+      result_.failures.push_back("depth: RMS " + shortNumber(result_.depth) + " voxels, limit " +
+                                 shortNumber(result_.depthLimit));
   }
 
   // As the check of invariants has it: texture coordinates are rounded to some units in the last place of 24 bits. So

@@ -22,12 +22,13 @@ namespace {
 
 const char* const kUsage =
     "umbrick_fuzz_pictures [--seed-from N=1] [--count M=100] [--kind emission|occlusion|lights|any]\n"
-    "                      [--size PIXELS=32] [--json-lines FILE] [--keep DIR] [--verbose]\n"
+    "                      [--size PIXELS=32] [--json-lines FILE] [--keep DIR] [--keep-all] [--verbose]\n"
     "Renders random scenes and those that must be the same, and compares them with the reference.\n"
     "--size        longest edge of a picture\n"
     "--json-lines  all numbers, a scene a line\n"
     "--keep        writes those that fail as DIR/SEED/grid.vdb and DIR/SEED/scene.json, for umbrick render and "
     "reference\n"
+    "--keep-all    keeps those that pass, too\n"
     "--verbose     prints a line for each scene, not only for those that fail\n"
     "Exit status: 0 all passed, 1 some failed, 2 wrong usage.\n";
 
@@ -36,15 +37,15 @@ struct Arguments {
   SceneKind kind = SceneKind::emission;
   int size = 32;
   std::filesystem::path jsonLines, keep;
-  bool verbose = false;
+  bool keepAll = false, verbose = false;
 };
 
 std::optional<Arguments> parse(const std::vector<std::string>& words) {
   Arguments arguments;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string& name = words[i];
-    if (name == "--verbose") {
-      arguments.verbose = true;
+    if (name == "--verbose" || name == "--keep-all") {
+      (name == "--verbose" ? arguments.verbose : arguments.keepAll) = true;
       continue;
     }
     if (i + 1 == words.size()) return std::nullopt;
@@ -150,7 +151,8 @@ int run(const Arguments& arguments) {
       for (const std::string& failure : found.failures) std::cout << " | " << failure;
       std::cout << std::endl;
     }
-    if (!found.failures.empty() && !arguments.keep.empty()) keep(arguments.keep / std::to_string(seed), random, found);
+    if ((arguments.keepAll || !found.failures.empty()) && !arguments.keep.empty())
+      keep(arguments.keep / std::to_string(seed), random, found);
   }
   std::cout << watch.elapsedMs() / 1000
             << " s. RMSE from the reference (base, fine), of the reference from slabs without "

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <vector>
 
+#include "fuzz/pictures/short_number.h"
 #include "support/test_grids.h"
 #include "umbrick/grid/float_grid.h"
 
@@ -21,12 +21,6 @@ struct Content {
   double thickness = 8, levels = 0;
   std::string name;
 };
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 // Sets voxels of the box where the field is not 0.
 void fill(Content& content, const glm::ivec3& low, const glm::ivec3& high,
@@ -143,7 +137,7 @@ Content labels(Dice& dice) {
     });
     return nearest->second / content.levels;
   });
-  content.name = number(content.levels) + " labels";
+  content.name = shortNumber(content.levels) + " labels";
   return content;
 }
 
@@ -190,7 +184,7 @@ Content apart(Dice& dice) {
          [&](const glm::dvec3& p) { return std::max(0.0, 1 - glm::length(p - centre) / radius); });
   }
   content.thickness = 6;
-  content.name = "two bodies " + number(glm::length(gap)) + " apart";
+  content.name = "two bodies " + shortNumber(glm::length(gap)) + " apart";
   return content;
 }
 
@@ -247,7 +241,7 @@ Values randomValues(Dice& dice, double levels) {
     }
   }
   if (values.scale != 1 || values.offset != 0)
-    values.name = ", values " + number(values.offset) + " + " + number(values.scale) + " v";
+    values.name = ", values " + shortNumber(values.offset) + " + " + shortNumber(values.scale) + " v";
   return values;
 }
 
@@ -294,11 +288,11 @@ glm::dmat4 randomTransform(Dice& dice, std::string& name) {
     matrix = crooked(dice, edge);
     name += ", crooked";
   }
-  if (edge != 1) name += ", voxels of " + number(edge);
+  if (edge != 1) name += ", voxels of " + shortNumber(edge);
   if (dice.chance(0.3)) {
     const double distance = edge * dice.scaleBetween(10, 1e5);
     matrix[3] = glm::dvec4(distance * dice.direction(), 1);
-    name += ", " + number(distance / edge) + " voxels from the origin";
+    name += ", " + shortNumber(distance / edge) + " voxels from the origin";
   }
   return matrix;
 }
@@ -349,7 +343,7 @@ RandomGrid randomGrid(Dice& dice) {
   if (dice.chance(0.08)) {
     const double factor = dice.of({10.0, 1000.0, 1e6, -1000.0});
     content.grid->tree().setValueOn(somewhere(), static_cast<float>(values.offset + factor * values.scale));
-    result.description += ", outlier " + number(factor);
+    result.description += ", outlier " + shortNumber(factor);
   }
   result.value = {result.background, result.background};
   for (auto value = content.grid->cbeginValueAll(); value; ++value)
@@ -365,7 +359,7 @@ RandomGrid randomGrid(Dice& dice) {
     content.grid = changed(
         *content.grid, [](float v) { return v; }, shift);
     if (dice.chance(0.5)) transform = glm::translate(transform, -glm::dvec3(shift));
-    place += ", indices from " + number(shift.x) + " " + number(shift.y) + " " + number(shift.z);
+    place += ", indices from " + shortNumber(shift.x) + " " + shortNumber(shift.y) + " " + shortNumber(shift.z);
   }
   result.grid = withTransform(makeGrid(content.grid), transform);
   result.description += place;

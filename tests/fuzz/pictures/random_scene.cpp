@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 #include <vector>
 
 #include "fuzz/pictures/dice.h"
 #include "fuzz/pictures/random_grid.h"
+#include "fuzz/pictures/short_number.h"
 #include "fuzz/pictures/slab_picture.h"
 #include "support/test_scenes.h"
 #include "umbrick/core/error.h"
@@ -17,12 +17,6 @@
 
 namespace umbrick {
 namespace {
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 // A function of the distance from the background, as a share of the way to the content's full value: 0 to 1.
 struct Profile {
@@ -37,7 +31,7 @@ Profile peak(Dice& dice, double thickness) {
   Profile profile;
   profile.points = {{centre - half, 0}, {centre, 1}, {centre + half, 0}};
   profile.thickness = std::max(2e-3, half * 0.5 * std::max(2.0, thickness));
-  profile.name = "peak " + number(half);
+  profile.name = "peak " + shortNumber(half);
   return profile;
 }
 
@@ -94,7 +88,7 @@ Profile randomProfile(Dice& dice, const RandomGrid& grid) {
   switch (dice.below(6)) {
     case 0: {
       const double at = dice.between(0.1, 0.9);
-      return {{{at, 0}, {at, 1}}, 0, "step " + number(at)};
+      return {{{at, 0}, {at, 1}}, 0, "step " + shortNumber(at)};
     }
     case 1:
       return peak(dice, grid.thickness);
@@ -104,7 +98,7 @@ Profile randomProfile(Dice& dice, const RandomGrid& grid) {
       return pieces(dice);
     default: {
       const double low = dice.chance(0.5) ? 0 : dice.between(0, 0.5), high = dice.between(low + 0.05, 1);
-      return {{{low, 0}, {high, 1}}, 0, "ramp " + number(low) + " " + number(high)};
+      return {{{low, 0}, {high, 1}}, 0, "ramp " + shortNumber(low) + " " + shortNumber(high)};
     }
   }
 }
@@ -202,11 +196,11 @@ Camera randomCamera(Dice& dice, const ScalarGrid& grid, int largest, std::string
   } else if (dice.chance(0.25)) {
     camera.fov = dice.between(0.8, 2.6);
     distance = radius * dice.between(0.05, 0.8);
-    name += "inside, fov " + number(camera.fov);
+    name += "inside, fov " + shortNumber(camera.fov);
   } else {
     camera.fov = dice.chance(0.15) ? dice.between(1.2, 2.4) : dice.between(0.1, 1.2);
     distance = radius * dice.between(0.7, 1.2) / std::sin(0.5 * std::min(camera.fov, 1.6));
-    name += "fov " + number(camera.fov);
+    name += "fov " + shortNumber(camera.fov);
   }
   if (dice.chance(0.06)) {
     // From far away, through a telescope.
@@ -214,7 +208,7 @@ Camera randomCamera(Dice& dice, const ScalarGrid& grid, int largest, std::string
     if (camera.projection == Projection::perspective)
       camera.fov = 2 * std::atan(std::tan(0.5 * std::min(camera.fov, 1.2)) / factor);
     distance *= factor;
-    name += ", " + number(factor) + " times as far";
+    name += ", " + shortNumber(factor) + " times as far";
   }
   camera.eye = camera.lookAt + distance * direction;
   if (along && dice.chance(0.5)) {
@@ -261,7 +255,7 @@ void sampleAtRandom(Dice& dice, Scene& scene, std::string& name) {
   sampling.segments = dice.chance(0.4) ? 1 : dice.whole(2, 8);
   sampling.bits = dice.chance(0.88) ? 32 : 16;
   sampling.saturation = dice.chance(0.5) ? 0 : 1e-3;
-  name += std::string(sampling.quadrature == Quadrature::midpoint ? "midpoint " : "") + number(sampling.spacing) +
+  name += std::string(sampling.quadrature == Quadrature::midpoint ? "midpoint " : "") + shortNumber(sampling.spacing) +
           " x " + std::to_string(sampling.segments);
   if (sampling.bits == 16) name += ", 16 bits";
 }
@@ -309,7 +303,7 @@ void illuminateAtRandom(Dice& dice, SceneKind kind, Scene& scene, std::string& n
       occlusion.passes = dice.whole(1, 2);
       occlusion.algorithm = dice.whole(2, 3);
       occlusion.perspectiveCorrection = dice.chance(0.7);
-      name += methodName(scene.method) + " " + number(occlusion.aperture);
+      name += methodName(scene.method) + " " + shortNumber(occlusion.aperture);
       break;
     case SceneKind::lights:
       lightAtRandom(dice, scene, name);
