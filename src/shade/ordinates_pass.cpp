@@ -132,12 +132,11 @@ class OrdinatesPass : public SlicePass {
 
   void chooseLattice(const Frame& frame) {
     const ProxySlices& slices = frame.slices;
-    const bool perspective = frame.view.projection == Projection::perspective;
-    const double pixel = 2 * frame.view.halfExtent.y / frame.camera.height * (perspective ? frame.nearestDepth : 1.0);
     const double scale = frame.scene.occlusion.scale;
-    // Paths are off by up to a texel across and half a slab along: neither alone is worth refining. Detail below a
-    // voxel or a pixel is not worth it either.
-    lattice_.texel = scale > 0 ? frame.voxelEdge / scale : std::max({slices.spacing, frame.voxelEdge, pixel});
+    // Paths are off by up to a texel across and half a slab along: neither alone is worth refining, and slabs thinner
+    // than texels let more light through what is thinner than a texel. Detail below a voxel is not worth it either;
+    // that of a pixel does not matter, since occluders smaller than that cast shadows, too.
+    lattice_.texel = scale > 0 ? frame.voxelEdge / scale : std::max(slices.spacing, frame.voxelEdge);
     extents_ = {};
     extents_.texel = lattice_.texel;
     for (std::int64_t i = 0; i < slices.count(); ++i) extents_.depths.push_back(slices.depth(i));

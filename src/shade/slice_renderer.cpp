@@ -225,17 +225,6 @@ class SliceRenderer::Implementation {
     return planes;
   }
 
-  // By the sphere around the domain: the same while the camera turns, or goes around it.
-  double nearestDepth(const IndexView& view) const {
-    const glm::dvec3 low(volume_.domain.min), extent(volume_.domain.extent());
-    const glm::dvec3 centre = view.toView(low + 0.5 * extent);
-    double radius = 0;
-    for (unsigned c = 0; c < 8; ++c)
-      radius = std::max(radius,
-                        glm::distance(centre, view.toView(low + extent * glm::dvec3(c & 1, c >> 1 & 1, c >> 2 & 1))));
-    return std::max(glm::length(centre) - radius, scene_.sampling.spacing);
-  }
-
   void prepareFrame(const Camera& camera, const RenderSample& sample) {
     const IndexView view = indexView(camera, volume_.indexToWorld);
     checkReach(view);
@@ -247,8 +236,7 @@ class SliceRenderer::Implementation {
       slices = cutSlices(view, origins_, volume_.layout.interior, planes, spacing, sample.phase);
     frame_.emplace(Frame{gl_, scene_, camera, view, std::move(planes), std::move(slices), *atlas_, *transfer_,
                          *targets_, *polygons_, FragmentCounter(gl_, options_.countFragments), options_.reverseBricks,
-                         shortestVoxelEdge(volume_.indexToWorld), nearestDepth(view),
-                         PassClock(gl_, options_.timePasses), sample});
+                         shortestVoxelEdge(volume_.indexToWorld), PassClock(gl_, options_.timePasses), sample});
     pass_->plan(*frame_);
     std::vector<const ProxySlices*> sweeps{&frame_->slices};
     if (pass_->occluders()) sweeps.push_back(pass_->occluders());
