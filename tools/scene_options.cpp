@@ -197,9 +197,9 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
       ->check(CLI::Range(1, 1000000))
       ->group(light);
   command
-      .add_option(
-          "--occlusion-scale", o.occlusionScale,
-          "of ordinates: window texels per voxel edge [0: a texel is as large as the largest of slab, voxel and pixel]")
+      .add_option("--occlusion-scale", o.occlusionScale,
+                  "of ordinates: window texels per voxel edge [0: a texel is as large as the larger of slab and voxel, "
+                  "in huge volumes 1/2048 of the diagonal]")
       ->group(light);
   command.add_option("--theta", o.theta, "half-angle of the cone, degrees, in [0, 90) [60]")->group(light);
   command.add_option("--footprint", o.footprint, "n: n x n samples over the cone's footprint, 1 to 16 [3]")

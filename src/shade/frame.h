@@ -66,7 +66,7 @@ struct Frame {
   FragmentCounter fragments;
   bool reverseBricks = false;  // see RenderOptions
   double voxelEdge = 1;        // shortest, world units
-  double nearestDepth = 1;     // of the volume's domain, at least a slab; the same however it is cut into bricks
+  double diagonal = 1;         // of the volume's domain, world units; the same however it is cut into bricks
   PassClock clock;
   RenderSample sample;
 

@@ -27,6 +27,7 @@ constexpr int kMostSlices = 32;      // that are lit together
 constexpr int kMostDirections = 64;  // that one shader takes through a slice
 constexpr int kTile = 8;             // texels along the edge of a compute shader's tile
 constexpr double kSliceBytes = 64 << 20;
+constexpr double kMostTexelsAlong = 2048;  // of the diagonal of a volume, where nobody asks for more
 // Rounds shifts to whole texels. Light at 45 degrees has halves on every slice, and slopes are known to 1e-16: halves
 // have to go one way, or slices jump as the camera moves.
 constexpr double kRound = 0.5 - 1e-6;
@@ -135,12 +136,13 @@ class OrdinatesPass : public SlicePass {
 
   void chooseLattice(const Frame& frame) {
     const ProxySlices& slices = frame.slices;
-    const bool perspective = frame.view.projection == Projection::perspective;
-    const double pixel = 2 * frame.view.halfExtent.y / frame.camera.height * (perspective ? frame.nearestDepth : 1.0);
     const double scale = frame.scene.occlusion.scale;
-    // Paths are off by up to a texel across and half a slab along: neither alone is worth refining. Detail below a
-    // voxel or a pixel is not worth it either.
-    lattice_.texel = scale > 0 ? frame.voxelEdge / scale : std::max({slices.spacing, frame.voxelEdge, pixel});
+    // Paths are off by up to a texel across and half a slab along: neither alone is worth refining, and slabs thinner
+    // than texels let more light through what is thinner than a texel. Detail below a voxel is not worth it either;
+    // that of a pixel does not matter, since occluders smaller than that cast shadows, too.
+    // Of huge volumes texels are larger, so that windows keep to some 16 MiB a direction.
+    lattice_.texel = scale > 0 ? frame.voxelEdge / scale
+                               : std::max({slices.spacing, frame.voxelEdge, frame.diagonal / kMostTexelsAlong});
     extents_ = {};
     extents_.texel = lattice_.texel;
     for (std::int64_t i = 0; i < slices.count(); ++i) extents_.depths.push_back(slices.depth(i));

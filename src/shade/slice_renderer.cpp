@@ -236,15 +236,14 @@ class SliceRenderer::Implementation {
     return planes;
   }
 
-  // By the sphere around the domain: the same while the camera turns, or goes around it.
-  double nearestDepth(const IndexView& view) const {
-    const glm::dvec3 low(volume_.domain.min), extent(volume_.domain.extent());
-    const glm::dvec3 centre = view.toView(low + 0.5 * extent);
-    double radius = 0;
-    for (unsigned c = 0; c < 8; ++c)
-      radius = std::max(radius,
-                        glm::distance(centre, view.toView(low + extent * glm::dvec3(c & 1, c >> 1 & 1, c >> 2 & 1))));
-    return std::max(glm::length(centre) - radius, scene_.sampling.spacing);
+  // The longest of the four, of a crooked volume.
+  double domainDiagonal() const {
+    const glm::dvec3 extent(volume_.domain.extent());
+    double longest = 0;
+    for (unsigned c = 0; c < 4; ++c)
+      longest = std::max(longest, glm::length(glm::dmat3(volume_.indexToWorld) *
+                                              (extent * glm::dvec3(1, c & 1 ? -1 : 1, c & 2 ? -1 : 1))));
+    return longest;
   }
 
   void prepareFrame(const Camera& camera, const RenderSample& sample) {
@@ -259,7 +258,7 @@ class SliceRenderer::Implementation {
       slices = cutSlices(view, origins_, volume_.layout.interior, bounds, spacing, sample.phase);
     frame_.emplace(Frame{gl_, scene_, camera, view, std::move(planes), std::move(bounds), std::move(slices), *atlas_,
                          *transfer_, *targets_, *polygons_, FragmentCounter(gl_, options_.countFragments),
-                         options_.reverseBricks, shortestVoxelEdge(volume_.indexToWorld), nearestDepth(view),
+                         options_.reverseBricks, shortestVoxelEdge(volume_.indexToWorld), domainDiagonal(),
                          PassClock(gl_, options_.timePasses), sample});
     pass_->plan(*frame_);
     std::vector<const ProxySlices*> sweeps{&frame_->slices};

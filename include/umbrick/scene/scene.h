@@ -46,7 +46,8 @@ struct OcclusionOptions {
   bool perspectiveCorrection = true;     // Eqs. 12-15 of the paper
   int bits = 32;                         // of the occlusion buffer or the windows, 16 or 32; see SamplingOptions
   int directions = 16;                   // K: of ordinates, about so many over the cone, 1 to 1024
-  double scale = 0;  // of ordinates: window texels per voxel edge; 0: as large as slabs, voxels, pixels
+  double scale = 0;  // of ordinates: window texels per voxel edge; 0: as large as the larger of slab and voxel,
+                     // or as 1/2048 of the volume's diagonal where that is larger
   bool operator==(const OcclusionOptions&) const = default;
 };
 

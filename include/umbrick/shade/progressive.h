@@ -16,10 +16,16 @@ struct ErrorEstimate {
   /// Standard error of the mean of the passes so far: of directions, of where slices lie and of how paths are rounded.
   /// From the spread of kStreams means; infinite before there are as many.
   double statistical = 0;
-  /// What does not average out: of thickness of slabs and texels of windows. Pictures with both twice as large are off
-  /// by about twice as much (first order, see the convergence tests): the difference to them. An estimate: where texels
-  /// are much larger than slabs the true one has been seen to be twice that. Infinite before it is known, or when
-  /// slabs twice as thick reach beyond the bricks' apron.
+  /// What does not average out: of thickness of slabs, length of their segments and texels of windows. From the
+  /// difference of pictures of the first kStreams passes to such with all three twice as large, less what it has by
+  /// chance. Where errors fall with the order p that is 2^p - 1 times the error. p is 1 at most, and at hard edges that
+  /// cast shadows has been seen as low as 0.45 where texels are 2 voxels or more, higher below; so it is multiplied by
+  /// the geometric mean of 1 / (2^p - 1) at both: 1.65 for `draft` and `normal`, 1.34 for `high`. Measured on six
+  /// volumes at 30, 60 and 80 degrees with solid and translucent media, 128 x 128 and 256 x 256 pixels, 8 passes, over
+  /// the true error: `normal` 0.53 to 1.85 (27 pictures), `draft` 0.62 to 1.63 (21), `high` 1.18 to 1.78 (11).
+  /// Lowest where solid surfaces are seen at a grazing angle under wide light: they are too dark by almost as much with
+  /// slabs of 2.5 voxels as with 10. Too high, up to 2.5 times, where coarser slabs are half of a translucent volume.
+  /// Infinite before kStreams passes.
   double systematic = 0;
   double total() const;  // root of the sum of squares
 };
@@ -51,15 +57,16 @@ inline constexpr int kStreams = 4;
 /// picture is linear in its light. Passes of a stream continue one sequence, so that the error falls faster than with
 /// the root of their number, and the streams' spread, which needs no more than that they are independent, is an honest
 /// standard error (replicated quasi-Monte Carlo, Owen 1997). The same seed gives the same picture.
-/// @param volume  bricks with the apron of coarserScene(scene), or without an estimate of the systematic error
+/// @param volume  bricks with the apron of coarserScene(scene); with less, where slabs twice as thick reach beyond it,
+/// the systematic error comes from the difference to slabs half as thick, at eight times the cost of the first passes
 /// @param onPass  called after every pass with the picture so far; false stops
 /// @throw InvalidArgument  a model or a method without directions; an option out of range; as SliceRenderer
 ProgressivePicture renderProgressive(const GlContext& context, const Bricks& volume, const Scene& scene,
                                      const ProgressiveOptions& options, const RenderOptions& render = {},
                                      const std::function<bool(const ProgressivePicture&)>& onPass = {});
 
-/// The scene with slabs and window texels twice as large, by which the systematic error is estimated; texels that the
-/// renderer chooses (scale 0) are doubled when it has chosen.
+/// The scene with slabs, their segments and window texels twice as large, by which the systematic error is estimated;
+/// texels that the renderer chooses (scale 0) are doubled when it has chosen.
 Scene coarserScene(const Scene& scene);
 
 }  // namespace umbrick
