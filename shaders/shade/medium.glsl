@@ -21,8 +21,8 @@ struct Slab {
   float tau;  // optical depth
 };
 
-void addPiece(inout Slab slab, vec3 albedo, float tau) {
-  slab.eye += (1.0 - slab.eye.a) * vec4(albedo, 1.0) * oneMinusExp(tau);
+void addPiece(inout Slab slab, vec3 albedo, float tau, float alpha) {
+  slab.eye += (1.0 - slab.eye.a) * alpha * vec4(albedo, 1.0);
   slab.tau += tau;
 }
 
@@ -97,9 +97,9 @@ End endAt(vec3 point) {
 void addStretch(inout Slab slab, Stretch stretch, float front, float back, float ray) {
   vec2 place = vec2(placeIn(stretch.ends, front), placeIn(stretch.ends, back));
   vec2 sigma_t = stretch.ends.b + place * (stretch.ends.a - stretch.ends.b);
-  float tau = 0.5 * (sigma_t.x + sigma_t.y) * ray;
-  float lit_place = place.x + scatteringCentroid(sigma_t.x, sigma_t.y, tau) * (place.y - place.x);
-  addPiece(slab, stretch.low.rgb + lit_place * (stretch.high.rgb - stretch.low.rgb), tau);
+  float tau = 0.5 * (sigma_t.x + sigma_t.y) * ray, alpha = oneMinusExp(tau);
+  float lit_place = place.x + scatteringCentroid(sigma_t.x, sigma_t.y, tau, alpha) * (place.y - place.x);
+  addPiece(slab, stretch.low.rgb + lit_place * (stretch.high.rgb - stretch.low.rgb), tau, alpha);
 }
 
 // A segment whose value runs from front to back through the stretches in between. Most segments stay in one.
@@ -133,8 +133,9 @@ vec4 mediumIn(ivec2 cell, vec2 value) {
 // A piece of a segment within one cell, by the two nodes of Gauss and Legendre.
 void addCell(inout Slab slab, ivec2 cell, vec2 front, vec2 back, float ray) {
   vec4 first = mediumIn(cell, front + 0.21132487 * (back - front)), second = mediumIn(cell, front + 0.78867513 * (back - front));
-  addPiece(slab, first.rgb, 0.5 * first.a * ray);
-  addPiece(slab, second.rgb, 0.5 * second.a * ray);
+  vec2 tau = 0.5 * ray * vec2(first.a, second.a);
+  addPiece(slab, first.rgb, tau.x, oneMinusExp(tau.x));
+  addPiece(slab, second.rgb, tau.y, oneMinusExp(tau.y));
 }
 
 // Likewise for a 2D function: the segment is cut where it crosses the lines of the lattice.
@@ -172,6 +173,6 @@ void addMiddle(inout Slab slab, End middle, float ray) {
     addStretch(slab, stretchAt(middle.stretch.x), middle.value.r, middle.value.r, ray);
   } else {
     vec4 medium = mediumIn(middle.stretch, middle.value);
-    addPiece(slab, medium.rgb, medium.a * ray);
+    addPiece(slab, medium.rgb, medium.a * ray, oneMinusExp(medium.a * ray));
   }
 }

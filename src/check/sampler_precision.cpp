@@ -14,7 +14,7 @@ class Stripes final : public Bricks {
  public:
   Stripes(VoxelFormat format, bool gradients) {
     layout.interior = glm::ivec3(8);
-    domain = {glm::ivec3(0), glm::ivec3(7)};
+    domain = {glm::ivec3(-1), glm::ivec3(8)};
     value = {0, 255};
     gradient = {0, 0};
     hasGradients = gradients;

@@ -13,6 +13,7 @@
 #include "check/result.h"
 #include "check/sampler_precision.h"
 #include "umbrick/grid/float_grid.h"
+#include "umbrick/scene/resolve.h"
 #include "umbrick/shade/slice_renderer.h"
 #include "umbrick/slice/proxy_slices.h"
 
@@ -72,11 +73,13 @@ struct Counts {
 // What one slice should look like.
 class SliceExpectation {
  public:
-  SliceExpectation(const ScalarGrid& grid, const Bricks& bricks, const DrawnCells& cells, const Camera& camera,
-                   double depth, double spacing, const SliceCheckOptions& options, const RenderStats& stats)
+  SliceExpectation(const ScalarGrid& grid, const Bricks& bricks, const DrawnCells& cells, const IndexBox& box,
+                   const Camera& camera, double depth, double spacing, const SliceCheckOptions& options,
+                   const RenderStats& stats)
       : grid_(grid),
         bricks_(bricks),
         cells_(cells),
+        box_(box),
         camera_(camera),
         frame_(cameraFrame(camera)),
         screen_(screenPlane(camera)),
@@ -125,17 +128,13 @@ class SliceExpectation {
           all = all && drawn;
           any = any || drawn;
         }
-    if (options_.complete) {
-      // With a visible background planes cut at the domain's faces, with half a slab and a margin to spare. The margin
-      // is measured at the back of the slab.
-      const double growth = 1 + 0.5 * spacing_ / depth_;
-      const glm::dvec3 spare = slabReach(view_, spacing_) + growth * kPlaneMargin * perPixel + slack;
-      for (int axis = 0; axis < 3; ++axis) {
-        all = all && index[axis] > bricks_.domain.min[axis] + slack[axis] &&
-              index[axis] < bricks_.domain.max[axis] - slack[axis];
-        any = any && index[axis] > bricks_.domain.min[axis] - spare[axis] &&
-              index[axis] < bricks_.domain.max[axis] + spare[axis];
-      }
+    // Polygons are cut at the faces of the medium's box, with half a slab and a margin to spare. The margin is measured
+    // at the back of the slab.
+    const double growth = 1 + 0.5 * spacing_ / depth_;
+    const glm::dvec3 spare = slabReach(view_, spacing_) + growth * kPlaneMargin * perPixel + slack;
+    for (int axis = 0; axis < 3; ++axis) {
+      all = all && index[axis] > box_.min[axis] + slack[axis] && index[axis] < box_.max[axis] - slack[axis];
+      any = any && index[axis] > box_.min[axis] - spare[axis] && index[axis] < box_.max[axis] + spare[axis];
     }
     counts.excluded += any && !all;
     if ((all && hits < 1) || hits > (any ? 1 : 0)) counts.gapPixel = pixel;
@@ -184,6 +183,7 @@ class SliceExpectation {
   const ScalarGrid& grid_;
   const Bricks& bricks_;
   const DrawnCells& cells_;
+  const IndexBox box_;  // of the medium
   const Camera& camera_;
   CameraFrame frame_;
   ScreenPlane screen_;
@@ -227,8 +227,8 @@ void checkSlices(const GlContext& context, const ScalarGrid& grid, const Bricks&
     // The first, the last and others between them.
     const std::int64_t slice = probes > 1 ? i * (count - 1) / (probes - 1) : 0;
     const Image probe = renderer.probe(slice);
-    const SliceExpectation expected(grid, bricks, cells, drawn.camera, depths[static_cast<std::size_t>(slice)],
-                                    drawn.sampling.spacing, options, stats);
+    const SliceExpectation expected(grid, bricks, cells, mediumBox(*drawn.transfer, bricks.domain), drawn.camera,
+                                    depths[static_cast<std::size_t>(slice)], drawn.sampling.spacing, options, stats);
     const Counts counts = tbb::parallel_reduce(
         tbb::blocked_range<int>(0, probe.height, 8), Counts{},
         [&](const auto& rows, Counts sum) {

@@ -1,9 +1,10 @@
 #include "umbrick/optics/medium.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace umbrick {
-using std::cos, std::exp, std::sin, std::tan;
+using std::cos, std::exp, std::log, std::max, std::sin, std::sqrt, std::tan;
 #include "optics/cone.glsl"
 #include "optics/ramp.glsl"
 #include "optics/slab.glsl"

@@ -78,10 +78,15 @@ TEST_CASE("Every shader that is not an include compiles by itself or says where 
     INFO(name);
     for (const int perspective : {0, 1})
       for (const int planes : {0, 7})
-        for (const int quadrature : {0, 1, 2}) {
+        for (const int quadrature : {0, 1, 2, 3}) {
           const ShaderConstants constants{{"kPerspective", perspective},
                                           {"kClipPlanes", planes},
                                           {"kQuadrature", quadrature},
+                                          {"kUniformStretches", planes == 0       ? 0
+                                                                : quadrature == 0 ? 9
+                                                                                  : 100},
+                                          {"kValueSteps", 4},
+                                          {"kGradientSteps", 2},
                                           {"kSegments", 1},
                                           {"kAux", planes > 0},
                                           {"kTaps", 9},

@@ -2,6 +2,8 @@
 // interpolated voxels of the whole of space that a ray can meet anything in.
 #include <openvdb/openvdb.h>
 
+#include <catch2/catch.hpp>
+
 #include "reference/reference_fixture.h"
 #include "support/random_transfer.h"
 

@@ -11,8 +11,8 @@ float slabFactor(float x);
 /// 1 - exp(-x) without cancellation; relative error below 1e-6 for x >= 0.
 float oneMinusExp(float x);
 /// Mean place, as a share from the front, of what a piece of linear extinction and constant albedo scatters to the eye;
-/// off by less than 0.005 for tau up to 2, 0.03 up to 5 and 0.12 for any.
-float scatteringCentroid(float sigma_front, float sigma_back, float tau);
+/// off by less than 0.009. @param alpha  opacity: oneMinusExp(tau)
+float scatteringCentroid(float sigma_front, float sigma_back, float tau, float alpha);
 
 /// Solid angle of a cone of half-angle `aperture`, sr.
 float coneSolidAngle(float aperture);
