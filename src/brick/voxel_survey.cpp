@@ -133,9 +133,9 @@ class Surveyor {
     }
     const Range range = rangeOfLeaf(values);
     value_.include(range);
-    // A few voxels of each leaf, spread over it, stand for all.
-    for (const int i : {73, 201, 310, 438})
-      if (values[i] != background_) samples_.push_back(values[i]);
+    // A few voxels of each leaf, spread over it, stand for all; its extremes for what is thin.
+    for (const float value : {values[73], values[201], values[310], values[438], range.min, range.max})
+      if (value != background_) samples_.push_back(value);
     for (int i = 0; whole_ && i < kLeafVoxels; ++i) whole_ = isWhole(values[i]);
     for (int i = 0; half_ && i < kLeafVoxels; ++i) half_ = isHalf(values[i]);
 

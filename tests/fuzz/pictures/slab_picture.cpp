@@ -152,6 +152,29 @@ void addRamp(Gathered& ray, const TransferFunction& transfer, double front, doub
   if (!ray.dark()) piece(back);
 }
 
+// A segment along which value and gradient magnitude run linearly: cut where they cross the lines of the lattice, each
+// piece by the midpoint rule on 16 parts.
+void addPath(Gathered& ray, const TransferFunction& transfer, const glm::dvec2& front, const glm::dvec2& back,
+             double length) {
+  std::vector<double> cuts{0, 1};
+  const auto addCuts = [&](const std::vector<double>& nodes, double from, double to) {
+    for (const double node : nodes)
+      if (node > std::min(from, to) && node < std::max(from, to)) cuts.push_back((node - from) / (to - from));
+  };
+  addCuts(transfer.values(), front.x, back.x);
+  addCuts(transfer.gradients(), front.y, back.y);
+  std::sort(cuts.begin(), cuts.end());
+  constexpr int parts = 16;
+  for (std::size_t i = 1; i < cuts.size(); ++i) {
+    const double step = (cuts[i] - cuts[i - 1]) / parts;
+    for (int k = 0; k < parts && step > 0 && !ray.dark(); ++k) {
+      const glm::dvec2 at = front + (cuts[i - 1] + (k + 0.5) * step) * (back - front);
+      const Medium medium = transfer(at.x, at.y);
+      if (medium.sigma_t > 0) ray.add(medium.albedo, medium.sigma_t * step * length);
+    }
+  }
+}
+
 class SlabIntegrator {
  public:
   SlabIntegrator(const ScalarGrid& grid, const Scene& scene, const IndexBox& domain)
@@ -213,16 +236,19 @@ class SlabIntegrator {
   void addSlab(Gathered& gathered, const ViewRay& ray, double front, double back, int segments) const {
     if (!(back > front)) return;
     const double depth = (back - front) / segments, length = depth * ray.stretch();
-    const bool ramps = !transfer_.is2d() && scene_.sampling.quadrature == Quadrature::preintegrated;
-    double before = ramps ? valueAt(ray, front) : 0;
+    const bool ramps = scene_.sampling.quadrature == Quadrature::preintegrated;
+    glm::dvec2 before = ramps ? fieldAt(ray, front) : glm::dvec2(0);
     for (int i = 0; i < segments && !gathered.dark(); ++i) {
       if (ramps) {
-        const double behind = valueAt(ray, front + (i + 1) * depth);
-        addRamp(gathered, transfer_, before, behind, length);
+        const glm::dvec2 behind = fieldAt(ray, front + (i + 1) * depth);
+        if (transfer_.is2d())
+          addPath(gathered, transfer_, before, behind, length);
+        else
+          addRamp(gathered, transfer_, before.x, behind.x, length);
         before = behind;
       } else {
-        const glm::dvec3 index = indexAt(ray, front + (i + 0.5) * depth);
-        const Medium medium = transfer_(field_.value(index), transfer_.is2d() ? field_.gradient(index) : 0);
+        const glm::dvec2 middle = fieldAt(ray, front + (i + 0.5) * depth);
+        const Medium medium = transfer_(middle.x, middle.y);
         if (medium.sigma_t > 0) gathered.add(medium.albedo, medium.sigma_t * length);
       }
     }
@@ -230,7 +256,11 @@ class SlabIntegrator {
   glm::dvec3 indexAt(const ViewRay& ray, double depth) const {
     return glm::dvec3(toIndex_ * glm::dvec4(ray.at(depth), 1));
   }
-  double valueAt(const ViewRay& ray, double depth) const { return field_.value(indexAt(ray, depth)); }
+  // Value, and gradient magnitude where the function asks for it.
+  glm::dvec2 fieldAt(const ViewRay& ray, double depth) const {
+    const glm::dvec3 index = indexAt(ray, depth);
+    return {field_.value(index), transfer_.is2d() ? field_.gradient(index) : 0};
+  }
 
   const Scene& scene_;
   const TransferFunction& transfer_;

@@ -9,9 +9,10 @@
 namespace umbrick {
 
 /// Emission and absorption by slabs: slab i lies at depths [i, i + 1] spacing, clip planes cut it along the ray, what
-/// is left is cut into equal segments. Preintegrated, the value of a segment runs linearly from its front to its back,
-/// and what such a ramp scatters and absorbs is integrated piece by piece of the function; midpoint, and for a 2D
-/// function, the medium is that of the middle. The error of this picture is that of the slabs, and of nothing else.
+/// is left is cut into equal segments. Preintegrated, the value of a segment, and for a 2D function the gradient
+/// magnitude, run linearly from its front to its back, and what such a ramp scatters and absorbs is integrated piece by
+/// piece of the function; midpoint, the medium is that of the middle. The error of this picture is that of the slabs,
+/// and of nothing else.
 /// @param domain  active voxels, and others that differ from the background, grown by one. A visible background ends
 ///                there; for a 2D function one voxel farther out, where gradients do
 /// @param scene   resolved; emission, whatever its model is
