@@ -64,6 +64,11 @@ void PolygonBuffer::fill(const ProxySlices& slices, std::int64_t first, std::int
                       indexData_.data(), GL_STREAM_DRAW);
 }
 
+std::span<const SliceDraw> PolygonBuffer::drawsOf(std::int64_t first, std::int64_t last) const {
+  const auto begin = std::ranges::lower_bound(draws_, first, {}, &SliceDraw::slice);
+  return {begin, std::ranges::lower_bound(begin, draws_.end(), last, {}, &SliceDraw::slice)};
+}
+
 void PolygonBuffer::bind() const { gl_.BindVertexArray(array_.name()); }
 
 void PolygonBuffer::draw(std::int32_t firstIndex, std::int32_t indices) const {
