@@ -5,16 +5,18 @@
 #include <cstddef>
 #include <limits>
 
+#include "shade/constants.h"
+
 namespace umbrick {
 
 PolygonBuffer::PolygonBuffer(const GlFunctions& gl) : gl_(gl), array_(gl), vertices_(gl), indices_(gl) {
   const GLuint array = array_.name();
   gl.VertexArrayVertexBuffer(array, 0, vertices_.name(), 0, sizeof(Vertex));
   gl.VertexArrayElementBuffer(array, indices_.name());
-  gl.VertexArrayAttribFormat(array, 0, 2, GL_FLOAT, GL_FALSE, 0);
-  gl.VertexArrayAttribFormat(array, 1, 4, GL_FLOAT, GL_FALSE, offsetof(Vertex, u));
-  gl.VertexArrayAttribFormat(array, 2, 1, GL_FLOAT, GL_FALSE, offsetof(Vertex, layer));
-  for (const GLuint attribute : {0u, 1u, 2u}) {
+  gl.VertexArrayAttribFormat(array, kPositionAttribute, 2, GL_FLOAT, GL_FALSE, 0);
+  gl.VertexArrayAttribFormat(array, kSlabAttribute, 4, GL_FLOAT, GL_FALSE, offsetof(Vertex, u));
+  gl.VertexArrayAttribFormat(array, kLayerAttribute, 1, GL_FLOAT, GL_FALSE, offsetof(Vertex, layer));
+  for (const GLuint attribute : {kPositionAttribute, kSlabAttribute, kLayerAttribute}) {
     gl.VertexArrayAttribBinding(array, attribute, 0);
     gl.EnableVertexArrayAttrib(array, attribute);
   }
