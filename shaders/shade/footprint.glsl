@@ -1,7 +1,8 @@
 // The occlusion buffer of the slice before, read over the footprint of the cone.
 // Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, Eqs. 10-15, Algorithms 2 and 3.
 #include "optics/slab.glsl"
-layout(binding = 2) uniform sampler2D occlusion_prev;  // 1 = unoccluded
+#include "shade/constants.glsl"
+layout(binding = kOcclusionUnit) uniform sampler2D occlusion_prev;  // 1 = unoccluded
 uniform vec2 texel_size;         // pixels to occlusion_prev's coordinates
 uniform float previous_scale;    // size of this slice over that of the slice before, from the image's centre (Eqs. 12-15)
 uniform vec4 taps[kTaps];        // xy: displacement in occlusion_prev's coordinates; z: length of the path to it, world units

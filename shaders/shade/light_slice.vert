@@ -1,8 +1,9 @@
 // A polygon of a proxy slice, for a target with one layer per slice. As slice.vert.
 #extension GL_ARB_shader_viewport_layer_array : require
-layout(location = 0) in vec2 position;
-layout(location = 1) in vec4 slab;
-layout(location = 2) in float layer;
+#include "shade/constants.glsl"
+layout(location = kPositionAttribute) in vec2 position;
+layout(location = kSlabAttribute) in vec4 slab;
+layout(location = kLayerAttribute) in float layer;
 flat out vec4 slab_centre;
 
 void main() {

@@ -4,7 +4,8 @@
 //               1  1D function; the medium at the middle
 //               2  2D function; value and gradient magnitude run linearly from front to back
 //               3  2D function; the medium at the middle
-layout(binding = 0) uniform sampler3D atlas;      // r: value, g: gradient magnitude, in texel units
+#include "shade/constants.glsl"
+layout(binding = kAtlasUnit) uniform sampler3D atlas;      // r: value, g: gradient magnitude, in texel units
 // RGBA32F, one column a stretch of the values, as many as a power of two; the last stretch is repeated. Ends are in texel
 // units, infinite ones 1e38:
 //   row 0     lower end, upper end; 1D: sigma_t at the lower end and at the upper one, 1/world unit
@@ -12,7 +13,7 @@ layout(binding = 0) uniform sampler3D atlas;      // r: value, g: gradient magni
 //   2D, row 1          lower end and upper end of the stretches of the gradients, one a column
 //       from row 2     the media (albedo, sigma_t) at the four corners of each cell: columns 2 i and 2 i + 1, rows
 //                      2 + 2 j and 3 + 2 j for stretch i of the values and j of the gradients
-layout(binding = 1) uniform sampler2D transfer;
+layout(binding = kTransferUnit) uniform sampler2D transfer;
 uniform vec3 empty_texel;    // x: what empty space reads as; y: what rounding may add to that; z: what it is, texel units
 
 // What a segment, or a part of one, sends to the eye and lets through.

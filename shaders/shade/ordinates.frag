@@ -3,8 +3,9 @@
 // Writes  eye  premultiplied RGBA, blended under: (ONE_MINUS_DST_ALPHA, ONE)
 //         aux  kAux: opacity-weighted visibility and depth, blended alike
 #include "shade/slab.glsl"
-layout(binding = 8) uniform sampler2DArray visibility;
-layout(binding = 9) uniform sampler2DArray visibility_weight;
+#include "shade/constants.glsl"
+layout(binding = kVisibilityUnit) uniform sampler2DArray visibility;
+layout(binding = kVisibilityWeightUnit) uniform sampler2DArray visibility_weight;
 uniform vec4 lattice_map;  // view coordinates across to visibility's coordinates: xy scale, zw offset
 uniform vec3 whole_light;  // that nothing is in the way of
 uniform float brightest;   // light of this radiance is 1 in the eye buffer

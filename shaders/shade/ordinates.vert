@@ -1,7 +1,8 @@
 // A polygon of a proxy slice that looks up a layer of its own. As slice.vert.
-layout(location = 0) in vec2 position;
-layout(location = 1) in vec4 slab;
-layout(location = 2) in float layer;
+#include "shade/constants.glsl"
+layout(location = kPositionAttribute) in vec2 position;
+layout(location = kSlabAttribute) in vec4 slab;
+layout(location = kLayerAttribute) in float layer;
 flat out vec4 slab_centre;
 flat out float slice_layer;
 

@@ -2,7 +2,8 @@
 // Reads   atlas
 // Writes  probe  r: value in texel units, g: 1; blended additively
 #include "shade/ray.glsl"
-layout(binding = 0) uniform sampler3D atlas;
+#include "shade/constants.glsl"
+layout(binding = kAtlasUnit) uniform sampler3D atlas;
 flat in vec4 slab_centre;
 layout(location = 0) out vec4 probe;
 

@@ -2,8 +2,9 @@
 // Reads   position  normalised device coordinates
 //         slab      xyz: atlas coordinates of the slice plane at the centre of the image, for the polygon's brick;
 //                   w: depth of the slice's middle, world units
-layout(location = 0) in vec2 position;
-layout(location = 1) in vec4 slab;
+#include "shade/constants.glsl"
+layout(location = kPositionAttribute) in vec2 position;
+layout(location = kSlabAttribute) in vec4 slab;
 flat out vec4 slab_centre;
 
 void main() {

@@ -1,7 +1,8 @@
 // Spreads the state of tiles along one axis: what light can reach counts like the tile itself.
 // Reads   state_before  by tile, see tile_state.frag
 // Writes  state         by tile
-layout(binding = 3) uniform sampler2D state_before;
+#include "shade/constants.glsl"
+layout(binding = kTileStateUnit) uniform sampler2D state_before;
 uniform vec2 reach;    // of each channel, tiles
 uniform vec2 scale;    // how distances from the image's centre change on the way, from 1 to this
 uniform vec2 centre;   // of the image, tiles

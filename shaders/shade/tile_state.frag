@@ -3,9 +3,10 @@
 //         occlusion_prev  1 = unoccluded
 //         covered_by      RG32F, by tile: first and last slice with a brick there
 // Writes  state  by tile; r: 1 where a pixel's colour can still change, g: 1 where light is, or soon will be, occluded
-layout(binding = 3) uniform sampler2D eye_so_far;
-layout(binding = 4) uniform sampler2D covered_by;
-layout(binding = 2) uniform sampler2D occlusion_prev;
+#include "shade/constants.glsl"
+layout(binding = kEyeUnit) uniform sampler2D eye_so_far;
+layout(binding = kCoveredByUnit) uniform sampler2D covered_by;
+layout(binding = kOcclusionUnit) uniform sampler2D occlusion_prev;
 uniform float saturation;   // transmittance below which a pixel counts as saturated
 uniform float slice;        // that is drawn next
 uniform float next_look;    // slice at which the state is found anew

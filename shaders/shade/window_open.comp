@@ -1,13 +1,15 @@
-// Opens the windows for a run of slices: paths that were not in use before are clear.
+// Opens some of the windows for a run of slices: paths that were not in use before are clear.
 // Writes  windows  see light_windows.glsl
 #include "shade/light_windows.glsl"
-layout(local_size_x = 8, local_size_y = 8) in;
-uniform vec4 window_before[kDirections];  // texels in use until now, from xy to zw, counted as those of the window
+layout(local_size_x = kLatticeTile, local_size_y = kLatticeTile) in;
+uniform vec4 window[kWindows];         // see light_windows.glsl
+uniform vec4 window_before[kWindows];  // texels in use until now, from xy to zw, counted as those of the window
+uniform int first_layer;               // that of the first of these windows
 
 void main() {
-  int k = int(gl_GlobalInvocationID.z);
+  int i = int(gl_GlobalInvocationID.z);
   vec2 u = vec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(u, window[k].xy))) return;
-  if (all(greaterThanEqual(u, window_before[k].xy)) && all(lessThan(u, window_before[k].zw))) return;
-  storeWindow(windowTexel(u, k), 1.0);
+  if (!isInWindow(u, window[i])) return;
+  if (all(greaterThanEqual(u, window_before[i].xy)) && all(lessThan(u, window_before[i].zw))) return;
+  storeWindow(windowTexel(u, window[i], first_layer + i), 1.0);
 }

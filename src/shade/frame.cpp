@@ -2,6 +2,8 @@
 
 #include <glm/vec4.hpp>
 
+#include "shade/constants.h"
+
 namespace umbrick {
 
 void FragmentCounter::begin() {
@@ -56,8 +58,8 @@ void SlicePass::fill(Frame& frame, std::int64_t first, std::int64_t last) {
 }
 
 void bindVolume(const Frame& frame, int texture) {
-  frame.gl.BindTextureUnit(0, frame.atlas.texture(texture));
-  frame.gl.BindTextureUnit(1, frame.transfer.texture());
+  frame.gl.BindTextureUnit(kAtlasUnit, frame.atlas.texture(texture));
+  frame.gl.BindTextureUnit(kTransferUnit, frame.transfer.texture());
 }
 
 SaturationTest::SaturationTest(const GlFunctions& gl)
@@ -71,7 +73,7 @@ void SaturationTest::run(const Frame& frame) {
   gl.DepthMask(GL_TRUE);
   gl.Disable(GL_STENCIL_TEST);
   gl.Disable(GL_SCISSOR_TEST);
-  gl.BindTextureUnit(3, frame.targets.eye.name());
+  gl.BindTextureUnit(kEyeUnit, frame.targets.eye.name());
   program_.set("saturation", static_cast<float>(frame.scene.sampling.saturation));
   program_.set("depth", -1.0f);
   program_.use();

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "shade/constants.h"
+
 namespace umbrick {
 namespace {
 
@@ -77,9 +79,9 @@ void LightTiles::look(const Frame& frame, std::int64_t slice, const GlTexture& o
   gl.ColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl.Viewport(0, 0, tileCount_.x, tileCount_.y);
   gl.BindVertexArray(nothing_.name());
-  gl.BindTextureUnit(2, occlusion.name());
-  gl.BindTextureUnit(3, frame.targets.eye.name());
-  gl.BindTextureUnit(4, coveredBy_.name());
+  gl.BindTextureUnit(kOcclusionUnit, occlusion.name());
+  gl.BindTextureUnit(kEyeUnit, frame.targets.eye.name());
+  gl.BindTextureUnit(kCoveredByUnit, coveredBy_.name());
   const std::int64_t count = frame.slices.count(), next = std::min(slice + kInterval, count);
   state_.set("saturation", static_cast<float>(frame.scene.sampling.saturation));
   state_.set("slice", static_cast<float>(slice));
@@ -106,14 +108,14 @@ void LightTiles::look(const Frame& frame, std::int64_t slice, const GlTexture& o
   gl.DepthFunc(GL_ALWAYS);
   gl.DepthMask(GL_TRUE);
   mark_.use();
-  gl.BindTextureUnit(3, tiles_[0].name());
+  gl.BindTextureUnit(kTileStateUnit, tiles_[0].name());
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
   gl.DepthMask(GL_FALSE);
 }
 
 void LightTiles::dilate(int from, int to, const glm::vec2& axis, const GlFunctions& gl) {
   gl.BindFramebuffer(GL_FRAMEBUFFER, targets_[to].name());
-  gl.BindTextureUnit(3, tiles_[from].name());
+  gl.BindTextureUnit(kTileStateUnit, tiles_[from].name());
   dilate_.set("axis", axis);
   dilate_.use();
   gl.DrawArrays(GL_TRIANGLES, 0, 3);

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
+#include "shade/constants.h"
 #include "shade/footprint.h"
 #include "shade/frame.h"
 #include "shade/light_tiles.h"
@@ -116,7 +117,7 @@ class OcclusionPass : public SlicePass {
     }
     const int target = 1 - previous_;
     if (!spreadsFirst(frame)) nextStencil(frame);
-    gl.BindTextureUnit(2, frame.targets.occlusion[static_cast<std::size_t>(previous_)].name());
+    gl.BindTextureUnit(kOcclusionUnit, frame.targets.occlusion[static_cast<std::size_t>(previous_)].name());
     if (spreadsFirst(frame)) {
       if (!region.empty()) drawSpread(frame, step, region, target, false);
       if (!draws.empty()) drawBoth(frame, blend_.current(), draws, step, target);

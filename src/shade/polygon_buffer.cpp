@@ -5,16 +5,18 @@
 #include <cstddef>
 #include <limits>
 
+#include "shade/constants.h"
+
 namespace umbrick {
 
 PolygonBuffer::PolygonBuffer(const GlFunctions& gl) : gl_(gl), array_(gl), vertices_(gl), indices_(gl) {
   const GLuint array = array_.name();
   gl.VertexArrayVertexBuffer(array, 0, vertices_.name(), 0, sizeof(Vertex));
   gl.VertexArrayElementBuffer(array, indices_.name());
-  gl.VertexArrayAttribFormat(array, 0, 2, GL_FLOAT, GL_FALSE, 0);
-  gl.VertexArrayAttribFormat(array, 1, 4, GL_FLOAT, GL_FALSE, offsetof(Vertex, u));
-  gl.VertexArrayAttribFormat(array, 2, 1, GL_FLOAT, GL_FALSE, offsetof(Vertex, layer));
-  for (const GLuint attribute : {0u, 1u, 2u}) {
+  gl.VertexArrayAttribFormat(array, kPositionAttribute, 2, GL_FLOAT, GL_FALSE, 0);
+  gl.VertexArrayAttribFormat(array, kSlabAttribute, 4, GL_FLOAT, GL_FALSE, offsetof(Vertex, u));
+  gl.VertexArrayAttribFormat(array, kLayerAttribute, 1, GL_FLOAT, GL_FALSE, offsetof(Vertex, layer));
+  for (const GLuint attribute : {kPositionAttribute, kSlabAttribute, kLayerAttribute}) {
     gl.VertexArrayAttribBinding(array, attribute, 0);
     gl.EnableVertexArrayAttrib(array, attribute);
   }
@@ -62,6 +64,11 @@ void PolygonBuffer::fill(const ProxySlices& slices, std::int64_t first, std::int
                       vertexData_.data(), GL_STREAM_DRAW);
   gl_.NamedBufferData(indices_.name(), static_cast<GLsizeiptr>(indexData_.size() * sizeof(std::uint32_t)),
                       indexData_.data(), GL_STREAM_DRAW);
+}
+
+std::span<const SliceDraw> PolygonBuffer::drawsOf(std::int64_t first, std::int64_t last) const {
+  const auto begin = std::ranges::lower_bound(draws_, first, {}, &SliceDraw::slice);
+  return {begin, std::ranges::lower_bound(begin, draws_.end(), last, {}, &SliceDraw::slice)};
 }
 
 void PolygonBuffer::bind() const { gl_.BindVertexArray(array_.name()); }

@@ -30,6 +30,8 @@ class PolygonBuffer {
             const BrickAtlas& atlas, bool reverseBricks, std::span<const int> layers = {});
   /// In order of slices.
   const std::vector<SliceDraw>& draws() const { return draws_; }
+  /// Those of slices [first, last).
+  std::span<const SliceDraw> drawsOf(std::int64_t first, std::int64_t last) const;
   void bind() const;
   /// Draws consecutive triangles.
   void draw(std::int32_t firstIndex, std::int32_t indices) const;

@@ -49,7 +49,7 @@ TEST_CASE("A shader holds every file it includes once, in the place of the first
 // What a driver is told is line 10 000 i + n is line n of the i-th file, in order of first use.
 TEST_CASE("Every line of a shader keeps its number and its file", "[gl]") {
   const std::string source = shaderSource("shade/occlusion_slice.frag");
-  const std::string own = shaderSource("shade/medium.glsl");
+  const std::string own = shaderSource("shade/clip.glsl");
   // Lines of a file without includes follow their mark as they are in the file.
   const std::string mark = "#line 1\n";
   const std::string body = own.substr(own.find(mark) + mark.size());
@@ -93,6 +93,7 @@ TEST_CASE("Every shader that is not an include compiles by itself or says where 
                                           {"kAlgorithm", 2 + perspective},
                                           {"kTileEdge", 8},
                                           {"kDirections", 16},
+                                          {"kWindows", 17},
                                           {"kColoured", perspective},
                                           {"kFixedPoint", planes > 0}};
           if (name.ends_with(".comp")) {
@@ -118,9 +119,11 @@ TEST_CASE("A driver's complaint names our file and line", "[gl]") {
   const std::string message =
       complaint([&] { GlProgram(context->gl(), "shade/full_screen.vert", "shade/occlusion_spread.frag"); });
   CHECK_THAT(message, StartsWith("shader shade/occlusion_spread.frag: ") && Contains("kTaps"));
+  // The mark after the file's last include says where it goes on.
   const std::string text = shaderSource("shade/footprint.glsl");
-  const std::size_t start = text.find("#line 1\n") + 8;
-  const std::size_t line = count(text.substr(start, text.find("uniform vec4 taps[") - start), "\n") + 1;
+  const std::size_t taps = text.find("uniform vec4 taps["), mark = text.rfind("#line ", taps);
+  const std::size_t start = text.find('\n', mark) + 1;
+  const std::size_t line = std::stoul(text.substr(mark + 6)) + count(text.substr(start, taps - start), "\n");
   CHECK_THAT(message, Contains("shade/footprint.glsl:" + std::to_string(line)));
   CHECK(complaint([&] { GlProgram(context->gl(), "shade/none.vert", "shade/emission.frag"); }) ==
         "no shader shade/none.vert");

@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "support/test_grids.h"
+#include "shade/random_light.h"
 
 using namespace umbrick;
 
@@ -16,39 +16,15 @@ namespace {
 using Texel = std::pair<std::int64_t, std::int64_t>;
 using Whole = glm::vec<2, std::int64_t>;
 
-Rectangle randomRectangle(TestRandom& random, double extent, double most) {
-  const glm::dvec2 low(random.uniform(-extent, extent), random.uniform(-extent, extent));
-  return {low, low + glm::dvec2(random.uniform(0.1, most), random.uniform(0.1, most))};
-}
-
-LightExtents randomExtents(TestRandom& random) {
-  LightExtents extents;
-  const double spacing = random.uniform(0.1, 3);
-  extents.texel = random.uniform(0.2, 2);
-  const int count = 1 + random.below(40);
-  const int first = random.below(100);
-  for (int i = 0; i < count; ++i) {
-    extents.depths.push_back((first + i + 0.5) * spacing);
-    const bool gap = random.uniform() < 0.2;
-    extents.occluding.push_back(gap || random.uniform() < 0.1 ? Rectangle{} : randomRectangle(random, 8, 9));
-    extents.seen.push_back(gap || random.uniform() < 0.3 ? Rectangle{} : randomRectangle(random, 8, 9));
-  }
-  return extents;
-}
-
-std::vector<LightSlope> randomSlopes(TestRandom& random) {
-  std::vector<LightSlope> slopes;
-  const int count = 1 + random.below(4);
-  for (int k = 0; k < count; ++k)
-    slopes.push_back(lightSlope(glm::normalize(
-        glm::dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform() < 0.2 ? 0.003 : random.uniform()))));
-  slopes.push_back(lightSlope({0, 0, 1}));
-  return slopes;
-}
-
-// As the renderer rounds it.
 Whole shiftOf(const LightExtents& extents, const LightSlope& light, std::size_t slice) {
-  return Whole(glm::floor(extents.depths[slice] / extents.texel * light.slope + 0.5 - 1e-6));
+  return Whole(wholeShift(extents.depths[slice] / extents.texel, light, glm::dvec2(kHalfRounding)));
+}
+
+// In the order of slopesOf().
+std::vector<LightWindow> windowsOf(const LightRun& run) {
+  std::vector<LightWindow> windows;
+  run.forEachWindow([&](const LightWindow& window) { windows.push_back(window); });
+  return windows;
 }
 
 // Texels (i, j) that cover [i, i + 1) x [j, j + 1) and have their centre in the rectangle.
@@ -66,12 +42,13 @@ class Windows {
  public:
   Windows(std::size_t directions, const std::vector<LightRun>& runs) : open_(directions) {
     for (const LightRun& run : runs)
-      for (const LightWindow& window : run.windows) size_ = glm::max(size_, Whole(window.size));
+      for (const LightWindow& window : windowsOf(run)) size_ = glm::max(size_, Whole(window.size));
     texels_.assign(directions, std::vector<int>(static_cast<std::size_t>(size_.x * size_.y), -1));
   }
   void open(const LightRun& run) {
+    const std::vector<LightWindow> windows = windowsOf(run);
     for (std::size_t k = 0; k < open_.size(); ++k) {
-      const LightWindow window = run.windows[k], before = open_[k];
+      const LightWindow window = windows[k], before = open_[k];
       for (int y = 0; y < window.size.y; ++y)
         for (int x = 0; x < window.size.x; ++x) {
           const Whole u = Whole(window.first) + Whole(x, y);
@@ -98,65 +75,13 @@ class Windows {
 
 }  // namespace
 
-TEST_CASE("A slope is the step across per step towards the viewer", "[shade]") {
-  const LightSlope straight = lightSlope({0, 0, 1});
-  CHECK(straight.slope == glm::dvec2(0));
-  CHECK(straight.stretch == 1);
-  const LightSlope tilted = lightSlope({0.48, -0.64, 0.6});
-  CHECK(tilted.slope.x == Approx(0.8));
-  CHECK(tilted.slope.y == Approx(-0.64 / 0.6));
-  CHECK(tilted.stretch == Approx(1 / 0.6));
-}
-
-TEST_CASE("Rectangles are empty, joined, cut, grown and moved as sets of points", "[shade]") {
-  const Rectangle none, a{{0, 0}, {2, 3}}, b{{1, -1}, {4, 1}};
-  CHECK(none.empty());
-  CHECK(none.grown(5).empty());
-  CHECK(none.moved({1, 2}).empty());
-  CHECK(none.within(a).empty());
-  Rectangle joined = none;
-  joined.include(none);
-  CHECK(joined.empty());
-  joined.include(a);
-  joined.include(b);
-  CHECK(joined.min == glm::dvec2(0, -1));
-  CHECK(joined.max == glm::dvec2(4, 3));
-  CHECK(a.within(b).min == glm::dvec2(1, 0));
-  CHECK(a.within(b).max == glm::dvec2(2, 1));
-  CHECK(a.within(Rectangle{{3, 0}, {4, 1}}).empty());
-  CHECK(a.grown(0.5).min == glm::dvec2(-0.5));
-  CHECK(a.moved({1, -1}).max == glm::dvec2(3, 2));
-}
-
-TEST_CASE("The needed region of a slice holds every path to what is seen behind it, and no more", "[shade]") {
-  TestRandom random(11);
-  for (int round = 0; round < 100; ++round) {
-    const LightExtents extents = randomExtents(random);
-    const std::vector<LightSlope> slopes = randomSlopes(random);
-    const std::vector<Rectangle> needed = neededRegions(extents, slopes);
-    REQUIRE(needed.size() == extents.depths.size());
-    for (std::size_t j = 0; j < needed.size(); ++j) {
-      Rectangle hull;
-      for (const LightSlope& light : slopes)
-        for (std::size_t i = j; i < needed.size(); ++i)
-          hull.include(extents.seen[i].moved((extents.depths[i] - extents.depths[j]) / extents.texel * light.slope));
-      INFO("round " << round << ", slice " << j);
-      REQUIRE(needed[j].empty() == hull.empty());
-      if (hull.empty()) continue;
-      // Sums of steep slopes, some 1e5 texels, in double precision.
-      CHECK(glm::length(needed[j].min - hull.min) < 1e-9);
-      CHECK(glm::length(needed[j].max - hull.max) < 1e-9);
-    }
-  }
-}
-
 TEST_CASE("Runs hold all slices that have something, in order, and are no longer and no larger than asked for",
           "[shade]") {
   TestRandom random(12);
   for (int round = 0; round < 200; ++round) {
     const LightExtents extents = randomExtents(random);
-    const std::vector<LightSlope> slopes = randomSlopes(random);
-    const LightPlanner planner(extents, slopes);
+    const LightPaths paths = randomPaths(random);
+    const LightPlanner planner(extents, paths);
     const auto count = static_cast<std::int64_t>(extents.depths.size());
     const std::int64_t first = random.below(static_cast<int>(count)),
                        last = first + random.below(static_cast<int>(count - first) + 1);
@@ -170,10 +95,11 @@ TEST_CASE("Runs hold all slices that have something, in order, and are no longer
     INFO("round " << round);
     for (const LightRun& run : planner.runs(first, last, longest, most)) {
       REQUIRE_FALSE(run.slices.empty());
-      REQUIRE(run.windows.size() == slopes.size());
+      REQUIRE(run.lights.size() == paths.lights.size());
       CHECK(run.slices.size() <= static_cast<std::size_t>(longest));
       if (run.slices.size() > 1)
-        for (const LightWindow& window : run.windows) CHECK(static_cast<double>(window.size.x) * window.size.y <= most);
+        for (const LightWindow& window : windowsOf(run))
+          CHECK(static_cast<double>(window.size.x) * window.size.y <= most);
       found.insert(found.end(), run.slices.begin(), run.slices.end());
     }
     CHECK(found == expected);
@@ -186,8 +112,8 @@ TEST_CASE("What is read from windows is what a sweep that keeps every path has",
   std::int64_t read = 0, shadowed = 0;
   for (int round = 0; round < 300; ++round) {
     const LightExtents extents = randomExtents(random);
-    const std::vector<LightSlope> slopes = randomSlopes(random);
-    const LightPlanner planner(extents, slopes);
+    const LightPaths paths = randomPaths(random);
+    const LightPlanner planner(extents, paths);
     const auto count = static_cast<std::int64_t>(extents.depths.size());
     std::vector<LightRun> runs;
     for (std::int64_t first = 0; first < count;) {
@@ -196,8 +122,9 @@ TEST_CASE("What is read from windows is what a sweep that keeps every path has",
         runs.push_back(std::move(run));
       first = last;
     }
+    const std::vector<LightSlope> slopes = slopesOf(paths);
     Windows windows(slopes.size(), runs);
-    std::vector<std::map<Texel, int>> paths(slopes.size());
+    std::vector<std::map<Texel, int>> touches(slopes.size());
     std::int64_t wrong = 0;
     for (const LightRun& run : runs) {
       windows.open(run);
@@ -209,15 +136,15 @@ TEST_CASE("What is read from windows is what a sweep that keeps every path has",
           if (!extents.seen[slice].empty())
             forEachTexel(extents.seen[slice].grown(1), [&](const Whole& x) {
               const Whole u = x + shift;
-              const auto touched = paths[k].find({u.x, u.y});
-              const int expected = touched == paths[k].end() ? 0 : touched->second;
+              const auto touched = touches[k].find({u.x, u.y});
+              const int expected = touched == touches[k].end() ? 0 : touched->second;
               wrong += (windows.has(k, u) ? windows.at(k, u) : 0) != expected;
               ++read;
               shadowed += expected > 0;
             });
           forEachTexel(extents.occluding[slice], [&](const Whole& x) {
             const Whole u = x + shift;
-            ++paths[k][{u.x, u.y}];
+            ++touches[k][{u.x, u.y}];
             if (windows.has(k, u)) ++windows.at(k, u);
           });
         }
@@ -246,7 +173,9 @@ TEST_CASE("A window is no wider than what is on the slices, however steep the li
       all.include(extents.seen.back());
     }
     const LightSlope slope = lightSlope(glm::normalize(glm::dvec3(0.6, -0.8, towards)));
-    const LightPlanner planner(extents, std::vector<LightSlope>{slope});
+    LightPaths paths;
+    paths.lights.push_back(slope);
+    const LightPlanner planner(extents, paths);
     for (const int longest : {1, 5})
       for (const LightRun& run : planner.runs(0, 200, longest, 1e12)) {
         const glm::dvec2 moved =
@@ -254,32 +183,60 @@ TEST_CASE("A window is no wider than what is on the slices, however steep the li
         INFO("towards the viewer " << towards << ", slices " << run.slices.front() << " to " << run.slices.back());
         // Two texels of border on each side, and rounding up to whole ones.
         const glm::dvec2 most = all.max - all.min + moved + 6.0;
-        CHECK(run.windows[0].size.x <= most.x);
-        CHECK(run.windows[0].size.y <= most.y);
-        CHECK(run.windows[0].size.x > 0);
+        CHECK(run.lights[0].size.x <= most.x);
+        CHECK(run.lights[0].size.y <= most.y);
+        CHECK(run.lights[0].size.x > 0);
       }
   }
 }
 
 TEST_CASE("What nobody sees needs no windows, nor does what nothing can occlude", "[shade]") {
   LightExtents extents;
-  const std::vector<LightSlope> slopes{lightSlope({0, 0, 1}), lightSlope({0.6, 0, 0.8})};
-  CHECK(LightPlanner(extents, slopes).runs(0, 0, 4, 1e6).empty());
-  CHECK(neededRegions(extents, slopes).empty());
+  LightPaths paths;
+  paths.lights.push_back(lightSlope({0.6, 0, 0.8}));
+  CHECK(LightPlanner(extents, paths).runs(0, 0, 4, 1e6).empty());
+  CHECK(neededRegions(extents, paths).empty());
   for (int i = 0; i < 6; ++i) {
     extents.depths.push_back(i + 0.5);
     extents.occluding.push_back({});
     extents.seen.push_back({});
   }
-  CHECK(LightPlanner(extents, slopes).runs(0, 6, 4, 1e6).empty());
+  CHECK(LightPlanner(extents, paths).runs(0, 6, 4, 1e6).empty());
   extents.occluding[1] = {{0, 0}, {5, 5}};
-  for (const Rectangle& needed : neededRegions(extents, slopes)) CHECK(needed.empty());
-  for (const LightRun& run : LightPlanner(extents, slopes).runs(0, 6, 4, 1e6))
-    for (const LightWindow& window : run.windows) CHECK(window.size == glm::ivec2(0));
+  for (const Rectangle& needed : neededRegions(extents, paths)) CHECK(needed.empty());
+  for (const LightRun& run : LightPlanner(extents, paths).runs(0, 6, 4, 1e6))
+    for (const LightWindow& window : windowsOf(run)) CHECK(window.size == glm::ivec2(0));
   // Seen before anything occludes: all light arrives.
   extents.occluding[1] = {};
   extents.seen[0] = {{0, 0}, {5, 5}};
   extents.occluding[3] = {{0, 0}, {5, 5}};
-  for (const LightRun& run : LightPlanner(extents, slopes).runs(0, 6, 1, 1e6))
-    for (const LightWindow& window : run.windows) CHECK(window.size == glm::ivec2(0));
+  for (const LightRun& run : LightPlanner(extents, paths).runs(0, 6, 1, 1e6))
+    for (const LightWindow& window : windowsOf(run)) CHECK(window.size == glm::ivec2(0));
+}
+
+TEST_CASE("A picture's runs lie within its sweeps, and one texture takes the windows of any", "[shade]") {
+  TestRandom random(15);
+  for (int round = 0; round < 100; ++round) {
+    const LightExtents extents = randomExtents(random);
+    const LightPlanner planner(extents, randomPaths(random));
+    const auto count = static_cast<std::int64_t>(extents.depths.size());
+    const std::int64_t cut = random.below(static_cast<int>(count) + 1);
+    const std::vector<SweepRun> sweeps{{0, cut, {}}, {cut, count, {}}};
+    // 64 MiB are for all slices of a run: 8 of these, or one of those that take more than that.
+    for (const auto& [bytes, longest] : {std::pair(double(8 << 20), 8), std::pair(1e9, 1), std::pair(1.0, 32)}) {
+      const LightRuns plan = planLightRuns(planner, sweeps, bytes);
+      CHECK(plan.slicesTogether == longest);
+      std::size_t within = 0;
+      for (const SweepRun& sweep : sweeps)
+        for (const LightRun& run : plan.within(sweep.first, sweep.last)) {
+          ++within;
+          CHECK(run.slices.front() >= sweep.first);
+          CHECK(run.slices.back() < sweep.last);
+          CHECK(run.slices.size() <= static_cast<std::size_t>(longest));
+          for (const LightWindow& window : windowsOf(run))
+            CHECK(glm::max(window.size, plan.windowSize) == plan.windowSize);
+        }
+      CHECK(within == plan.runs.size());
+    }
+  }
 }

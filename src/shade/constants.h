@@ -1,0 +1,6 @@
+// The numbers that shaders of this room and C++ share; they stand in shaders/shade/constants.glsl.
+#pragma once
+
+namespace umbrick {
+#include "shade/constants.glsl"
+}  // namespace umbrick
