@@ -12,7 +12,7 @@
 namespace umbrick {
 namespace {
 
-constexpr std::int64_t kSlabVoxels = std::int64_t(1) << 22;
+constexpr std::int64_t kFilterSlabVoxels = std::int64_t(1) << 22;
 
 template <class Vector>
 std::string text(const Vector& v, const char* between) {
@@ -43,7 +43,7 @@ class CroppedSource : public VoxelSource {
     double error = 0;
     auto to = out.begin();
     for (std::int64_t done = 0; done < count;) {
-      const std::int64_t slices = std::clamp<std::int64_t>(kSlabVoxels / wholeSlice, 1, count - done);
+      const std::int64_t slices = std::clamp<std::int64_t>(kFilterSlabVoxels / wholeSlice, 1, count - done);
       slab_.resize(static_cast<std::size_t>(slices * wholeSlice));
       error = std::max(error, source_->readSlab(slices, slab_));
       for (std::int64_t z = 0; z < slices; ++z)
@@ -150,7 +150,7 @@ BorderMode borderMode(VoxelSource& source) {
   };
   std::vector<float> slab;
   for (std::int64_t first = 0; first < dims.z;) {
-    const std::int64_t slices = std::clamp<std::int64_t>(kSlabVoxels / slice, 1, dims.z - first);
+    const std::int64_t slices = std::clamp<std::int64_t>(kFilterSlabVoxels / slice, 1, dims.z - first);
     slab.resize(static_cast<std::size_t>(slices * slice));
     source.readSlab(slices, slab);
     for (std::int64_t z = 0; z < slices; ++z) {

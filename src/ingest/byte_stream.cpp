@@ -17,7 +17,7 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kChunkBytes = std::size_t(1) << 30;  // read() takes no more than 2 GB at once
+constexpr std::size_t kMostReadBytes = std::size_t(1) << 30;  // read() takes no more than 2 GB at once
 
 IoError systemError(const fs::path& path, const char* what) {
   return IoError(path.string() + ": " + what + ": " + std::strerror(errno));
@@ -48,7 +48,7 @@ class PlainStream : public ByteStream {
   std::size_t read(std::span<std::byte> out) override {
     std::size_t done = 0;
     while (done < out.size()) {
-      const ssize_t got = ::read(file_.get(), out.data() + done, std::min(out.size() - done, kChunkBytes));
+      const ssize_t got = ::read(file_.get(), out.data() + done, std::min(out.size() - done, kMostReadBytes));
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) throw systemError(path_, "cannot read");
       if (got == 0) break;

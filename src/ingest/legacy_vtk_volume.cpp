@@ -15,7 +15,7 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMaxLine = 4096;
+constexpr std::size_t kMaxVtkLine = 4096;
 
 struct LegacyHead {
   bool ascii = false, cells = false;
@@ -26,7 +26,7 @@ struct LegacyHead {
   std::int64_t bytes = 0;  // where the voxels begin
 };
 
-VoxelType typeOf(const fs::path& path, const std::string& text) {
+VoxelType legacyTypeOf(const fs::path& path, const std::string& text) {
   using enum VoxelType;
   static const std::map<std::string, VoxelType> types{
       {"unsigned_char", u8}, {"char", i8},           {"unsigned_short", u16}, {"short", i16},
@@ -38,9 +38,9 @@ VoxelType typeOf(const fs::path& path, const std::string& text) {
 }
 
 // The lines of the head up to the first scalars; what lies behind these is left alone.
-class HeadReader {
+class LegacyHeadReader {
  public:
-  explicit HeadReader(const fs::path& path) : path_(path), in_(path, std::ios::binary) {}
+  explicit LegacyHeadReader(const fs::path& path) : path_(path), in_(path, std::ios::binary) {}
 
   LegacyHead read() {
     if (!line().starts_with("# vtk DataFile Version")) failField(path_, "first line", "# vtk DataFile Version", line_);
@@ -59,7 +59,7 @@ class HeadReader {
     line_.clear();
     char c = 0;
     while (in_.get(c) && c != '\n')
-      if (line_.push_back(c); line_.size() > kMaxLine) failField(path_, "head", "lines of text", line_);
+      if (line_.push_back(c); line_.size() > kMaxVtkLine) failField(path_, "head", "lines of text", line_);
     if (!in_) failField(path_, "head", "SCALARS of points or cells", "the end of the file");
     return line_;
   }
@@ -94,7 +94,7 @@ class HeadReader {
       if (parts.size() < 3 || (parts.size() > 3 && parts[3] != "1"))
         failField(path_, "SCALARS", "a name, a type and one component", line_);
       head_.array = parts[1];
-      head_.type = typeOf(path_, parts[2]);
+      head_.type = legacyTypeOf(path_, parts[2]);
       if (!lower(line()).starts_with("lookup_table")) failField(path_, "line after SCALARS", "LOOKUP_TABLE", line_);
       return true;
     } else if (key == "field") {
@@ -111,7 +111,7 @@ class HeadReader {
     if (field.size() != 3 || parts.size() != 4 || parts[1] != "1")
       failField(path_, "FIELD", "a first array of one component", line_);
     head_.array = parts[0];
-    head_.type = typeOf(path_, parts[3]);
+    head_.type = legacyTypeOf(path_, parts[3]);
     return true;
   }
 
@@ -128,7 +128,7 @@ std::unique_ptr<VoxelSource> openLegacyVtk(const fs::path& path) {
   info.name = path.string();
   info.fileBytes = checkedFileSize(path);
   if (info.fileBytes < 0) throw IoError(path.string() + ": expected a file, found a pipe or device");
-  const LegacyHead head = HeadReader(path).read();
+  const LegacyHead head = LegacyHeadReader(path).read();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int a = static_cast<int>(axis);
     info.dims[a] = head.points[axis] - (head.cells ? 1 : 0);

@@ -35,9 +35,9 @@ struct MetaHeader {
   std::int64_t headerBytes = 0;
 };
 
-class HeaderReader {
+class MetaHeaderReader {
  public:
-  explicit HeaderReader(const fs::path& path) : path_(path), in_(path, std::ios::binary) {
+  explicit MetaHeaderReader(const fs::path& path) : path_(path), in_(path, std::ios::binary) {
     if (!in_) throw IoError(path.string() + ": cannot read");
   }
 
@@ -257,7 +257,7 @@ std::unique_ptr<ByteStream> openPart(const MetaHeader& header, const fs::path& p
 
 std::unique_ptr<VoxelSource> openMetaImage(const fs::path& path) {
   const std::int64_t ownBytes = checkedFileSize(path);
-  const auto shared = std::make_shared<const MetaHeader>(HeaderReader(path).read());
+  const auto shared = std::make_shared<const MetaHeader>(MetaHeaderReader(path).read());
   const MetaHeader& header = *shared;
   VolumeInfo info = header.info;
   info.fileBytes = std::max<std::int64_t>(ownBytes, 0);

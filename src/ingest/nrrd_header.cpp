@@ -30,9 +30,9 @@ struct Axis {
   std::string unit;
 };
 
-class HeaderReader {
+class NrrdHeaderReader {
  public:
-  explicit HeaderReader(const fs::path& path) : path_(path), in_(path, std::ios::binary) {
+  explicit NrrdHeaderReader(const fs::path& path) : path_(path), in_(path, std::ios::binary) {
     if (!in_) throw IoError(path.string() + ": cannot read");
   }
 
@@ -399,6 +399,6 @@ class HeaderReader {
 
 }  // namespace
 
-NrrdHeader readNrrdHeader(const fs::path& path) { return HeaderReader(path).read(); }
+NrrdHeader readNrrdHeader(const fs::path& path) { return NrrdHeaderReader(path).read(); }
 
 }  // namespace umbrick

@@ -16,7 +16,7 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kChunkBytes = std::size_t(1) << 18;
+constexpr std::size_t kPackedChunkBytes = std::size_t(1) << 18;
 constexpr std::uint64_t kMaxDecoderBytes = std::uint64_t(1) << 29;
 
 // What one call of a codec did; it moves the beginnings of both spans.
@@ -174,7 +174,7 @@ class UnpackedStream : public ByteStream {
         packing_(packing),
         codec_(makeCodec(packing)),
         name_(std::move(name)),
-        buffer_(kChunkBytes) {}
+        buffer_(kPackedChunkBytes) {}
 
   std::size_t read(std::span<std::byte> out) override {
     std::span<std::byte> rest = out;

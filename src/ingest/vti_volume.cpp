@@ -44,9 +44,9 @@ struct VtiHead {
   bool appendedIsRaw = false;
 };
 
-class HeadReader {
+class VtiHeadReader {
  public:
-  explicit HeadReader(const fs::path& path) : path_(path) {
+  explicit VtiHeadReader(const fs::path& path) : path_(path) {
     XML_SetUserData(parser_.get(), this);
     XML_SetElementHandler(parser_.get(), onStart, onEnd);
   }
@@ -71,9 +71,9 @@ class HeadReader {
   static void onStart(void* self, const XML_Char* name, const XML_Char** pairs) {
     Attributes attributes;
     for (; pairs[0]; pairs += 2) attributes[pairs[0]] = pairs[1];
-    static_cast<HeadReader*>(self)->start(name, std::move(attributes));
+    static_cast<VtiHeadReader*>(self)->start(name, std::move(attributes));
   }
-  static void onEnd(void* self, const XML_Char* name) { static_cast<HeadReader*>(self)->end(name); }
+  static void onEnd(void* self, const XML_Char* name) { static_cast<VtiHeadReader*>(self)->end(name); }
 
   void start(const std::string& name, Attributes attributes) {
     const std::int64_t behind = here() + XML_GetCurrentByteCount(parser_.get());
@@ -107,7 +107,7 @@ class HeadReader {
   std::optional<std::size_t> section_;  // of point or cell data, when inside one
 };
 
-VoxelType typeOf(const fs::path& path, const std::string& text) {
+VoxelType vtiTypeOf(const fs::path& path, const std::string& text) {
   using enum VoxelType;
   static const std::map<std::string, VoxelType> types{
       {"Int8", i8},    {"UInt8", u8},  {"Int16", i16},  {"UInt16", u16},  {"Int32", i32},
@@ -250,14 +250,14 @@ std::unique_ptr<VoxelSource> openVti(const fs::path& path) {
   info.name = path.string();
   info.fileBytes = checkedFileSize(path);
   if (info.fileBytes < 0) throw IoError(path.string() + ": expected a file, found a pipe or device");
-  const VtiHead head = HeadReader(path).read();
+  const VtiHead head = VtiHeadReader(path).read();
   if (const std::string type = get(head.file, "type"); type != "ImageData") failField(path, "type", "ImageData", type);
   const auto extent = extentOf(path, head);
   const VtiArray& array = arrayOf(path, head);
   for (std::size_t axis = 0; axis < 3; ++axis)
     info.dims[static_cast<int>(axis)] = extent[2 * axis + 1] - extent[2 * axis] + (array.cells ? 0 : 1);
   VoxelLayout layout;
-  layout.type = info.type = typeOf(path, get(array.attributes, "type"));
+  layout.type = info.type = vtiTypeOf(path, get(array.attributes, "type"));
   if (!volumeBytes(info.dims, info.type))
     failField(path, "WholeExtent", "1 to 2147483647 voxels along each axis and less than 2^63 bytes in all",
               get(head.image, "WholeExtent"));

@@ -14,7 +14,7 @@ using Cell = HtmlTable::Cell;
 
 Cell text(const std::string& html) { return {html, "", true}; }
 Cell words(const std::string& plain) { return text(escapeHtml(plain)); }
-Cell number(double value) { return {printShort(value), jsonNumber(std::isfinite(value) ? value : 1e300), false}; }
+Cell numberCell(double value) { return {printShort(value), jsonNumber(std::isfinite(value) ? value : 1e300), false}; }
 // Many a good picture has 0.99-something.
 Cell similarity(const std::optional<double>& ssim) {
   if (!ssim) return {"-", "-2", false};
@@ -22,7 +22,9 @@ Cell similarity(const std::optional<double>& ssim) {
   std::snprintf(text, sizeof text, "%.4f", *ssim);
   return {text, jsonNumber(*ssim), false};
 }
-Cell optionalNumber(const std::optional<double>& value) { return value ? number(*value) : Cell{"-", "1e300", false}; }
+Cell optionalNumber(const std::optional<double>& value) {
+  return value ? numberCell(*value) : Cell{"-", "1e300", false};
+}
 
 // "2.31", and on hovering the spread.
 Cell timeCell(const Spread& time) {
@@ -39,8 +41,8 @@ std::vector<Cell> heads(const std::vector<std::string>& names, std::size_t texts
 }
 
 void appendError(std::vector<Cell>& cells, const ErrorMeasures& error) {
-  cells.insert(cells.end(), {number(error.rmse), number(error.p999), number(error.maxError), number(error.relMse),
-                             similarity(error.ssim), optionalNumber(error.flip)});
+  cells.insert(cells.end(), {numberCell(error.rmse), numberCell(error.p999), numberCell(error.maxError),
+                             numberCell(error.relMse), similarity(error.ssim), optionalNumber(error.flip)});
 }
 
 const std::vector<std::string> kErrorHeads{"RMSE", "99.9 %", "max", "relMSE", "SSIM", "FLIP"};
@@ -115,7 +117,7 @@ std::string earlierTable(const StudyRecord& record, Model model) {
   HtmlTable table;
   table.head = heads({"earlier, cheapest first", "time", "RMSE"}, 1);
   for (const EarlierCase& one : record.earlier->comparable(record, model))
-    table.rows.push_back({{words(one.id), number(one.timeRatio), number(one.rmse)}});
+    table.rows.push_back({{words(one.id), numberCell(one.timeRatio), numberCell(one.rmse)}});
   if (table.rows.empty()) return "<p class=\"quiet\">" + of + " has no case of this model, size and theta.</p>\n";
   return "<p class=\"quiet\">The Pareto front of " + of +
          ", grey in the plot. Its times are multiples of its own baseline.</p>\n" + printHtml(table);
@@ -171,12 +173,13 @@ std::string comparisonTables(const StudyRecord& record, const std::vector<Compar
     if (group.model != Model::cone || group.size != record.plan.baseSize) continue;
     bool first = true;
     for (const Comparison& one : fastestOfNoLargerError(group)) {
-      HtmlTable::Row row{{one.with ? number(one.speedup()) : Cell{"-"}, text(linked(one.without->what, record.plan)),
-                          timeCell(one.without->timeRatio), number(one.without->error.rmse)},
-                         first ? "new" : ""};
+      HtmlTable::Row row{
+          {one.with ? numberCell(one.speedup()) : Cell{"-"}, text(linked(one.without->what, record.plan)),
+           timeCell(one.without->timeRatio), numberCell(one.without->error.rmse)},
+          first ? "new" : ""};
       if (one.with)
         row.cells.insert(row.cells.end(), {text(linked(one.with->what, record.plan)), timeCell(one.with->timeRatio),
-                                           number(one.with->error.rmse)});
+                                           numberCell(one.with->error.rmse)});
       else
         row.cells.insert(row.cells.end(), {words("not reached"), {"-"}, {"-"}});
       reached.rows.push_back(row);
@@ -194,7 +197,7 @@ std::string comparisonTables(const StudyRecord& record, const std::vector<Compar
   few.head = heads({"ordinates", "dos", "times as fast", "times the RMSE"}, 2);
   for (const Comparison& one : fewBesideMany(record))
     few.rows.push_back({{text(linked(one.with->what, record.plan)), text(linked(one.without->what, record.plan)),
-                         number(one.speedup()), number(one.errorRatio())}});
+                         numberCell(one.speedup()), numberCell(one.errorRatio())}});
   if (!few.rows.empty())
     html += "<p>Few directions in few slices beside <code>dos</code> in " + std::to_string(kManySlices) +
             " slices.</p>\n" + printHtml(few);
@@ -211,12 +214,12 @@ std::string windowTable(const StudyRecord& record) {
     if (!result || !studyMethod(what.method).windows) continue;
     HtmlTable::Row row{{text(linked(what, record.plan)),
                         timeCell(result->timeRatio),
-                        number(result->error.rmse),
+                        numberCell(result->error.rmse),
                         {std::to_string(result->segments)},
-                        number(result->windowTexel),
-                        number(static_cast<double>(result->windowBytes) / (1 << 20)),
-                        number(1e-6 * static_cast<double>(result->windowUpdates)),
-                        number(1e-6 * static_cast<double>(result->fragments))}};
+                        numberCell(result->windowTexel),
+                        numberCell(static_cast<double>(result->windowBytes) / (1 << 20)),
+                        numberCell(1e-6 * static_cast<double>(result->windowUpdates)),
+                        numberCell(1e-6 * static_cast<double>(result->fragments))}};
     std::string passes;
     for (const double share : passShares(result->passes))
       passes += (passes.empty() ? "" : " / ") + std::to_string(std::lround(100 * share));
@@ -255,7 +258,7 @@ std::string caseTable(const StudyRecord& record, const std::vector<ComparableCas
                  {std::to_string(what.size)},
                  {occlusion ? jsonDegrees(what.theta) : ""},
                  timeCell(result->timeRatio)};
-    if (milliseconds) row.cells.push_back(number(result->caseMs));
+    if (milliseconds) row.cells.push_back(numberCell(result->caseMs));
     appendError(row.cells, result->error);
     table.rows.push_back(row);
   }
@@ -274,7 +277,7 @@ std::string referenceTable(const StudyRecord& record) {
     HtmlTable::Row row{{words(modelName(result.what.model)),
                         {std::to_string(result.what.size)},
                         {result.what.model == Model::cone ? jsonDegrees(result.what.theta) : ""},
-                        number(result.timeRatio)}};
+                        numberCell(result.timeRatio)}};
     appendError(row.cells, result.coarser);
     table.rows.push_back(row);
   }

@@ -63,21 +63,21 @@ EnvironmentLight readEnvironment(const JsonValue& value, LightFrame frame, const
   return light;
 }
 
-std::string printed(const glm::dvec3& v) { return jsonNumbers({v.x, v.y, v.z}); }
+std::string printedLightValue(const glm::dvec3& v) { return jsonNumbers({v.x, v.y, v.z}); }
 
 JsonFields fieldsOf(const ConeLight& cone) {
   return {{"type", jsonString("cone")},
-          {"axis", printed(cone.axis)},
+          {"axis", printedLightValue(cone.axis)},
           {"theta", jsonDegrees(cone.aperture)},
-          {"radiance", printed(cone.radiance)}};
+          {"radiance", printedLightValue(cone.radiance)}};
 }
 
 JsonFields fieldsOf(const ListedLight& light) {
   std::vector<std::string> list;
   for (const ListedDirection& listed : light.list)
-    list.push_back(jsonObject({{"direction", printed(listed.direction)},
+    list.push_back(jsonObject({{"direction", printedLightValue(listed.direction)},
                                {"weight", jsonNumber(listed.weight)},
-                               {"colour", printed(listed.colour)}}));
+                               {"colour", printedLightValue(listed.colour)}}));
   return {{"type", jsonString("directions")}, {"list", jsonArray(list)}};
 }
 
@@ -86,8 +86,8 @@ JsonFields fieldsOf(const EnvironmentLight& light) {
     throw InvalidArgument("light.sources: an environment map that is no file has no place in JSON");
   return {{"type", jsonString("environment")},
           {"file", jsonString(light.file.string())},
-          {"up", printed(light.up)},
-          {"front", printed(light.front)},
+          {"up", printedLightValue(light.up)},
+          {"front", printedLightValue(light.front)},
           {"scale", jsonNumber(light.scale)}};
 }
 

@@ -27,14 +27,6 @@ struct MetaFile {
 const std::string kMetaStart = "ObjectType = Image\nNDims = 3\nDimSize = 2 3 2\nElementType = MET_SHORT\n";
 const std::string kLocal = "ElementDataFile = LOCAL\n";
 
-std::string zlibPacked(const std::string& bytes) {
-  std::string out(compressBound(bytes.size()), '\0');
-  uLongf size = out.size();
-  compress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-  out.resize(size);
-  return out;
-}
-
 }  // namespace
 
 TEST_CASE("MetaImage voxels of every kind of storage are the same", "[ingest]") {

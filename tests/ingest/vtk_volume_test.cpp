@@ -41,14 +41,6 @@ std::string lz4Packed(const std::string& bytes) {
   return out;
 }
 
-std::string zlibPacked(const std::string& bytes) {
-  std::string out(compressBound(bytes.size()), '\0');
-  uLongf size = out.size();
-  compress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-  out.resize(size);
-  return out;
-}
-
 // One way to store an array.
 struct Storage {
   std::string compressor = {};

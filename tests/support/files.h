@@ -39,6 +39,14 @@ inline std::string gzipped(const std::string& bytes) {
   return out;
 }
 
+inline std::string zlibPacked(const std::string& bytes) {
+  std::string out(compressBound(bytes.size()), '\0');
+  uLongf size = out.size();
+  compress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  out.resize(size);
+  return out;
+}
+
 /// The bytes of the values, each reversed for the other byte order.
 template <class T>
 std::string bytesOf(const std::vector<T>& values, bool reversed = false) {
