@@ -15,7 +15,7 @@ namespace {
 
 const IndexBox kWide{glm::ivec3(-64, -64, 0), glm::ivec3(95, 95, 63)};
 
-TransferFunction ramp(const glm::dvec3& albedo, double sigma_t) {
+TransferFunction tintedRamp(const glm::dvec3& albedo, double sigma_t) {
   return TransferFunction({{0, {albedo, 0}}, {1, {albedo, sigma_t}}});
 }
 
@@ -96,7 +96,8 @@ TEST_CASE("A homogeneous layer under one direction has its closed form at any sl
         for (const double d : {0.3, 1.0, 4.0}) {
           const double first = inside ? 0 : 20.3, last = inside ? 15.9 : 36.2;
           const double z = inside ? 40.2 : 63;
-          Scene scene = ordinatesScene(ramp({1, 0.5, 0.25}, sigma_t), straightCamera(perspective, z, 24), d, 0, 1);
+          Scene scene =
+              ordinatesScene(tintedRamp({1, 0.5, 0.25}, sigma_t), straightCamera(perspective, z, 24), d, 0, 1);
           setLights(scene, {lightFrom(towards)});
           // In a volume so wide that light from aside comes through all of the layer.
           scene.clipPlanes = {{0, 0, 1, last - z}};
@@ -131,7 +132,8 @@ TEST_CASE("In a medium wider than the image each direction falls along its own p
     for (const double theta : {0.8, 1.2})
       for (const int bits : {32, 16}) {
         INFO("perspective " << perspective << ", theta " << theta << ", bits " << bits);
-        Scene scene = ordinatesScene(ramp({1, 0.5, 0.25}, sigma_t), straightCamera(perspective, 63, 24), d, theta, 12);
+        Scene scene =
+            ordinatesScene(tintedRamp({1, 0.5, 0.25}, sigma_t), straightCamera(perspective, 63, 24), d, theta, 12);
         scene.occlusion.bits = bits;
         scene.clipPlanes = {{0, 0, -1, 63 - first}, {0, 0, 1, last - 63}};
         const FieldBricks volume = fieldFor(
@@ -208,7 +210,7 @@ TEST_CASE("What is off the screen casts its shadow", "[shade][gl]") {
   const double sigma_t = 0.4;
   const glm::dvec3 towards(1, 0.1, 1);  // 22 or so to the right where the plate is
   for (const bool perspective : {false, true}) {
-    Scene scene = ordinatesScene(ramp(glm::dvec3(1), sigma_t), straightCamera(perspective, 64, 24), 0.5, 0, 1);
+    Scene scene = ordinatesScene(tintedRamp(glm::dvec3(1), sigma_t), straightCamera(perspective, 64, 24), 0.5, 0, 1);
     scene.camera.viewHeight = 16;
     scene.camera.fov = 0.3;
     scene.occlusion.directions = 1;
@@ -271,7 +273,7 @@ TEST_CASE("Clipping an occluder away lights what is behind it, by ordinates as w
   };
   const auto floor = [](const glm::ivec3& i) { return i.z >= 4 && i.z <= 8 ? 1.0 : 0.0; };
   for (const bool perspective : {false, true}) {
-    Scene scene = sixteenDirections(ramp(glm::dvec3(1), 2), straightCamera(perspective, 50, 32), 0.5);
+    Scene scene = sixteenDirections(tintedRamp(glm::dvec3(1), 2), straightCamera(perspective, 50, 32), 0.5);
     const Picture roofed = renderPicture(*context, fieldFor(scene, field, kBlock), scene, kLayers);
     const Picture alone = renderPicture(*context, fieldFor(scene, floor, kBlock), scene, kLayers);
     CHECK(maxDifference(roofed.visibility, alone.visibility) > 0.15);
@@ -296,7 +298,7 @@ TEST_CASE("Bricks, culling, pools and textures change nothing of light by ordina
   for (Camera camera :
        {orthographicCamera({30, 5, 95}, middle, 70, 40), perspectiveCamera({20, 8, 75}, middle, 1, 40)}) {
     INFO("perspective " << (camera.projection == Projection::perspective));
-    Scene scene = ordinatesScene(ramp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 1.2, 12);
+    Scene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 1.2, 12);
     scene.bricks.culling = false;
     scene.bricks.interior = 128;
     const Picture whole = renderPicture(*context, fieldFor(scene, far, voxels), scene, kLayers);
@@ -339,7 +341,7 @@ TEST_CASE("Bricks, culling, pools and textures change nothing of light by ordina
 TEST_CASE("A picture by ordinates does not depend on the ones before", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  Scene scene = ordinatesScene(ramp({0.9, 0.5, 0.2}, 1.2), blobCameras()[0], 0.8, 1.2, 20);
+  Scene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), blobCameras()[0], 0.8, 1.2, 20);
   FieldOptions options;
   options.interior = scene.bricks.interior;
   options.apron = 2;  // for the widest of the views
@@ -362,7 +364,7 @@ TEST_CASE("Many directions are lit in groups, which add up to what one group has
   if (!context) return;
   for (const Camera& camera : blobCameras())
     for (const bool coloured : {false, true}) {
-      Scene scene = ordinatesScene(ramp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 1.1, 15);
+      Scene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 1.1, 15);
       std::vector<ListedDirection> once, often;
       for (const auto& [direction, radiance] : lightDirections(scene, 15)) {
         const glm::dvec3 colour = coloured ? 0.5 + 0.5 * direction : glm::dvec3(1);
@@ -398,7 +400,7 @@ TEST_CASE("Pictures of lights add up to the picture of all of them", "[shade][gl
       const glm::dvec3 left(-0.6, 0.1, 0.7), right = equalPaths ? glm::dvec3(0.6, 0.1, 0.7) : glm::dvec3(0.1, 0.2, 0.9);
       std::vector<double> differences;
       for (const double d : {0.8, 0.4}) {
-        Scene scene = sixteenDirections(ramp({0.9, 0.8, 0.7}, 1.2), camera, d);
+        Scene scene = sixteenDirections(tintedRamp({0.9, 0.8, 0.7}, 1.2), camera, d);
         const FieldBricks volume = fieldFor(scene, blobs, kBlock);
         setLights(scene, {lightFrom(left, red)});
         Image sum = renderPicture(*context, volume, scene).colour;
@@ -424,7 +426,7 @@ TEST_CASE("Windows of 16 bits stay within half a step per slice", "[shade][gl]")
   if (!context) return;
   for (const Camera& camera : blobCameras())
     for (const double d : {0.8, 0.1}) {
-      Scene scene = ordinatesScene(ramp({0.9, 0.5, 0.2}, 0.6), camera, d, 1, 12);
+      Scene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 0.6), camera, d, 1, 12);
       const FieldBricks volume = fieldFor(scene, blobs, kBlock);
       const Picture fine = renderPicture(*context, volume, scene, kLayers);
       scene.occlusion.bits = 16;
@@ -441,7 +443,7 @@ TEST_CASE("Without an aperture any number of directions is one, straight towards
   const auto context = testContext();
   if (!context) return;
   for (const Camera& camera : blobCameras()) {
-    Scene scene = ordinatesScene(ramp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 0, 16);
+    Scene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 0, 16);
     const FieldBricks volume = fieldFor(scene, blobs, kBlock);
     const Picture straight = renderPicture(*context, volume, scene, kLayers);
     CHECK(straight.stats.directions == 1);
