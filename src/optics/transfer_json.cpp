@@ -1,9 +1,10 @@
-#include "optics/transfer_json.h"
+#include "umbrick/optics/transfer_json.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "core/json_reader.h"
 #include "core/json_writer.h"
 #include "core/text_file.h"
 #include "optics/paraview_colour_map.h"

@@ -6,9 +6,9 @@
 #include "reference/convex_region.h"
 #include "reference/eye_ray.h"
 #include "reference/pixel.h"
-#include "scene/light_set.h"
 #include "umbrick/optics/directions.h"
 #include "umbrick/reference/reference.h"
+#include "umbrick/scene/light_set.h"
 
 namespace umbrick {
 

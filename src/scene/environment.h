@@ -3,7 +3,7 @@
 #include <glm/mat3x3.hpp>
 #include <vector>
 
-#include "scene/light_set.h"
+#include "umbrick/scene/light_set.h"
 
 namespace umbrick {
 

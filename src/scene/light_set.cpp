@@ -1,4 +1,4 @@
-#include "scene/light_set.h"
+#include "umbrick/scene/light_set.h"
 
 #include <algorithm>
 #include <cmath>

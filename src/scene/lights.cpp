@@ -1,6 +1,6 @@
 #include "umbrick/scene/lights.h"
 
-#include "scene/light_set.h"
+#include "umbrick/scene/light_set.h"
 
 namespace umbrick {
 

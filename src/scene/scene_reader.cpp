@@ -3,11 +3,11 @@
 
 #include "core/json_reader.h"
 #include "core/text_file.h"
-#include "optics/transfer_json.h"
 #include "scene/light_json.h"
 #include "scene/names.h"
 #include "scene/scene_check.h"
 #include "umbrick/core/error.h"
+#include "umbrick/optics/transfer_json.h"
 
 namespace umbrick {
 namespace {

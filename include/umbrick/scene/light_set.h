@@ -36,6 +36,7 @@ class Light {
   double power_ = 0, solidAngle_ = 0;
 };
 
+/// The sources of a scene together. Integrators take directions, or one at random, from here.
 class LightSet {
  public:
   /// @throw InvalidArgument  as lightDirections

@@ -1,9 +1,9 @@
 // A transfer function as one value of a larger JSON document.
 #pragma once
-#include "core/json_reader.h"
 #include "umbrick/optics/transfer_function.h"
 
 namespace umbrick {
+class JsonValue;  // of the room core, which keeps it to the library
 
 /// Our own object or ParaView's array. @throw IoError
 TransferFunction readTransferFunction(const JsonValue& value);
