@@ -143,6 +143,11 @@ ProgressivePicture renderPasses(const RenderCommand& command, const GlContext& c
         return !stop.requested();
       });
   if (last.passes != told) std::cerr << describe(last) << '\n';
+  // Errors follow an order only where there are slabs to refine.
+  constexpr std::int64_t kFewSlabs = 12;
+  if (last.picture.stats.slices > 0 && last.picture.stats.slices < kFewSlabs)
+    std::cerr << "the volume is only " << last.picture.stats.slices
+              << " slabs deep: the estimated error may be several times too low or too high\n";
   if (command.targetError && !last.reachedTarget)
     std::cerr << "the error asked for, " << *command.targetError << ", is not reached\n";
   return last;
@@ -178,6 +183,10 @@ int render(const RenderCommand& command) {
       framesMs.push_back(frame.elapsedMs());
     }
   }
+  // What is asked for by name may round voxels; the automatic choice does not.
+  if (loaded.scene.bricks.format != "auto" && picture.stats.formatError > 0)
+    std::cerr << "texels of " << loaded.scene.bricks.format << " are off by up to " << picture.stats.formatError
+              << ", in units of the grid\n";
   const Stopwatch write;
   writePicture(output, picture, loaded.scene, *context,
                passes ? printPasses(*passes, command.seed).dump() : std::string());

@@ -43,6 +43,20 @@ TexelScale unormScale(const Bricks& volume, VoxelFormat format) {
   return {step * codes, static_cast<double>(volume.value.min), exact ? 0 : step};
 }
 
+// The codes of values in a fixed-point format of codes 0 to `most`.
+class UnormCodes {
+ public:
+  UnormCodes(const TexelScale& scale, double most)
+      : offset_(scale.offset), perUnit_(1 / (scale.scale / most)), most_(most) {}
+  /// To be cut to a whole number.
+  double operator()(float value) const {
+    return std::clamp((static_cast<double>(value) - offset_) * perUnit_ + 0.5, 0.0, most_);
+  }
+
+ private:
+  double offset_, perUnit_, most_;
+};
+
 }  // namespace
 
 TexelScale texelScale(const Bricks& volume, VoxelFormat format) {
@@ -61,6 +75,26 @@ TexelScale texelScale(const Bricks& volume, VoxelFormat format) {
   }
   const double anchor = volume.anchor;
   return {1, anchor, anchor != 0 ? (largest + std::abs(anchor)) * 0x1p-24 : 0};
+}
+
+double texelOf(float value, const TexelScale& scale, VoxelFormat format) {
+  const auto unorm = [&](double most) { return std::floor(UnormCodes(scale, most)(value)) / most; };
+  switch (format) {
+    case VoxelFormat::unorm8:
+      return unorm(255);
+    case VoxelFormat::unorm16:
+      return unorm(65535);
+    case VoxelFormat::half:
+      return gradientTexelOf(value, format);
+    case VoxelFormat::float32:
+      break;
+  }
+  return static_cast<float>(scale.toTexel(value));
+}
+
+double gradientTexelOf(float gradient, VoxelFormat format) {
+  if (format != VoxelFormat::half) return gradient;
+  return static_cast<float>(Imath::half(std::clamp(gradient, -65504.0f, 65504.0f)));
 }
 
 BrickAtlas::BrickAtlas(const GlContext& context, const Bricks& volume, std::vector<Brick> bricks,
@@ -179,11 +213,8 @@ double BrickAtlas::encode(std::span<const float> values, std::span<const float> 
   };
   const auto storeUnorm = [&]<class Code>(Code most) {
     const double step = valueScale_.scale / most;
-    const double perStep = 1 / step;
-    const auto codeOf = [&](float v) {
-      return static_cast<Code>(
-          std::clamp((static_cast<double>(v) - valueScale_.offset) * perStep + 0.5, 0.0, static_cast<double>(most)));
-    };
+    const UnormCodes codes(valueScale_, most);
+    const auto codeOf = [codes](float v) { return static_cast<Code>(codes(v)); };
     store(codeOf, codeOf, [&](Code code) { return valueScale_.offset + code * step; });
   };
   const auto halfOf = [](float v) { return Imath::half(std::clamp(v, -65504.0f, 65504.0f)); };
@@ -204,26 +235,6 @@ double BrickAtlas::encode(std::span<const float> values, std::span<const float> 
       break;
   }
   return error;
-}
-
-double BrickAtlas::texelOf(float value) const {
-  std::array<std::byte, sizeof(float)> texel;
-  encode({&value, 1}, {}, texel.data());
-  const auto read = [&](auto code) {
-    std::memcpy(&code, texel.data(), sizeof code);
-    return static_cast<double>(static_cast<float>(code));
-  };
-  switch (format_) {
-    case VoxelFormat::unorm8:
-      return read(std::uint8_t{}) / 255;
-    case VoxelFormat::unorm16:
-      return read(std::uint16_t{}) / 65535;
-    case VoxelFormat::half:
-      return read(Imath::half{});
-    case VoxelFormat::float32:
-      break;
-  }
-  return read(float{});
 }
 
 void BrickAtlas::upload(std::span<const std::pair<std::int32_t, std::int32_t>> brickAndSlot) {

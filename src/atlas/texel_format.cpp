@@ -33,6 +33,9 @@ VoxelFormat parseVoxelFormat(const std::string& name, const Bricks& volume) {
       if (volume.hasGradients && (format == VoxelFormat::unorm8 || format == VoxelFormat::unorm16))
         throw InvalidArgument("format: " + name +
                               " cannot hold gradient magnitudes of a 2D transfer function; use half or float32");
+      if (volume.hasGradients && format == VoxelFormat::half && volume.gradient.max > 65504)
+        throw InvalidArgument("format: half holds gradient magnitudes up to 65504, those of the volume reach " +
+                              std::to_string(volume.gradient.max) + "; use float32");
       return format;
     }
   throw InvalidArgument("format: '" + name + "' is not one of auto, unorm8, unorm16, half, float32");

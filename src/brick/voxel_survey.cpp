@@ -70,15 +70,13 @@ openvdb::CoordBBox boxOfBits(const LeafBits& bits, const openvdb::Coord& origin)
                         edge + " x " + edge + " voxels; use larger bricks or a smaller grid");
 }
 
-// The median of the values where their middle half is much narrower than its distance from 0, so that a few values far
-// off do not matter; else 0.
+// The median of the values where their middle half is much narrower than its distance from 0, so that some values far
+// off do not matter; else 0. Each value counts once, however often it is there: a marker of missing data is one.
 float anchorOf(std::vector<float>& values) {
   if (values.empty()) return 0;
-  const auto quartile = [&](std::size_t quarters) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * quarters / 4);
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-  };
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  const auto quartile = [&](std::size_t quarters) { return values[(values.size() - 1) * quarters / 4]; };
   const float low = quartile(1), median = quartile(2), high = quartile(3);
   constexpr double kFarther = 256;  // spreads: eight bits that single precision gains
   return (static_cast<double>(high) - low) * kFarther < std::abs(static_cast<double>(median)) ? median : 0;

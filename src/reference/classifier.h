@@ -147,7 +147,6 @@ class Classifier {
   }
 
   // The cubic through y at `begin` and at one, two and three thirds of h behind it.
-
   static Cubic throughThirds(const std::array<double, 4>& y, double begin, double h);
 
   TransferFunction transfer_;

@@ -44,9 +44,11 @@ int bisections(const std::vector<AxisStretch>& stretches) {
 }
 
 // Lower and upper ends of the stretches in texel units. A value exactly on a step belongs to the upper side, also where
-// it is read as a little less: steps give way by that much.
+// its texel holds a little less and where that is read as a little less: steps give way by that much.
+// @param stored  what a texel holds of a voxel of this value
 std::vector<glm::vec2> endsInTexels(const std::vector<AxisStretch>& stretches,
-                                    const std::function<double(double)>& toTexel) {
+                                    const std::function<double(double)>& toTexel,
+                                    const std::function<double(float)>& stored) {
   std::vector<glm::vec2> ends(stretches.size());
   double lower = -kFar;
   for (std::size_t i = 0; i < stretches.size(); ++i) {
@@ -54,7 +56,10 @@ std::vector<glm::vec2> endsInTexels(const std::vector<AxisStretch>& stretches,
     if (i + 1 < stretches.size()) {
       upper = toTexel(stretches[i].upper);
       const bool step = stretches[i].high != stretches[i + 1].low;
-      if (step) upper -= kReadRounding * std::abs(upper);
+      if (step) {
+        upper = std::min(upper, stored(static_cast<float>(stretches[i].upper)));
+        upper -= kReadRounding * std::abs(upper);
+      }
       upper = std::clamp(upper, lower, kFar);
     }
     ends[i] = {static_cast<float>(lower), static_cast<float>(upper)};
@@ -124,15 +129,15 @@ StretchTexels texelsOf2d(const TransferFunction& transfer, const std::vector<Axi
   return texels;
 }
 
-void checkPoints(const GlFunctions& gl, const TransferFunction& transfer) {
-  GLint most = 0;
-  gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
-  const std::size_t points = std::max(transfer.values().size(), transfer.gradients().size());
-  // A power of two of columns, twice as many for a 2D function.
-  if (2 * std::bit_ceil(points + 1) + 2 > static_cast<std::size_t>(most))
-    throw InvalidArgument("transfer function: it has " + std::to_string(points) +
-                          " control points along an axis, more than the driver's limit of " +
-                          std::to_string(most / 4 - 2));
+// Columns, and rows, are powers of two; a 2D function has two of them for a stretch, and two rows more.
+void checkStretches(const GlFunctions& gl, const std::vector<AxisStretch>& stretches, bool is2d) {
+  GLint edge = 0;
+  gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &edge);
+  const std::size_t most = std::bit_floor(static_cast<unsigned>(edge)) / (is2d ? 4 : 1);
+  if (stretches.size() > most)
+    throw InvalidArgument("transfer function: it has " + std::to_string(stretches.size() - 1) +
+                          " different control points along an axis, more than the driver's limit of " +
+                          std::to_string(most - 1));
 }
 
 }  // namespace
@@ -144,10 +149,14 @@ TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& tr
       background_(volume.background),
       emptyRounding_(format == VoxelFormat::half || format == VoxelFormat::float32 ? kFloatRounding
                                                                                    : 2 * kReadRounding),
+      // Half-floats are off by 2^-11 of a magnitude, whatever the values are.
+      gradientRounding_(format == VoxelFormat::half ? 0x1p-10 : 0x1p-20),
       mode_((transfer.is2d() ? 2 : 0) + (sampling.quadrature == Quadrature::midpoint ? 1 : 0)) {
-  checkPoints(gl, transfer_);
   const std::vector<AxisStretch> values = axisStretches(transfer_.values());
-  const std::vector<glm::vec2> valueEnds = endsInTexels(values, [&](double value) { return scale_.toTexel(value); });
+  checkStretches(gl, values, transfer_.is2d());
+  const std::vector<glm::vec2> valueEnds = endsInTexels(
+      values, [&](double value) { return scale_.toTexel(value); },
+      [&](float value) { return texelOf(value, scale_, format); });
   valueSteps_ = bisections(values);
   if (!transfer_.is2d()) {
     const StretchTexels texels = texelsOf1d(transfer_, values, valueEnds, 1 << valueSteps_);
@@ -160,7 +169,10 @@ TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& tr
     return;
   }
   const std::vector<AxisStretch> gradients = axisStretches(transfer_.gradients());
-  const std::vector<glm::vec2> gradientEnds = endsInTexels(gradients, [](double gradient) { return gradient; });
+  checkStretches(gl, gradients, true);
+  const std::vector<glm::vec2> gradientEnds = endsInTexels(
+      gradients, [](double gradient) { return gradient; },
+      [&](float gradient) { return gradientTexelOf(gradient, format); });
   gradientSteps_ = bisections(gradients);
   texture_ = texelsOf2d(transfer_, values, valueEnds, gradients, gradientEnds, 1 << valueSteps_, 1 << gradientSteps_)
                  .upload(gl);
@@ -184,8 +196,7 @@ bool TransferLookup::isVisible(const Range& value, const Range& gradient) const 
   if (value.empty()) return false;
   Range gradients{0, 0};
   if (transfer_.is2d()) {
-    // Half-floats, the coarsest that hold gradients, are off by 2^-11 of a value.
-    const auto slack = static_cast<float>(scale_.rounding > 0 ? 0x1p-10 : 0x1p-20);
+    const auto slack = static_cast<float>(gradientRounding_);
     gradients = {gradient.min * (1 - slack), gradient.max * (1 + slack)};
   }
   return !transfer_.isTransparent(widened(value), gradients);

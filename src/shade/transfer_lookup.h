@@ -12,7 +12,9 @@ namespace umbrick {
 class TransferLookup {
  public:
   /// @param format  of the atlas's texels
-  /// @throw InvalidArgument  a function of more control points than the driver's textures have texels
+  /// @throw InvalidArgument  a function of as many different control points along an axis as a texture of the driver
+  /// has
+  ///                         texels, of a quarter of that for a 2D function
   /// @throw GlError
   TransferLookup(const GlFunctions& gl, const TransferFunction& transfer, const SamplingOptions& sampling,
                  const Bricks& volume, VoxelFormat format);
@@ -32,7 +34,8 @@ class TransferLookup {
   TransferFunction transfer_;
   TexelScale scale_;
   float background_;
-  double emptyRounding_;  // share of empty space's texel that it may be read off by
+  double emptyRounding_;     // share of empty space's texel that it may be read off by
+  double gradientRounding_;  // likewise of a gradient magnitude
   int mode_;
   int valueSteps_ = 0, gradientSteps_ = 0;  // of a bisection among the stretches of each axis
   std::vector<glm::vec4> uniforms_;         // rows 0 to 2 of the texture by column, where these are not too many

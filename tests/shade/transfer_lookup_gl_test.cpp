@@ -68,11 +68,29 @@ TEST_CASE("A range is invisible only where no texel of it is seen, and seen no f
   }
 }
 
-TEST_CASE("A function of more points than a texture holds is refused", "[shade][gl]") {
+// Gradients are rounded by half-floats also where values are not.
+TEST_CASE("Gradients that half-floats round across a step are not culled", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  OneRange volume({0, 64}, 0);
+  volume.exactFormat = VoxelFormat::half;
+  volume.hasGradients = true;
+  const Medium none{kWhite, 0}, solid{kWhite, 1};
+  const TransferFunction byGradient({0}, {1.7322, 1.7322}, {none, solid});
+  const TransferLookup lookup(context->gl(), byGradient, SamplingOptions{}, volume, VoxelFormat::half);
+  CHECK(lookup.isVisible({0, 64}, {0, 1.73205f}));
+  CHECK_FALSE(lookup.isVisible({0, 64}, {0, 1.72f}));
+}
+
+TEST_CASE("A function of thousands of points is taken, of more than a texture holds refused", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   std::vector<TransferFunction::Point> points;
-  for (int i = 0; i < 100'000; ++i) points.push_back({static_cast<double>(i), {kWhite, 1}});
+  for (int i = 0; i < 9000; ++i) points.push_back({static_cast<double>(i), {kWhite, 1}});
+  const TransferLookup many(context->gl(), TransferFunction(points), SamplingOptions{}, OneRange({0, 1}, 0),
+                            VoxelFormat::float32);
+  CHECK(many.isVisible({5, 6}, {0, 0}));
+  for (int i = 9000; i < 100'000; ++i) points.push_back({static_cast<double>(i), {kWhite, 1}});
   CHECK_THROWS_AS(TransferLookup(context->gl(), TransferFunction(points), SamplingOptions{}, OneRange({0, 1}, 0),
                                  VoxelFormat::float32),
                   InvalidArgument);

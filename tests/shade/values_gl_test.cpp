@@ -89,6 +89,51 @@ TEST_CASE("Values exactly on a step belong to its upper side in every format", "
     }
 }
 
+// A format that rounds voxels must not take one across the step that it stands on.
+TEST_CASE("Values exactly on a step stay there in formats that round them", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  for (const float label : {0.1f, 0.3f, 0.7f, 0.9f}) {
+    const ScalarGrid grid = makeFilled(glm::ivec3(20), glm::ivec3(0), [&](const glm::ivec3& i) {
+      if (i == glm::ivec3(1)) return 1.0;
+      return std::min({i.x, i.y, i.z}) > 4 && std::max({i.x, i.y, i.z}) < 15 ? static_cast<double>(label) : 0.0;
+    });
+    Scene scene = plainScene(TransferFunction({{label, {kAlbedo, 0}}, {label, {kAlbedo, 0.3}}}),
+                             orthographicCamera({40, 20, 60}, glm::dvec3(9.5), 20, 16), 0.5);
+    scene.bricks.format = "float32";
+    const Image exact = renderGrid(*context, grid, scene).colour;
+    CHECK(largestAlpha(exact) > 0.9);
+    for (const std::string format : {"unorm8", "unorm16", "half"}) {
+      INFO(label << " in " << format);
+      scene.bricks.format = format;
+      // A slope from 0 to the label is rounded to so many codes: to 26 of 8 bits for 0.1, so that its end is met up to
+      // 1/26 of a voxel sooner or later.
+      CHECK(rmsDifference(renderGrid(*context, grid, scene).colour, exact) < (format == "unorm8" ? 0.03 : 5e-3));
+    }
+  }
+}
+
+TEST_CASE("A quarter of a volume may be a marker of missing data", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const auto marked = [&](double offset) {
+    return makeFilled(
+        glm::ivec3(24), glm::ivec3(0),
+        [&](const glm::ivec3& i) {
+          return i.x < 7 ? offset - 9999 : offset + 0.1 * glm::dot(glm::dvec3(i), glm::dvec3(0.31, 0.17, 0.11));
+        },
+        static_cast<float>(offset - 9999));
+  };
+  const auto errorAt = [&](double offset) {
+    const Scene scene = plainScene(
+        TransferFunction({{offset + 0.8, {kAlbedo, 0}}, {offset + 0.9, {kAlbedo, 1}}, {offset + 1, {kAlbedo, 0}}}),
+        smallCameras()[1], 0.25);
+    return errorOf(*context, marked(offset), scene);
+  };
+  // Voxels near 1e6 are multiples of 1/16: the same field as near by, but for what single precision rounds.
+  CHECK(errorAt(1e6) < 2 * errorAt(0) + 2e-3);
+}
+
 TEST_CASE("A peak of any width keeps its optical depth, however fine the slices", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;

@@ -33,6 +33,11 @@ struct TexelScale {
 /// other values are spread over the codes of a fixed-point format. 32-bit floats hold the distance from volume.anchor.
 TexelScale texelScale(const Bricks& volume, VoxelFormat format);
 
+/// What a shader reads where all voxels have this value, to a rounding. @param scale  of that format
+double texelOf(float value, const TexelScale& scale, VoxelFormat format);
+/// Likewise of a gradient magnitude, which fixed point does not hold.
+double gradientTexelOf(float gradient, VoxelFormat format);
+
 /// A pool of slots, all in textures of one size, filled as bricks are required. When every brick fits, each is uploaded
 /// once; else the caller releases bricks that the sweep has left behind. Bricks of one value share a slot.
 class BrickAtlas {
@@ -59,8 +64,7 @@ class BrickAtlas {
   int textureCount() const { return static_cast<int>(textures_.size()); }
   glm::ivec3 textureSize() const { return size_; }
   TexelScale valueScale() const { return valueScale_; }
-  /// What a shader reads where all voxels have this value, to a rounding.
-  double texelOf(float value) const;
+  double texelOf(float value) const { return umbrick::texelOf(value, valueScale_, format_); }
   const std::vector<Brick>& bricks() const { return bricks_; }
   const BrickLayout& layout() const { return volume_.layout; }
   std::size_t slots() const { return slots_; }
@@ -93,7 +97,8 @@ class BrickAtlas {
   double formatError_ = 0;
 };
 
-/// "auto" takes what the volume needs. @throw InvalidArgument  an unknown name
+/// "auto" takes what the volume needs. @throw InvalidArgument  an unknown name, or a format that cannot hold the
+/// volume's gradient magnitudes
 VoxelFormat parseVoxelFormat(const std::string& name, const Bricks& volume);
 std::string voxelFormatName(VoxelFormat format);
 

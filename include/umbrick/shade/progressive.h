@@ -24,7 +24,8 @@ struct ErrorEstimate {
   /// volumes at 30, 60 and 80 degrees with solid and translucent media, 128 x 128 and 256 x 256 pixels, 8 passes, over
   /// the true error: `normal` 0.53 to 1.85 (27 pictures), `draft` 0.62 to 1.63 (21), `high` 1.18 to 1.78 (11).
   /// Lowest where solid surfaces are seen at a grazing angle under wide light: they are too dark by almost as much with
-  /// slabs of 2.5 voxels as with 10. Too high, up to 2.5 times, where coarser slabs are half of a translucent volume.
+  /// slabs of 2.5 voxels as with 10. Of volumes that are few slabs deep it tells little, since errors then follow no
+  /// order: from a sixth of the true error to 2.6 times of it, in volumes of four to eight slabs.
   /// Infinite before kStreams passes.
   double systematic = 0;
   double total() const;  // root of the sum of squares
