@@ -43,12 +43,19 @@ int bisections(const std::vector<AxisStretch>& stretches) {
   return std::bit_width(static_cast<unsigned>(stretches.size() - 1));
 }
 
+// Whether a voxel of the volume may have this very value.
+bool mayBeVoxel(double value, const Bricks& volume) {
+  const bool whole = volume.exactFormat == VoxelFormat::unorm8 || volume.exactFormat == VoxelFormat::unorm16;
+  return volume.value.contains(static_cast<float>(value)) && (!whole || value == std::floor(value));
+}
+
 // Lower and upper ends of the stretches in texel units. A value exactly on a step belongs to the upper side, also where
 // its texel holds a little less and where that is read as a little less: steps give way by that much.
-// @param stored  what a texel holds of a voxel of this value
+// @param stored  what a texel holds of a voxel of this value, where there may be one: others are cut off at the ends of
+//                a format, which a step beyond them must not be
 std::vector<glm::vec2> endsInTexels(const std::vector<AxisStretch>& stretches,
                                     const std::function<double(double)>& toTexel,
-                                    const std::function<double(float)>& stored) {
+                                    const std::function<double(double)>& stored) {
   std::vector<glm::vec2> ends(stretches.size());
   double lower = -kFar;
   for (std::size_t i = 0; i < stretches.size(); ++i) {
@@ -57,7 +64,7 @@ std::vector<glm::vec2> endsInTexels(const std::vector<AxisStretch>& stretches,
       upper = toTexel(stretches[i].upper);
       const bool step = stretches[i].high != stretches[i + 1].low;
       if (step) {
-        upper = std::min(upper, stored(static_cast<float>(stretches[i].upper)));
+        upper = std::min(upper, stored(stretches[i].upper));
         upper -= kReadRounding * std::abs(upper);
       }
       upper = std::clamp(upper, lower, kFar);
@@ -156,7 +163,9 @@ TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& tr
   checkStretches(gl, values, transfer_.is2d());
   const std::vector<glm::vec2> valueEnds = endsInTexels(
       values, [&](double value) { return scale_.toTexel(value); },
-      [&](float value) { return texelOf(value, scale_, format); });
+      [&](double value) {
+        return mayBeVoxel(value, volume) ? texelOf(static_cast<float>(value), scale_, format) : scale_.toTexel(value);
+      });
   valueSteps_ = bisections(values);
   if (!transfer_.is2d()) {
     const StretchTexels texels = texelsOf1d(transfer_, values, valueEnds, 1 << valueSteps_);
@@ -172,7 +181,10 @@ TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& tr
   checkStretches(gl, gradients, true);
   const std::vector<glm::vec2> gradientEnds = endsInTexels(
       gradients, [](double gradient) { return gradient; },
-      [&](float gradient) { return gradientTexelOf(gradient, format); });
+      [&](double gradient) {
+        const auto magnitude = static_cast<float>(gradient);
+        return volume.gradient.contains(magnitude) ? gradientTexelOf(magnitude, format) : gradient;
+      });
   gradientSteps_ = bisections(gradients);
   texture_ = texelsOf2d(transfer_, values, valueEnds, gradients, gradientEnds, 1 << valueSteps_, 1 << gradientSteps_)
                  .upload(gl);

@@ -113,6 +113,25 @@ TEST_CASE("Values exactly on a step stay there in formats that round them", "[sh
   }
 }
 
+// Fixed point holds nothing beyond the largest voxel, but a function may have a step there.
+TEST_CASE("A step beyond all values is not met by the largest of them", "[shade][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = makeFilled(glm::ivec3(20), glm::ivec3(0), [](const glm::ivec3& i) {
+    return std::min({i.x, i.y, i.z}) > 4 && std::max({i.x, i.y, i.z}) < 15 ? 20.0 : 0.0;
+  });
+  const Medium thin{{0.2, 0.9, 0.4}, 0.1}, dense{kAlbedo, 5};
+  Scene scene = plainScene(TransferFunction({{20, {{0.2, 0.9, 0.4}, 0}}, {20, thin}, {25, thin}, {25, dense}}),
+                           orthographicCamera({40, 20, 60}, glm::dvec3(9.5), 20, 16), 0.5);
+  scene.bricks.format = "float32";
+  const Image exact = renderGrid(*context, grid, scene).colour;
+  for (const std::string format : {"unorm8", "unorm16", "half"}) {
+    INFO(format);
+    scene.bricks.format = format;
+    CHECK(rmsDifference(renderGrid(*context, grid, scene).colour, exact) < 0.03);
+  }
+}
+
 TEST_CASE("A quarter of a volume may be a marker of missing data", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
