@@ -120,23 +120,34 @@ void addRamp(inout Slab slab, End front, End back, float ray) {
   }
 }
 
-// The medium of a 2D function in one cell of its lattice: albedo and sigma_t.
-vec4 mediumIn(ivec2 cell, vec2 value) {
-  vec2 place = vec2(placeIn(texelFetch(transfer, ivec2(cell.x, 0), 0), value.x),
-                    placeIn(texelFetch(transfer, ivec2(cell.y, 1), 0), value.y));
-  ivec2 corner = ivec2(2 * cell.x, 2 + 2 * cell.y);
-  vec4 a = texelFetch(transfer, corner, 0), b = texelFetch(transfer, corner + ivec2(1, 0), 0);
-  vec4 c = texelFetch(transfer, corner + ivec2(0, 1), 0), d = texelFetch(transfer, corner + ivec2(1, 1), 0);
-  vec4 low = a + place.x * (b - a), high = c + place.x * (d - c);
-  return low + place.y * (high - low);
+// One cell of the lattice of a 2D function: the ends of its stretches and the media at its corners.
+struct Cell {
+  vec4 value_ends, gradient_ends;
+  vec4 a, b, c, d;  // at the lower and the upper value for the lower gradient, then for the upper one
+};
+
+Cell cellAt(ivec2 number) {
+  ivec2 corner = ivec2(2 * number.x, 2 + 2 * number.y);
+  return Cell(texelFetch(transfer, ivec2(number.x, 0), 0), texelFetch(transfer, ivec2(number.y, 1), 0),
+              texelFetch(transfer, corner, 0), texelFetch(transfer, corner + ivec2(1, 0), 0),
+              texelFetch(transfer, corner + ivec2(0, 1), 0), texelFetch(transfer, corner + ivec2(1, 1), 0));
 }
 
-// A piece of a segment within one cell, by the two nodes of Gauss and Legendre.
-void addCell(inout Slab slab, ivec2 cell, vec2 front, vec2 back, float ray) {
-  vec4 first = mediumIn(cell, front + 0.21132487 * (back - front)), second = mediumIn(cell, front + 0.78867513 * (back - front));
-  vec2 tau = 0.5 * ray * vec2(first.a, second.a);
-  addPiece(slab, first.rgb, tau.x, oneMinusExp(tau.x));
-  addPiece(slab, second.rgb, tau.y, oneMinusExp(tau.y));
+// Albedo and sigma_t.
+vec4 mediumIn(Cell cell, vec2 value) {
+  vec4 low = cell.a + placeIn(cell.value_ends, value.x) * (cell.b - cell.a);
+  vec4 high = cell.c + placeIn(cell.value_ends, value.x) * (cell.d - cell.c);
+  return low + placeIn(cell.gradient_ends, value.y) * (high - low);
+}
+
+// A piece of a segment within one cell. Extinction is quadratic along it, so that Simpson's rule gives its optical depth
+// exactly; for the place that scatters in the mean it counts as linear.
+void addCell(inout Slab slab, ivec2 number, vec2 front, vec2 back, float ray) {
+  Cell cell = cellAt(number);
+  float first = mediumIn(cell, front).a, middle = mediumIn(cell, 0.5 * (front + back)).a, last = mediumIn(cell, back).a;
+  float tau = (first + 4.0 * middle + last) * (1.0 / 6.0) * ray, alpha = oneMinusExp(tau);
+  vec2 lit = front + scatteringCentroid(first, last, tau, alpha) * (back - front);
+  addPiece(slab, mediumIn(cell, lit).rgb, tau, alpha);
 }
 
 // Likewise for a 2D function: the segment is cut where it crosses the lines of the lattice.
@@ -173,7 +184,7 @@ void addMiddle(inout Slab slab, End middle, float ray) {
   if (kQuadrature == 1) {
     addStretch(slab, stretchAt(middle.stretch.x), middle.value.r, middle.value.r, ray);
   } else {
-    vec4 medium = mediumIn(middle.stretch, middle.value);
+    vec4 medium = mediumIn(cellAt(middle.stretch), middle.value);
     addPiece(slab, medium.rgb, medium.a * ray, oneMinusExp(medium.a * ray));
   }
 }
