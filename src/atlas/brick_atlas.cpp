@@ -57,6 +57,8 @@ class UnormCodes {
   double offset_, perUnit_, most_;
 };
 
+Imath::half halfOf(float value) { return Imath::half(std::clamp(value, -65504.0f, 65504.0f)); }
+
 }  // namespace
 
 TexelScale texelScale(const Bricks& volume, VoxelFormat format) {
@@ -94,7 +96,7 @@ double texelOf(float value, const TexelScale& scale, VoxelFormat format) {
 
 double gradientTexelOf(float gradient, VoxelFormat format) {
   if (format != VoxelFormat::half) return gradient;
-  return static_cast<float>(Imath::half(std::clamp(gradient, -65504.0f, 65504.0f)));
+  return static_cast<float>(halfOf(gradient));
 }
 
 BrickAtlas::BrickAtlas(const GlContext& context, const Bricks& volume, std::vector<Brick> bricks,
@@ -217,7 +219,6 @@ double BrickAtlas::encode(std::span<const float> values, std::span<const float> 
     const auto codeOf = [codes](float v) { return static_cast<Code>(codes(v)); };
     store(codeOf, codeOf, [&](Code code) { return valueScale_.offset + code * step; });
   };
-  const auto halfOf = [](float v) { return Imath::half(std::clamp(v, -65504.0f, 65504.0f)); };
   const double anchor = valueScale_.offset;
   switch (format_) {
     case VoxelFormat::unorm8:

@@ -54,9 +54,7 @@ class GridBricks final : public Bricks {
     background = finiteOrZero(grid_->background());
     hasGradients = options.gradients;
     gradient = {0, 0};
-    // A gradient sees one voxel further.
-    const int reach = options.apron + (options.gradients ? 1 : 0);
-    VoxelSurvey survey = surveyVoxels(grid_->tree(), background, options.interior, reach);
+    VoxelSurvey survey = surveyVoxels(grid_->tree(), background, options.interior, margin());
     value = survey.value;
     anchor = survey.anchor;
     exactFormat = survey.exactFormat;
@@ -128,11 +126,11 @@ class GridBricks final : public Bricks {
     checkedBox(first, last, "the grid, grown by one voxel,");
     domain = {glm::ivec3(first), glm::ivec3(last)};
     // Every cell that slabs may reach the domain from must be readable.
-    const std::int64_t interior = layout.interior.x, margin = layout.apron + (hasGradients ? 1 : 0);
+    const std::int64_t interior = layout.interior.x, seen = margin();
     glm::i64vec3 lowest, highest;
     for (int axis = 0; axis < 3; ++axis) {
-      lowest[axis] = cellOf(first[axis] - margin, interior) * interior - margin;
-      highest[axis] = (cellOf(last[axis] + margin, interior) + 1) * interior - 1 + margin;
+      lowest[axis] = cellOf(first[axis] - seen, interior) * interior - seen;
+      highest[axis] = (cellOf(last[axis] + seen, interior) + 1) * interior - 1 + seen;
     }
     checkedBox(lowest, highest, "the lattice of bricks with their aprons");
   }

@@ -21,8 +21,7 @@ std::string printCount(long double count) {
 
 IndexBox Bricks::reach() const {
   if (domain.empty()) return domain;
-  const int margin = layout.apron + (hasGradients ? 1 : 0);
-  return {domain.min - margin, domain.max + margin};
+  return {domain.min - margin(), domain.max + margin()};
 }
 
 std::vector<Brick> backgroundBricks(const Bricks& bricks, std::size_t limit) {

@@ -61,8 +61,9 @@ class Bricks {
   // Those beyond the domain are among them whose aprons reach into it: slabs with their middle there may do so, too.
   std::vector<Brick> bricks;
 
-  /// The box from which a slab or a gradient may reach into the domain: the domain grown by the apron, and by one more
-  /// with gradients.
+  /// How far beyond its faces a brick sees voxels: the apron, and one more with gradients.
+  int margin() const { return layout.apron + (hasGradients ? 1 : 0); }
+  /// The box from which a slab or a gradient may reach into the domain: the domain grown by the margin.
   IndexBox reach() const;
 
   /// Voxels of the cell whose first owned voxel is `origin` (any lattice cell, also one not in `bricks`), x fastest,
