@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "ingest/dense_source.h"
 #include "ingest/header_text.h"
 #include "ingest/provenance.h"
+#include "ingest/streams/dense_source.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "ingest/byte_stream.h"
-#include "ingest/dense_source.h"
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
 #include "ingest/provenance.h"
 #include "ingest/slice_image.h"
+#include "ingest/streams/byte_stream.h"
+#include "ingest/streams/dense_source.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/frame_sequence.h"
 

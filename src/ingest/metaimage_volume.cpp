@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "ingest/dense_source.h"
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
-#include "ingest/packed_stream.h"
 #include "ingest/provenance.h"
-#include "ingest/text_stream.h"
+#include "ingest/streams/dense_source.h"
+#include "ingest/streams/packed_stream.h"
+#include "ingest/streams/text_stream.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {

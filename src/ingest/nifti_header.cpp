@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "ingest/header_text.h"
-#include "ingest/packed_stream.h"
+#include "ingest/streams/packed_stream.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {

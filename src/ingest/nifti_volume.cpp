@@ -7,10 +7,10 @@
 #include <system_error>
 #include <utility>
 
-#include "ingest/dense_source.h"
 #include "ingest/header_text.h"
 #include "ingest/nifti_header.h"
 #include "ingest/provenance.h"
+#include "ingest/streams/dense_source.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {

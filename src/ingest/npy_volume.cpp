@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "ingest/dense_source.h"
 #include "ingest/header_text.h"
-#include "ingest/packed_stream.h"
 #include "ingest/provenance.h"
+#include "ingest/streams/dense_source.h"
+#include "ingest/streams/packed_stream.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {

@@ -10,9 +10,9 @@
 #include <optional>
 #include <string_view>
 
-#include "ingest/dense_source.h"
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
+#include "ingest/streams/dense_source.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {

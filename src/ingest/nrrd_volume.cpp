@@ -6,11 +6,11 @@
 #include <memory>
 #include <vector>
 
-#include "ingest/dense_source.h"
 #include "ingest/nrrd_header.h"
-#include "ingest/packed_stream.h"
 #include "ingest/provenance.h"
-#include "ingest/text_stream.h"
+#include "ingest/streams/dense_source.h"
+#include "ingest/streams/packed_stream.h"
+#include "ingest/streams/text_stream.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "ingest/header_text.h"
-#include "ingest/packed_stream.h"
+#include "ingest/streams/packed_stream.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/dicom_volume.h"
 #include "umbrick/ingest/hdf5_volume.h"

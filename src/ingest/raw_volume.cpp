@@ -5,9 +5,9 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <sstream>
 
-#include "ingest/dense_source.h"
-#include "ingest/packed_stream.h"
 #include "ingest/provenance.h"
+#include "ingest/streams/dense_source.h"
+#include "ingest/streams/packed_stream.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {

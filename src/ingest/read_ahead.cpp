@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "ingest/decode.h"
+#include "ingest/streams/decode.h"
 
 namespace umbrick {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ingest/decode.h"
+#include "ingest/streams/decode.h"
 
 namespace umbrick {
 

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "ingest/dense_source.h"
 #include "ingest/header_text.h"
 #include "ingest/provenance.h"
-#include "ingest/text_stream.h"
+#include "ingest/streams/dense_source.h"
+#include "ingest/streams/text_stream.h"
 #include "ingest/vtk_blocks.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/vtk_volume.h"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "ingest/byte_stream.h"
+#include "ingest/streams/byte_stream.h"
 
 namespace umbrick {
 

@@ -7,11 +7,11 @@
 #include <sstream>
 #include <utility>
 
-#include "ingest/byte_stream.h"
-#include "ingest/dense_source.h"
-#include "ingest/dicom_file.h"
+#include "ingest/dicom/dicom_file.h"
 #include "ingest/header_text.h"
 #include "ingest/provenance.h"
+#include "ingest/streams/byte_stream.h"
+#include "ingest/streams/dense_source.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {

@@ -1,4 +1,4 @@
-#include "ingest/text_stream.h"
+#include "ingest/streams/text_stream.h"
 
 #include <half.h>
 

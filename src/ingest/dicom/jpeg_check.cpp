@@ -1,4 +1,4 @@
-#include "ingest/jpeg_check.h"
+#include "ingest/dicom/jpeg_check.h"
 
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "ingest/byte_stream.h"
+#include "ingest/streams/byte_stream.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -2,7 +2,7 @@
 #pragma once
 #include <string_view>
 
-#include "ingest/byte_stream.h"
+#include "ingest/streams/byte_stream.h"
 
 namespace umbrick {
 

@@ -1,4 +1,4 @@
-#include "ingest/dicom_structure.h"
+#include "ingest/dicom/dicom_structure.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "ingest/byte_stream.h"
+#include "ingest/streams/byte_stream.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {

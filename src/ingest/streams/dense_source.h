@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "ingest/byte_stream.h"
-#include "ingest/decode.h"
+#include "ingest/streams/byte_stream.h"
+#include "ingest/streams/decode.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {

@@ -2,7 +2,7 @@
 #pragma once
 #include <memory>
 
-#include "ingest/byte_stream.h"
+#include "ingest/streams/byte_stream.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {

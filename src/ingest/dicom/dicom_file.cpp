@@ -1,4 +1,4 @@
-#include "ingest/dicom_file.h"
+#include "ingest/dicom/dicom_file.h"
 
 #include <gdcmImageReader.h>
 #include <gdcmSequenceOfFragments.h>
@@ -12,10 +12,10 @@
 #include <set>
 #include <string_view>
 
-#include "ingest/byte_stream.h"
-#include "ingest/dicom_structure.h"
+#include "ingest/dicom/dicom_structure.h"
+#include "ingest/dicom/jpeg_check.h"
 #include "ingest/header_text.h"
-#include "ingest/jpeg_check.h"
+#include "ingest/streams/byte_stream.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {

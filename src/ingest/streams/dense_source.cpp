@@ -1,11 +1,11 @@
-#include "ingest/dense_source.h"
+#include "ingest/streams/dense_source.h"
 
 #include <algorithm>
 #include <cassert>
 #include <limits>
 #include <sstream>
 
-#include "ingest/packed_stream.h"
+#include "ingest/streams/packed_stream.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {

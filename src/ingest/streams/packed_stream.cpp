@@ -1,4 +1,4 @@
-#include "ingest/packed_stream.h"
+#include "ingest/streams/packed_stream.h"
 
 #include <bzlib.h>
 #include <lzma.h>

@@ -1,4 +1,4 @@
-#include "ingest/decode.h"
+#include "ingest/streams/decode.h"
 
 #include <half.h>
 #include <tbb/blocked_range.h>
