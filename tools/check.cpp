@@ -16,6 +16,7 @@
 #include "umbrick/check/invariants.h"
 #include "umbrick/core/error.h"
 #include "umbrick/scene/resolve.h"
+#include "umbrick/vdb/read_grid.h"
 
 namespace umbrick::tools {
 namespace {

@@ -18,6 +18,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/ingest/open_volume.h"
+#include "umbrick/vdb/read_grid.h"
 
 namespace umbrick::tools {
 namespace {

@@ -13,10 +13,11 @@
 #include "convert_report.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/grid_filters.h"
-#include "umbrick/grid/grid_listing.h"
-#include "umbrick/grid/read_back.h"
 #include "umbrick/grid/verify.h"
 #include "umbrick/ingest/open_volume.h"
+#include "umbrick/vdb/grid_listing.h"
+#include "umbrick/vdb/read_back.h"
+#include "umbrick/vdb/read_grid.h"
 
 namespace umbrick::tools {
 namespace fs = std::filesystem;

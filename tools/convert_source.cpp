@@ -9,6 +9,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/grid/grid_filters.h"
 #include "umbrick/ingest/open_volume.h"
+#include "umbrick/vdb/read_grid.h"
 
 namespace umbrick::tools {
 namespace {

@@ -13,9 +13,9 @@
 #include "convert_source.h"
 #include "grid_names.h"
 #include "umbrick/core/error.h"
-#include "umbrick/grid/read_back.h"
 #include "umbrick/grid/verify.h"
 #include "umbrick/ingest/read_ahead.h"
+#include "umbrick/vdb/read_back.h"
 
 namespace umbrick::tools {
 namespace {

@@ -1,7 +1,7 @@
 #include "grid_output.h"
 
 #include "command.h"
-#include "umbrick/grid/write_volume.h"
+#include "umbrick/vdb/write_volume.h"
 
 namespace umbrick::tools {
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "umbrick/grid/build_grid.h"
-#include "umbrick/grid/write_volume.h"
+#include "umbrick/vdb/write_volume.h"
 
 namespace umbrick::tools {
 

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "command.h"
-#include "umbrick/grid/summary.h"
+#include "umbrick/vdb/summary.h"
 
 namespace umbrick::tools {
 namespace {

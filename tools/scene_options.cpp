@@ -13,6 +13,7 @@
 #include "umbrick/scene/resolve.h"
 #include "umbrick/shade/prepare.h"
 #include "umbrick/shade/progressive.h"
+#include "umbrick/vdb/read_grid.h"
 
 namespace umbrick::tools {
 namespace {

@@ -7,10 +7,10 @@
 #include <memory>
 #include <sstream>
 
-#include "grid/affine_matrix.h"
 #include "grid/slab_builder.h"
 #include "grid/sparse_rule.h"
 #include "umbrick/core/error.h"
+#include "umbrick/grid/affine_matrix.h"
 #include "umbrick/grid/float_grid.h"
 
 namespace umbrick {

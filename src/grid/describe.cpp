@@ -57,4 +57,11 @@ void describe(openvdb::FloatGrid& grid, const SparseTally& tally, const BuildOpt
   grid.insertMeta("storage", openvdb::StringMetadata(report.storage));
 }
 
+void addQuantising(BuildReport& report, const QuantiseError& error, bool activeOnly) {
+  report.quantising = {error.max, rootMean(activeOnly ? error.activeSquares : error.squares, report.voxels)};
+  report.maxError += report.quantising.max;
+  report.rmsError += report.quantising.rms;
+  report.activeRmsError += rootMean(error.activeSquares, report.activeVoxels);
+}
+
 }  // namespace umbrick

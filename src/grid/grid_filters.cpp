@@ -6,9 +6,9 @@
 #include <sstream>
 #include <utility>
 
-#include "grid/affine_matrix.h"
-#include "grid/misplaced.h"
 #include "umbrick/core/error.h"
+#include "umbrick/grid/affine_matrix.h"
+#include "umbrick/grid/misplaced.h"
 
 namespace umbrick {
 namespace {

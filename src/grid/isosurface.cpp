@@ -11,11 +11,11 @@
 #include <sstream>
 #include <vector>
 
-#include "grid/affine_matrix.h"
 #include "grid/isosurface_error.h"
 #include "grid/sparse_rule.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/range.h"
+#include "umbrick/grid/affine_matrix.h"
 #include "umbrick/grid/float_grid.h"
 
 namespace umbrick {

@@ -14,9 +14,9 @@
 #include "grid/layer_sample.h"
 #include "grid/slab_builder.h"
 #include "grid/sparse_rule.h"
-#include "grid/vdb_codec.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/float_grid.h"
+#include "umbrick/grid/vdb_codec.h"
 
 namespace umbrick {
 namespace {

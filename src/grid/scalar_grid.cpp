@@ -1,114 +1,10 @@
 #include "umbrick/grid/scalar_grid.h"
 
-#include <openvdb/tree/LeafManager.h>
-#include <tbb/parallel_reduce.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "grid/affine_matrix.h"
-#include "grid/vdb_file.h"
 #include "umbrick/core/error.h"
+#include "umbrick/grid/affine_matrix.h"
 #include "umbrick/grid/float_grid.h"
-#include "umbrick/grid/grid_listing.h"
 
 namespace umbrick {
-namespace fs = std::filesystem;
-namespace {
-
-std::string quoted(const VdbFile::Entry& entry) { return '"' + entry.label + '"'; }
-
-std::string listed(const VdbFile& file) {
-  if (file.entries().empty()) return "the file has no grids";
-  std::string text = "the file has";
-  for (const VdbFile::Entry& entry : file.entries())
-    text += (text.ends_with("has") ? " " : ", ") + quoted(entry) + " (" + entry.valueType + ')';
-  return text;
-}
-
-const VdbFile::Entry& defaultEntry(const VdbFile& file) {
-  const VdbFile::Entry *only = nullptr, *density = nullptr;
-  int scalars = 0;
-  for (const VdbFile::Entry& entry : file.entries()) {
-    if (!isScalarType(entry.valueType)) continue;
-    ++scalars;
-    only = &entry;
-    if (entry.name == "density" && !density) density = &entry;
-  }
-  if (scalars == 1) return *only;
-  if (density) return *density;
-  throw InvalidArgument(file.path().string() + ": " +
-                        (scalars == 0 ? "no scalar grid: " : "name a grid (none is called \"density\"): ") +
-                        listed(file));
-}
-
-const VdbFile::Entry& findEntry(const VdbFile& file, const std::string& selector) {
-  if (selector.empty()) return defaultEntry(file);
-  const VdbFile::Entry* entry = file.find(selector);
-  if (!entry) throw InvalidArgument(file.path().string() + ": no grid \"" + selector + "\": " + listed(file));
-  if (!isScalarType(entry->valueType))
-    throw InvalidArgument(file.path().string() + ": grid " + quoted(*entry) + ": expected a scalar grid, found " +
-                          entry->valueType);
-  return *entry;
-}
-
-template <class Value>
-double roundingError(Value value) {
-  const auto exact = static_cast<long double>(value);
-  return std::isfinite(exact)
-             ? static_cast<double>(std::abs(exact - static_cast<long double>(static_cast<float>(value))))
-             : 0.0;
-}
-
-// Largest rounding error over all values, active or not: leaves in parallel, then tiles and the background.
-template <class Tree>
-double conversionErrorOf(const Tree& tree) {
-  using Leaf = typename Tree::LeafNodeType;
-  openvdb::tree::LeafManager<const Tree> leaves(tree);
-  const double inLeaves = tbb::parallel_reduce(
-      leaves.leafRange(), 0.0,
-      [](const auto& range, double error) {
-        for (auto leaf = range.begin(); leaf; ++leaf)
-          for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) error = std::max(error, roundingError(leaf->getValue(i)));
-        return error;
-      },
-      [](double a, double b) { return std::max(a, b); });
-  double error = std::max(inLeaves, roundingError(tree.background()));
-  auto tile = tree.cbeginValueAll();
-  tile.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) error = std::max(error, roundingError(*tile));
-  return error;
-}
-
-ScalarGrid toFloat(const openvdb::GridBase::Ptr& any) {
-  ScalarGrid out;
-  out.name = any->getName();
-  if (const auto already = openvdb::gridPtrCast<openvdb::FloatGrid>(any)) {
-    out.grid = already;
-    return out;
-  }
-  const auto convert = [&](const auto& grid) {
-    out.conversionError = conversionErrorOf(grid.tree());
-    const auto converted = openvdb::FloatGrid::create(std::make_shared<openvdb::FloatTree>(grid.tree()));
-    converted->insertMeta(grid);
-    converted->setTransform(grid.transform().copy());
-    out.grid = converted;
-  };
-  any->apply<openvdb::TypeList<openvdb::DoubleGrid, openvdb::Int32Grid, openvdb::Int64Grid>>(convert);
-  return out;
-}
-
-ScalarGrid read(const fs::path& path, const std::string& selector, bool affineOnly) {
-  VdbFile file(path);
-  const VdbFile::Entry& entry = findEntry(file, selector);
-  const openvdb::GridBase::Ptr grid = file.read(entry);
-  if (affineOnly && !grid->transform().isLinear())
-    throw InvalidArgument(path.string() + ": grid " + quoted(entry) + ": expected an affine transform, found " +
-                          grid->transform().mapType());
-  return toFloat(grid);
-}
-
-}  // namespace
 
 glm::dmat4 ScalarGrid::indexToWorld() const {
   if (!grid->transform().isLinear())
@@ -132,22 +28,6 @@ Box ScalarGrid::worldBounds() const {
         glm::dvec3(matrix * glm::dvec4(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
                                        corner & 4 ? box.max.z : box.min.z, 1)));
   return bounds;
-}
-
-ScalarGrid readScalarGrid(const fs::path& path, const std::string& selector) { return read(path, selector, true); }
-
-ScalarGrid readScalarGridAnyTransform(const fs::path& path, const std::string& selector) {
-  return read(path, selector, false);
-}
-
-GridListing listGrids(const fs::path& path) {
-  const VdbFile file(path);
-  GridListing listing;
-  for (const VdbFile::Entry& entry : file.entries()) {
-    listing.grids.push_back({entry.label, entry.valueType, isScalarType(entry.valueType)});
-  }
-  listing.metadata = file.metadata();
-  return listing;
 }
 
 }  // namespace umbrick

@@ -4,7 +4,8 @@
 #include "fuzz/readers.h"
 #include "support/files.h"
 #include "umbrick/grid/scalar_grid.h"
-#include "umbrick/grid/write_volume.h"
+#include "umbrick/vdb/read_grid.h"
+#include "umbrick/vdb/write_volume.h"
 
 namespace umbrick::fuzz {
 namespace {

@@ -8,10 +8,12 @@
 #include <limits>
 #include <random>
 
-#include "grid/memory_source.h"
+#include "support/memory_source.h"
 #include "support/temporary_folder.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/raw_volume.h"
+#include "umbrick/vdb/read_grid.h"
+#include "umbrick/vdb/write_volume.h"
 
 using namespace umbrick;
 using Catch::Contains;

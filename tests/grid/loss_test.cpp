@@ -3,11 +3,13 @@
 #include <cmath>
 #include <random>
 
-#include "grid/memory_source.h"
+#include "support/memory_source.h"
 #include "support/temporary_folder.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/build_grid.h"
 #include "umbrick/grid/verify.h"
+#include "umbrick/vdb/read_grid.h"
+#include "umbrick/vdb/write_volume.h"
 
 using namespace umbrick;
 using Catch::Contains;

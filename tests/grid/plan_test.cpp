@@ -5,12 +5,13 @@
 #include <filesystem>
 #include <vector>
 
-#include "grid/memory_source.h"
+#include "support/memory_source.h"
 #include "support/temporary_folder.h"
 #include "support/test_grids.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/build_grid.h"
 #include "umbrick/ingest/raw_volume.h"
+#include "umbrick/vdb/write_volume.h"
 
 using namespace umbrick;
 using Catch::Contains;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "grid/memory_source.h"
+#include "support/memory_source.h"
 #include "support/read_volume.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/source_filters.h"

@@ -4,8 +4,8 @@
 #include <limits>
 #include <numeric>
 
-#include "grid/memory_source.h"
 #include "support/files.h"
+#include "support/memory_source.h"
 #include "support/temporary_folder.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/build_grid.h"

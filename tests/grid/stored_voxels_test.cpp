@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "grid/memory_source.h"
 #include "support/files.h"
+#include "support/memory_source.h"
 #include "support/temporary_folder.h"
 #include "umbrick/grid/build_grid.h"
 #include "umbrick/ingest/raw_volume.h"

@@ -1,8 +1,8 @@
 // What a user of the library would write first: a preset, a check, an error.
 #include <umbrick/core/error.h>
-#include <umbrick/grid/scalar_grid.h>
 #include <umbrick/optics/transfer_function.h>
 #include <umbrick/shade/slice_renderer.h>
+#include <umbrick/vdb/read_grid.h>
 
 #include <iostream>
 

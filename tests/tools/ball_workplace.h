@@ -8,6 +8,7 @@
 #include "tools/program.h"
 #include "umbrick/grid/build_grid.h"
 #include "umbrick/image/exr.h"
+#include "umbrick/vdb/write_volume.h"
 
 namespace umbrick {
 

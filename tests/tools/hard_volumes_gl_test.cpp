@@ -10,6 +10,7 @@
 #include "umbrick/grid/build_grid.h"
 #include "umbrick/grid/float_grid.h"
 #include "umbrick/image/exr.h"
+#include "umbrick/vdb/write_volume.h"
 
 using namespace umbrick;
 using Catch::Contains;

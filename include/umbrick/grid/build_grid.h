@@ -2,13 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "umbrick/core/pending_file.h"
 #include "umbrick/grid/float_grid.h"
 #include "umbrick/grid/scalar_grid.h"
 #include "umbrick/ingest/voxel_source.h"
@@ -55,6 +52,17 @@ struct BuildReport {
   double backgroundChange = 0;      // |new - old| background of a grid: what the outside changes by
 };
 
+/// |grid - file| of what was quantised: all values of leaves, inactive ones too, which are not exact either. Tiles and
+/// background are.
+struct QuantiseError {
+  double max = 0;                         // grid units
+  double squares = 0, activeSquares = 0;  // sums: of all values in leaves, of the active ones
+};
+
+/// Adds that to what was lost before: the sums bound both errors.
+/// @param activeOnly  the report is about the active voxels of a grid, not about all of a dense volume
+void addQuantising(BuildReport& report, const QuantiseError& error, bool activeOnly);
+
 struct BuiltGrid {
   openvdb::FloatGrid::Ptr grid;
   BuildReport report;
@@ -77,14 +85,5 @@ BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options = {});
 /// A level set is only rounded to half where that is asked for: its surface stands and falls with both sides of it.
 /// @throw InvalidArgument  as above
 BuiltGrid sparsifyGrid(const ScalarGrid& grid, const BuildOptions& options = {});
-
-/// How the values in a .vdb are packed.
-enum class VdbCodec { blosc, zip, none };
-
-/// Writes grids to a new .vdb file, whole or not at all; inactive values are left out.
-/// @throw IoError  not writable, disk full; what `check` throws
-void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
-                const openvdb::MetaMap& metadata = {}, VdbCodec codec = VdbCodec::blosc,
-                const WrittenCheck& check = {});
 
 }  // namespace umbrick

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/vdb_codec.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {

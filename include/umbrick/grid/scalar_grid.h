@@ -1,8 +1,6 @@
 // One scalar grid, as 32-bit float, with its name and its affine transform.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <glm/mat4x4.hpp>
 #include <memory>
 #include <string>
@@ -24,16 +22,5 @@ struct ScalarGrid {
   /// World bounds of activeBox(), of its eight corners.
   Box worldBounds() const;
 };
-
-/// Reads a grid of a .vdb file.
-/// @param selector  empty: the only scalar grid, or else the one called "density"; "name"; "name[1]": the second of
-///                  that name
-/// @throw IoError          missing, a directory, truncated, corrupt or not a .vdb file
-/// @throw InvalidArgument  no such grid (lists those there are), not a scalar grid (names its type), or a transform
-///                         that is not affine (frustum)
-ScalarGrid readScalarGrid(const std::filesystem::path& path, const std::string& selector = {});
-
-/// As readScalarGrid, but takes any transform: to copy a grid, not to render it.
-ScalarGrid readScalarGridAnyTransform(const std::filesystem::path& path, const std::string& selector);
 
 }  // namespace umbrick

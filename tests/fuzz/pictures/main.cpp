@@ -15,7 +15,7 @@
 #include "fuzz/pictures/compare_scene.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
-#include "umbrick/grid/write_volume.h"
+#include "umbrick/vdb/write_volume.h"
 
 namespace umbrick {
 namespace {

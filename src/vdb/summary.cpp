@@ -1,4 +1,4 @@
-#include "umbrick/grid/summary.h"
+#include "umbrick/vdb/summary.h"
 
 #include <openvdb/tree/LeafManager.h>
 #include <tbb/parallel_reduce.h>
@@ -8,11 +8,11 @@
 #include <limits>
 #include <sstream>
 
-#include "grid/affine_matrix.h"
-#include "grid/vdb_check.h"
-#include "grid/vdb_file.h"
 #include "umbrick/core/error.h"
+#include "umbrick/grid/affine_matrix.h"
 #include "umbrick/grid/scalar_grid.h"
+#include "vdb/vdb_check.h"
+#include "vdb/vdb_file.h"
 
 namespace umbrick {
 namespace {

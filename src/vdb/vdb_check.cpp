@@ -1,4 +1,4 @@
-#include "grid/vdb_check.h"
+#include "vdb/vdb_check.h"
 
 #include <openvdb/Metadata.h>
 #include <openvdb/io/Compression.h>

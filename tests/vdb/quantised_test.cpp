@@ -2,14 +2,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "grid/memory_source.h"
 #include "support/files.h"
+#include "support/memory_source.h"
 #include "support/temporary_folder.h"
 #include "support/test_grids.h"
 #include "umbrick/core/error.h"
-#include "umbrick/grid/read_back.h"
 #include "umbrick/grid/verify.h"
-#include "umbrick/grid/write_volume.h"
+#include "umbrick/vdb/read_back.h"
+#include "umbrick/vdb/write_volume.h"
 
 using namespace umbrick;
 using Catch::Contains;

@@ -16,7 +16,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
 #include "umbrick/core/pending_pair.h"
-#include "umbrick/grid/write_volume.h"
+#include "umbrick/vdb/write_volume.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;

@@ -9,9 +9,11 @@
 #include "umbrick/core/error.h"
 #include "umbrick/grid/build_grid.h"
 #include "umbrick/grid/float_grid.h"
-#include "umbrick/grid/grid_listing.h"
 #include "umbrick/grid/scalar_grid.h"
-#include "umbrick/grid/summary.h"
+#include "umbrick/vdb/grid_listing.h"
+#include "umbrick/vdb/read_grid.h"
+#include "umbrick/vdb/summary.h"
+#include "umbrick/vdb/write_volume.h"
 
 using namespace umbrick;
 namespace fs = std::filesystem;

@@ -11,7 +11,8 @@
 #include "support/temporary_folder.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/scalar_grid.h"
-#include "umbrick/grid/summary.h"
+#include "umbrick/vdb/read_grid.h"
+#include "umbrick/vdb/summary.h"
 
 using namespace umbrick;
 using Catch::Contains;

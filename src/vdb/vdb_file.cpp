@@ -1,11 +1,11 @@
-#include "grid/vdb_file.h"
+#include "vdb/vdb_file.h"
 
 #include <map>
 #include <new>
 
-#include "grid/nano_file.h"
-#include "grid/vdb_check.h"
 #include "umbrick/core/error.h"
+#include "vdb/nano_file.h"
+#include "vdb/vdb_check.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;

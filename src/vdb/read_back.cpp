@@ -1,14 +1,15 @@
-#include "umbrick/grid/read_back.h"
+#include "umbrick/vdb/read_back.h"
 
 #include <string>
 #include <vector>
 
-#include "grid/affine_matrix.h"
-#include "grid/misplaced.h"
 #include "umbrick/core/error.h"
-#include "umbrick/grid/grid_listing.h"
+#include "umbrick/grid/affine_matrix.h"
+#include "umbrick/grid/misplaced.h"
 #include "umbrick/grid/scalar_grid.h"
 #include "umbrick/ingest/open_volume.h"
+#include "umbrick/vdb/grid_listing.h"
+#include "umbrick/vdb/read_grid.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-#include "grid/nano_file.h"
+#include "vdb/nano_file.h"
 
 #include <blosc.h>
 #include <zlib.h>
@@ -14,8 +14,8 @@
 #include <optional>
 #include <utility>
 
-#include "grid/vdb_check.h"
 #include "umbrick/grid/float_grid.h"
+#include "vdb/vdb_check.h"
 
 namespace umbrick {
 namespace {

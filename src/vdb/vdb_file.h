@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "grid/mapped_file.h"
 #include "umbrick/grid/float_grid.h"
+#include "vdb/mapped_file.h"
 
 namespace umbrick {
 

@@ -1,4 +1,4 @@
-#include "grid/mapped_file.h"
+#include "vdb/mapped_file.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>

@@ -4,10 +4,10 @@
 #include <cstring>
 #include <fstream>
 
-#include "grid/vdb_codec.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
-#include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/vdb_codec.h"
+#include "umbrick/vdb/write_volume.h"
 
 namespace umbrick {
 namespace {

@@ -1,5 +1,5 @@
 // Grids written in other formats, read back by the readers of those formats.
-#include "umbrick/grid/write_volume.h"
+#include "umbrick/vdb/write_volume.h"
 
 #include <nanovdb/util/IO.h>
 
@@ -13,6 +13,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/grid/build_grid.h"
 #include "umbrick/ingest/open_volume.h"
+#include "umbrick/vdb/read_grid.h"
 
 using namespace umbrick;
 using Catch::Contains;

@@ -11,13 +11,14 @@
 #include <limits>
 #include <sstream>
 
-#include "grid/sparse_rule.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
-#include "umbrick/grid/write_volume.h"
+#include "umbrick/vdb/write_volume.h"
 
 namespace umbrick {
 namespace {
+
+using Leaf = openvdb::FloatTree::LeafNodeType;
 
 using openvdb::FloatGrid;
 
@@ -102,13 +103,6 @@ NanoGridData toNano(const FloatGrid& grid, const NanoOptions& options) {
 }
 
 }  // namespace
-
-void addQuantising(BuildReport& report, const QuantiseError& error, bool activeOnly) {
-  report.quantising = {error.max, rootMean(activeOnly ? error.activeSquares : error.squares, report.voxels)};
-  report.maxError += report.quantising.max;
-  report.rmsError += report.quantising.rms;
-  report.activeRmsError += rootMean(error.activeSquares, report.activeVoxels);
-}
 
 std::vector<QuantiseError> writeNanoVdb(const std::filesystem::path& path,
                                         const std::vector<FloatGrid::ConstPtr>& grids, const NanoOptions& options,

@@ -1,4 +1,4 @@
-// Grids to files of other formats than .vdb: NanoVDB, and dense MetaImage and NRRD.
+// Grids to files: .vdb, NanoVDB, and dense MetaImage and NRRD.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -7,11 +7,19 @@
 #include <optional>
 #include <vector>
 
+#include "umbrick/core/pending_file.h"
 #include "umbrick/grid/build_grid.h"
 #include "umbrick/grid/float_grid.h"
+#include "umbrick/grid/vdb_codec.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
+
+/// Writes grids to a new .vdb file, whole or not at all; inactive values are left out.
+/// @throw IoError  not writable, disk full; what `check` throws
+void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
+                const openvdb::MetaMap& metadata = {}, VdbCodec codec = VdbCodec::blosc,
+                const WrittenCheck& check = {});
 
 /// How NanoVDB stores the values of a leaf: as 32-bit floats, or in so many bits each between the smallest and the
 /// largest of the leaf's 512 values. adaptive: each leaf in as few of 1, 2, 4, 8 and 16 as keep maxError.
@@ -21,17 +29,6 @@ struct NanoOptions {
   NanoValues values = NanoValues::float32;
   float maxError = 0;  // of adaptive, grid units
 };
-
-/// |grid - file| of what was quantised: all values of leaves, inactive ones too, which are not exact either. Tiles and
-/// background are.
-struct QuantiseError {
-  double max = 0;                         // grid units
-  double squares = 0, activeSquares = 0;  // sums: of all values in leaves, of the active ones
-};
-
-/// Adds that to what was lost before: the sums bound both errors.
-/// @param activeOnly  the report is about the active voxels of a grid, not about all of a dense volume
-void addQuantising(BuildReport& report, const QuantiseError& error, bool activeOnly);
 
 /// A WrittenCheck that is also told the errors of the grids.
 using NanoCheck = std::function<void(const std::filesystem::path& written, const std::vector<QuantiseError>& errors)>;
