@@ -1,5 +1,5 @@
 // umbrick study: what accuracy costs on a scene, as a table, plots and a page.
-#include "umbrick/report/study.h"
+#include "umbrick/study/study.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

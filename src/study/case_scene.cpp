@@ -1,0 +1,109 @@
+#include "study/case_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/json_writer.h"
+
+namespace umbrick {
+namespace {
+
+void setSize(Camera& camera, int height) {
+  const double aspect = static_cast<double>(camera.width) / camera.height;
+  camera.width = std::max(1, static_cast<int>(std::lround(height * aspect)));
+  camera.height = height;
+}
+
+std::string sizeOption(const Scene& scene) {
+  return " --size " + std::to_string(scene.camera.width) + "x" + std::to_string(scene.camera.height);
+}
+
+}  // namespace
+
+Scene studyScene(const Scene& resolved, const StudyPlan& plan, double voxelEdge) {
+  Scene scene = resolved;
+  scene.background.reset();
+  scene.model = Model::emission;
+  scene.method = Method::dos;
+  scene.sampling.spacing = SamplingOptions{}.spacing * voxelEdge;
+  scene.sampling.spacingInVoxels = false;
+  scene.sampling.segments = plan.settings.segments.front();
+  scene.sampling.bits = plan.baseBits.eye;
+  const bool perspectiveCorrection = scene.occlusion.perspectiveCorrection;
+  scene.occlusion = OcclusionOptions{};
+  scene.occlusion.perspectiveCorrection = perspectiveCorrection;
+  setSize(scene.camera, plan.baseSize);
+  return scene;
+}
+
+Scene caseScene(const Scene& scene, const StudyCase& what, const StudyGeometry& geometry) {
+  const StudyMethod& method = studyMethod(what.method);
+  Scene result = scene;
+  setSize(result.camera, what.size);
+  result.model = method.model;
+  result.sampling.spacing = geometry.extent / what.slices;
+  result.sampling.spacingInVoxels = false;
+  result.sampling.segments = what.segments == kAutomaticSegments
+                                 ? automaticSegments(result.sampling.spacing, geometry.voxelEdge)
+                                 : what.segments;
+  result.sampling.bits = what.bits.eye;
+  if (method.model != Model::emission) {
+    result.occlusion.bits = what.bits.occlusion;
+    result.occlusion.aperture = what.theta;
+    result.occlusion.scale = what.scale;
+  }
+  method.apply(what.detail, result);
+  return result;
+}
+
+Scene referenceScene(const Scene& scene, const StudyReference& what) {
+  Scene result = scene;
+  setSize(result.camera, what.size);
+  result.model = what.model;
+  if (what.model == Model::cone) result.occlusion.aperture = what.theta;
+  return result;
+}
+
+Scene baselineScene(const Scene& scene, int size, const StudyGeometry& geometry) {
+  StudyCase baseline;
+  baseline.method = "emission";
+  baseline.slices = kBaselineSlices;
+  baseline.size = size;
+  return caseScene(scene, baseline, geometry);
+}
+
+ReferenceOptions referenceOptions(const StudySettings& settings, bool coarser) {
+  ReferenceOptions options;
+  options.directions = coarser ? settings.directions / 2 : settings.directions;
+  options.tolerance = coarser ? std::min(1.0, 4 * settings.tolerance) : settings.tolerance;
+  return options;
+}
+
+std::string renderCommand(const StudyCase& what, const Scene& scene, const StudyGeometry& geometry) {
+  const StudyMethod& method = studyMethod(what.method);
+  const Scene result = caseScene(scene, what, geometry);
+  std::string text = "umbrick render scene.json --model " + modelName(method.model);
+  const std::string options = method.options(what.detail);
+  if (!options.empty()) text += " " + options;
+  if (method.model != Model::emission)
+    text += " --theta " + jsonDegrees(what.theta) + " --occlusion-bits " + std::to_string(what.bits.occlusion);
+  if (what.scale > 0) text += " --occlusion-scale " + jsonNumber(what.scale);
+  text += " --eye-bits " + std::to_string(what.bits.eye) + " --spacing " + jsonNumber(result.sampling.spacing) +
+          " --spacing-unit world --segments " + std::to_string(result.sampling.segments) + sizeOption(result) +
+          " --exr-pixel float -o " + what.id() + ".exr";
+  return text;
+}
+
+std::string referenceCommand(const StudyReference& what, const Scene& scene, const StudySettings& settings) {
+  std::string text = "umbrick reference scene.json --model " + modelName(what.model);
+  if (what.model == Model::cone) text += " --theta " + jsonDegrees(what.theta);
+  return text + " --directions " + std::to_string(settings.directions) + " --tolerance " +
+         jsonNumber(settings.tolerance) + sizeOption(referenceScene(scene, what)) + " -o references/" + what.id() +
+         ".exr";
+}
+
+std::string compareCommand(const StudyCase& what, const StudyReference& reference) {
+  return "umbrick compare " + what.id() + ".exr references/" + reference.id() + ".exr";
+}
+
+}  // namespace umbrick

@@ -1,0 +1,66 @@
+// What follows from the measurements of a study: who is on the Pareto front, the orders of convergence.
+#pragma once
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "study/study_record.h"
+
+namespace umbrick {
+
+/// The cases that are comparable in time and error: of one model, size and theta.
+struct ComparableCases {
+  Model model = Model::emission;
+  int size = 0;
+  double theta = 0;
+  std::vector<const CaseResult*> all;
+  std::vector<const CaseResult*> front;  // Pareto front of time ratio and RMSE, cheapest first
+};
+
+/// Groups in the order of the plan, of the cases that are measured. Valid as long as the record.
+std::vector<ComparableCases> comparableCases(const StudyRecord& record);
+
+/// All that are on a front, but for cases that nothing compares with.
+std::set<const CaseResult*> frontCases(const std::vector<ComparableCases>& groups);
+
+/// The group at the base size (and theta); nothing measured: none.
+const ComparableCases* baseGroup(const std::vector<ComparableCases>& groups, const StudyPlan& plan, Model model);
+
+/// Cases of one method and detail that differ in their slices alone, coarsest first.
+struct SliceSeries {
+  std::string title;  // "dos, Algorithm 3, n = 3"
+  const StudyMethod* method = nullptr;
+  int detail = 0;
+  std::vector<const CaseResult*> cases;
+  /// p of RMSE = c d^p by least squares, over the cases whose error is above twice that of the reference.
+  std::optional<double> order;
+};
+
+/// At the base of everything else.
+std::vector<SliceSeries> sliceSeries(const StudyRecord& record, Model model);
+
+/// A case with windows beside one without, of the same model, size and theta.
+struct Comparison {
+  const CaseResult* without = nullptr;
+  const CaseResult* with = nullptr;  // null: none
+
+  /// How many times as fast the one with windows is.
+  double speedup() const { return without->timeRatio.median / with->timeRatio.median; }
+  /// Its error as a multiple of the other's.
+  double errorRatio() const { return with->error.rmse / without->error.rmse; }
+};
+
+/// Per case of the Pareto front of the methods without windows, cheapest first, the fastest case with windows whose
+/// error is no larger. Empty when a group lacks one of the two kinds.
+std::vector<Comparison> fastestOfNoLargerError(const ComparableCases& group);
+
+/// Few directions and slices beside many slices, at the base of everything else: K = 8 in 64 to 128 slices beside all
+/// details of the methods without windows in 1024.
+std::vector<Comparison> fewBesideMany(const StudyRecord& record);
+inline constexpr int kFewDirections = 8, kFewSlices[2]{64, 128}, kManySlices = 1024;
+
+/// RMSE between the reference and its coarser self; 0: not measured.
+double referenceError(const StudyRecord& record, const StudyReference& reference);
+
+}  // namespace umbrick

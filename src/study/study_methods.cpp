@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <cmath>
+
+#include "umbrick/core/error.h"
+#include "umbrick/study/study_plan.h"
+
+namespace umbrick {
+namespace {
+
+const StudyMethod::Detail kFootprint{"footprint", "footprints", "n",       "n x n samples over the cone's footprint",
+                                     1,           16,           {2, 3, 5}, {3}};
+
+template <int Algorithm, int Passes>
+void applyDos(int footprint, Scene& scene) {
+  scene.method = Method::dos;
+  scene.occlusion.algorithm = Algorithm;
+  scene.occlusion.passes = Passes;
+  scene.occlusion.footprint = footprint;
+}
+
+template <int Algorithm, int Passes>
+std::string dosOptions(int footprint) {
+  return "--method dos --algorithm " + std::to_string(Algorithm) + " --passes " + std::to_string(Passes) +
+         " --footprint " + std::to_string(footprint);
+}
+
+const StudyMethod::Detail kDirections{
+    "directions", "directions",   "K",    "directions over the cone, each with a window of its own", 1,
+    1024,         {4, 8, 16, 32}, {4, 16}};
+
+double emissionWork(int) { return 1; }
+double dosWork(int footprint) { return 1 + 0.25 * footprint * footprint; }
+double ordinatesWork(int directions) { return 2 + 0.15 * directions; }
+
+void applyOrdinates(int directions, Scene& scene) {
+  scene.method = Method::ordinates;
+  scene.occlusion.directions = directions;
+}
+std::string ordinatesOptions(int directions) { return "--method ordinates --directions " + std::to_string(directions); }
+
+}  // namespace
+
+int automaticSegments(double spacing, double voxelEdge) {
+  // Exactly 0.6 voxels, but for rounding, is one segment.
+  const double wanted = std::ceil(spacing / (kLongestSegmentVoxels * voxelEdge) - 1e-9);
+  return static_cast<int>(std::clamp(wanted, 1.0, 8.0));
+}
+
+const std::vector<StudyMethod>& studyMethods() {
+  // Many slices are what emission and dos need; ordinates does with few, of several segments each.
+  static const std::vector<int> kMany{64, 128, 256, 512, 1024}, kManyQuick{64, 128, 256, 512};
+  static const std::vector<int> kFew{16, 32, 64, 128, 256, 512}, kFewQuick{16, 64, 128};
+  static const std::vector<StudyMethod> methods{
+      {.name = "emission",
+       .title = "emission",
+       .model = Model::emission,
+       .detail = {},
+       .apply = [](int, Scene&) {},
+       .options = [](int) { return std::string(); },
+       .work = emissionWork,
+       .slices = kMany,
+       .quickSlices = kManyQuick,
+       .quick = true},
+      {.name = "emission-full",
+       .title = "emission, no early rejection",
+       .model = Model::emission,
+       .detail = {},
+       .apply = [](int, Scene& scene) { scene.sampling.saturation = 0; },
+       .options = [](int) { return std::string("--saturation 0"); },
+       .work = emissionWork,
+       .slices = kMany,
+       .quickSlices = kManyQuick},
+      {.name = "dos",
+       .title = "dos, Algorithm 3",
+       .model = Model::cone,
+       .detail = kFootprint,
+       .apply = applyDos<3, 1>,
+       .options = dosOptions<3, 1>,
+       .work = dosWork,
+       .slices = kMany,
+       .quickSlices = kManyQuick,
+       .quick = true},
+      {.name = "dos-2",
+       .title = "dos, Algorithm 2",
+       .model = Model::cone,
+       .detail = kFootprint,
+       .apply = applyDos<2, 1>,
+       .options = dosOptions<2, 1>,
+       .work = dosWork,
+       .slices = kMany,
+       .quickSlices = kManyQuick},
+      {.name = "dos-two-pass",
+       .title = "dos, Algorithm 3, two passes",
+       .model = Model::cone,
+       .detail = kFootprint,
+       .apply = applyDos<3, 2>,
+       .options = dosOptions<3, 2>,
+       .work = dosWork,
+       .slices = kMany,
+       .quickSlices = kManyQuick,
+       .usual = false},
+      {.name = "ordinates",
+       .title = "ordinates",
+       .model = Model::cone,
+       .detail = kDirections,
+       .apply = applyOrdinates,
+       .options = ordinatesOptions,
+       .work = ordinatesWork,
+       .slices = kFew,
+       .quickSlices = kFewQuick,
+       .quick = true,
+       .fineSegments = true,
+       .windows = true},
+  };
+  return methods;
+}
+
+const StudyMethod& studyMethod(std::string_view name) {
+  std::string known;
+  for (const StudyMethod& method : studyMethods()) {
+    if (method.name == name) return method;
+    known += (known.empty() ? "" : ", ") + method.name;
+  }
+  throw InvalidArgument("methods: no method '" + std::string(name) + "': there are " + known);
+}
+
+}  // namespace umbrick

@@ -1,0 +1,17 @@
+// The plots of a study.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "study/plot_script.h"
+#include "study/study_record.h"
+
+namespace umbrick {
+
+/// Of one model at the base size and theta.
+Plot paretoPlot(const StudyRecord& record, Model model);       // error over time ratio, front marked
+Plot convergencePlot(const StudyRecord& record, Model model);  // error over the distance of slices
+/// Error over the detail of the methods that have it, a line per number of slices.
+Plot detailPlot(const StudyRecord& record, const StudyMethod::Detail& detail);
+
+}  // namespace umbrick

@@ -1,0 +1,295 @@
+#include "study/study_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "study/case_scene.h"
+#include "study/study_pictures.h"
+#include "study/study_timing.h"
+#include "umbrick/core/error.h"
+#include "umbrick/core/pending_file.h"
+#include "umbrick/core/stopwatch.h"
+#include "umbrick/image/exr.h"
+#include "umbrick/reference/reference.h"
+#include "umbrick/scene/resolve.h"
+#include "umbrick/shade/prepare.h"
+#include "umbrick/slice/proxy_slices.h"
+
+namespace umbrick {
+namespace {
+
+BrickOptions bricksOf(const ScalarGrid& grid, const Scene& scene) {
+  BrickOptions options;
+  options.interior = brickInterior(scene, grid.indexToWorld(), grid.worldBounds());
+  options.apron = requiredApron(scene, grid.indexToWorld());
+  return options;
+}
+
+std::unique_ptr<Bricks> cut(const ScalarGrid& grid, const Scene& scene) {
+  BrickOptions options = bricksOf(grid, scene);
+  options.gradients = scene.transfer->is2d();
+  return scene.bricks.bricked ? brickGrid(grid, options) : unbrickedGrid(grid, options);
+}
+
+RenderOptions quietly() {
+  RenderOptions options;
+  options.countFragments = false;  // a study pays for pictures only
+  return options;
+}
+
+// Seconds on two cores with a software rasteriser: only the ratio of steps matters.
+double estimatedWork(const StudyReference& what, const StudySettings& settings) {
+  if (what.model == Model::emission) return 1;
+  const double whole = what.model == Model::ambient ? 2 : 1;
+  return 1.5 * whole * 6e-6 * what.size * what.size * settings.directions;
+}
+double estimatedWork(const StudyCase& what, const StudySettings& settings) {
+  const double pixels = 0.4 * what.size * what.size, baseline = pixels * kBaselineSlices / 4e7 + 0.02;
+  const double cost = studyMethod(what.method).work(what.detail);
+  return (settings.repeats + 3) * (pixels * what.slices * cost / 4e7 + 1e-4 * what.slices + baseline);
+}
+
+// What makes a stored reference the one that is wanted.
+std::string referenceKey(const StudyRecord& record, const StudyReference& what) {
+  return referenceCommand(what, record.scene, record.plan.settings) + " # volume " +
+         std::to_string(record.volume.crc32) + ", " + printScene(referenceScene(record.scene, what));
+}
+
+}  // namespace
+
+double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Scene& scene) {
+  StudyCase probe;
+  probe.method = "emission";
+  probe.slices = 1;
+  probe.size = 64;  // pixels: enough to know what lies in the picture
+  const double voxelEdge = shortestVoxelEdge(grid.indexToWorld()), spacing = 0.5 * voxelEdge;
+  const Scene fine = caseScene(scene, probe, {spacing, voxelEdge});
+  const std::unique_ptr<Bricks> bricks = cut(grid, fine);
+  SliceRenderer renderer(context, *bricks, fine, quietly());
+  const auto slices = static_cast<double>(renderer.render().stats.slices);
+  if (slices == 0)
+    throw InvalidArgument(scene.volume.file.string() +
+                          ": nothing to study: the transfer function or the camera shows nothing of it");
+  return slices * spacing;
+}
+
+int leastSlices(const ScalarGrid& grid, const Scene& scene, double extent) {
+  if (scene.sampling.quadrature != Quadrature::preintegrated) return 1;
+  // See requiredApron: a slab reaches at most to the other side of a brick.
+  const glm::dvec3 reach = slabReach(indexView(scene.camera, grid.indexToWorld()), extent);
+  const int interior = scene.bricks.interior > 0 ? scene.bricks.interior : kMostInterior;
+  return std::max(1, static_cast<int>(std::ceil(std::max({reach.x, reach.y, reach.z}) / (interior - 0.5) - 1e-9)));
+}
+
+void checkCases(const GlContext& context, const ScalarGrid& grid, const StudyRecord& record) {
+  for (const StudyCase& what : record.plan.cases) {
+    const Scene scene = caseScene(record.scene, what, record.geometry);
+    if (std::max(scene.camera.width, scene.camera.height) > context.maxTextureEdge2d())
+      throw InvalidArgument("sizes: " + std::to_string(scene.camera.width) + " x " +
+                            std::to_string(scene.camera.height) + " pixels are beyond the driver's limit of " +
+                            std::to_string(context.maxTextureEdge2d()));
+    try {
+      validateScene(scene);
+      requiredApron(scene, grid.indexToWorld());
+    } catch (const InvalidArgument& error) {
+      throw InvalidArgument("slices: " + std::to_string(what.slices) + " are too few: " + error.what());
+    }
+  }
+}
+
+struct StudyRun::Baseline {
+  int size;
+  SliceRenderer renderer;
+  // Frames that a reference's time is divided by.
+  double medianMs(int frames) {
+    renderer.render();
+    std::vector<double> times;
+    for (int i = 0; i < frames; ++i) {
+      const Stopwatch watch;
+      renderer.render();
+      times.push_back(watch.elapsedMs());
+    }
+    return spreadOf(times).median;
+  }
+};
+
+StudyRun::StudyRun(const GlContext& context, const ScalarGrid& grid, StudyRecord& record, const StudyFolder& folder,
+                   const StudyCallback& progress)
+    : context_(context), grid_(grid), record_(record), folder_(folder), progress_(progress) {}
+
+StudyRun::~StudyRun() = default;
+
+void StudyRun::measure() {
+  const StudyPlan& plan = record_.plan;
+  // What somebody has cleared away is made again, as long as something is compared with it.
+  if (!record_.complete())
+    std::erase_if(record_.references, [&](const ReferenceResult& result) {
+      return !std::filesystem::exists(folder_.reference(result.what.id()));
+    });
+  std::vector<StudyReference> references;
+  for (const StudyReference& what : plan.references)
+    if (!record_.find(what)) references.push_back(what);
+  std::vector<StudyCase> cases;
+  for (const StudyCase& what : plan.cases)
+    if (!record_.find(what)) cases.push_back(what);
+  for (const StudyReference& what : references) work_ += estimatedWork(what, plan.settings);
+  for (const StudyCase& what : cases) work_ += estimatedWork(what, plan.settings);
+
+  for (const StudyReference& what : references) {
+    if (!measureReference(what)) return;
+    done_ += estimatedWork(what, plan.settings);
+  }
+  for (const StudyReference& what : plan.references)
+    if (what.model == Model::cone && what.size == plan.baseSize && !record_.findModelError(what))
+      measureModelError(what);
+  for (const StudyCase& what : cases) {
+    if (!report(what.id(), 0)) return;
+    measureCase(what);
+    done_ += estimatedWork(what, plan.settings);
+  }
+  report("done", 0);
+}
+
+std::uint64_t StudyRun::nonFiniteVoxels() const {
+  return bricks_.empty() ? 0 : bricks_.begin()->second->nonFiniteVoxels;
+}
+
+bool StudyRun::report(const std::string& step, double share) {
+  if (!progress_) return true;
+  const double done = work_ > 0 ? std::min(1.0, (done_ + share) / work_) : 1;
+  return progress_({done, step, record_.cases.size(), record_.plan.cases.size()});
+}
+
+const Bricks& StudyRun::bricksFor(const Scene& scene) {
+  const BrickOptions options = bricksOf(grid_, scene);
+  std::unique_ptr<Bricks>& bricks = bricks_[{options.interior, options.apron}];
+  if (!bricks) bricks = cut(grid_, scene);
+  return *bricks;
+}
+
+StudyRun::Baseline& StudyRun::baselineOf(int size) {
+  if (!baseline_ || baseline_->size != size) {
+    baseline_.reset();
+    const Scene scene = baselineScene(record_.scene, size, record_.geometry);
+    baseline_.reset(new Baseline{size, SliceRenderer(context_, bricksFor(scene), scene, quietly())});
+  }
+  return *baseline_;
+}
+
+// --- references ---
+
+bool StudyRun::integrate(const StudyReference& what, bool coarser, Image& image, double& milliseconds) {
+  ReferenceOptions options = referenceOptions(record_.plan.settings, coarser);
+  // The coarser one has half of the directions: a third of the work of both.
+  const double work = estimatedWork(what, record_.plan.settings);
+  const std::string step = "reference " + what.id() + (coarser ? ", its own error" : "");
+  options.progress = [&](double share) { return report(step, work * (coarser ? (2 + share) / 3 : 2 * share / 3)); };
+  ReferencePicture picture = renderReference(grid_, referenceScene(record_.scene, what), options);
+  image = std::move(picture.colour);
+  milliseconds = picture.stats.integrateMs;
+  return picture.complete;
+}
+
+bool StudyRun::measureReference(const StudyReference& what) {
+  constexpr int kFrames = 3;
+  const std::filesystem::path file = folder_.reference(what.id());
+  const std::string key = referenceKey(record_, what);
+  Baseline& baseline = baselineOf(what.size);
+  ReferenceResult result;
+  result.what = what;
+  const double before = baseline.medianMs(kFrames);
+  Image image, coarser;
+  if (!integrate(what, false, image, result.integrateMs)) return false;
+  result.timeRatio = result.integrateMs / spreadOf({before, baseline.medianMs(kFrames)}).median;
+  double ignored = 0;
+  if (!integrate(what, true, coarser, ignored)) return false;
+  result.coarser = measureError(coarser, image);
+  ExrOptions options;
+  options.pixel = ExrPixel::float32;
+  options.metadata = {{"umbrick.study.reference", key},
+                      {"umbrick.scene", printScene(referenceScene(record_.scene, what))}};
+  writeExr(file, {{"", image}}, options);
+  writeStudyPicture(folder_, what.id(), image);
+  references_[what.id()] = std::move(image);
+  record_.references.push_back(result);
+  save();
+  return true;
+}
+
+const Image& StudyRun::referenceImage(const StudyReference& what) {
+  const auto known = references_.find(what.id());
+  if (known != references_.end()) return known->second;
+  const std::filesystem::path file = folder_.reference(what.id());
+  ExrFile stored = readExr(file);
+  const auto key = stored.metadata.find("umbrick.study.reference");
+  if (key == stored.metadata.end() || key->second != referenceKey(record_, what))
+    throw InvalidArgument(file.string() + ": not the reference that this study made; give another folder");
+  return references_[what.id()] = std::move(stored.layers.front().image);
+}
+
+void StudyRun::measureModelError(const StudyReference& cone) {
+  const StudyReference ambient{Model::ambient, cone.size, 0};
+  const Image &test = referenceImage(cone), &truth = referenceImage(ambient);
+  record_.modelErrors.push_back({cone, measureError(test, truth)});
+  const glm::dvec3 light = record_.scene.ambient;
+  writeErrorPicture(folder_, cone.id(), test, truth,
+                    errorScale(Model::cone) * std::max({light.r, light.g, light.b, 1e-12}));
+  save();
+}
+
+// --- cases ---
+
+RenderStats StudyRun::countedPicture(const Scene& scene) {
+  RenderOptions options;
+  options.timePasses = true;
+  SliceRenderer renderer(context_, bricksFor(scene), scene, options);
+  renderer.render();  // uploads and compiles
+  return renderer.render().stats;
+}
+
+void StudyRun::measureCase(const StudyCase& what) {
+  const Scene scene = caseScene(record_.scene, what, record_.geometry);
+  const StudyReference reference = record_.plan.referenceOf(what);
+  const Image& truth = referenceImage(reference);
+  Baseline& baseline = baselineOf(what.size);
+  Picture picture;
+  CaseResult result;
+  result.what = what;
+  result.load = loadAverage();
+  TimingOptions timing;
+  timing.pairs = record_.plan.settings.repeats;
+  PairedTimes times;
+  {
+    SliceRenderer renderer(context_, bricksFor(scene), scene, quietly());
+    times = timePairs([&] { baseline.renderer.render(); }, [&] { picture = renderer.render(); }, timing);
+  }
+  result.timeRatio = spreadOf(ratios(times.caseMs, times.baselineMs));
+  result.caseMs = spreadOf(times.caseMs).median;
+  result.baselineMs = spreadOf(times.baselineMs).median;
+  result.pairs = static_cast<int>(times.caseMs.size());
+  result.spacing = scene.sampling.spacing;
+  result.segments = scene.sampling.segments;
+  result.slicesDrawn = picture.stats.slices;
+  result.bufferBytes = picture.stats.bufferBytes;
+  result.textureBytes = picture.stats.textureBytes;
+  const RenderStats counted = countedPicture(scene);
+  result.fragments = counted.fragments;
+  result.passes = counted.passes;
+  result.directions = counted.directions;
+  result.windowTexel = counted.windowTexel;
+  result.windowBytes = counted.windowBytes;
+  result.windowUpdates = counted.windowUpdates;
+  result.error = measureError(picture.colour, truth);
+  const glm::dvec3 light = record_.scene.ambient;
+  writeStudyPicture(folder_, what.id(), picture.colour);
+  writeErrorPicture(folder_, what.id(), picture.colour, truth,
+                    errorScale(reference.model) * std::max({light.r, light.g, light.b, 1e-12}));
+  record_.cases.push_back(result);
+  save();
+}
+
+void StudyRun::save() const { writeTextFile(folder_.record(), printRecord(record_)); }
+
+}  // namespace umbrick

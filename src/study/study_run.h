@@ -1,0 +1,64 @@
+// The measuring part of a study.
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "study/study_folder.h"
+#include "umbrick/brick/brick_grid.h"
+#include "umbrick/shade/slice_renderer.h"
+#include "umbrick/study/study.h"
+
+namespace umbrick {
+
+using StudyCallback = std::function<bool(const StudyProgress&)>;
+
+/// Depth between the nearest and the farthest visible brick in the picture of a scene, world units.
+/// @throw InvalidArgument  nothing is visible
+double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Scene& scene);
+
+/// With fewer slices bricks are too narrow for the slabs. @param extent  of visibleExtent
+int leastSlices(const ScalarGrid& grid, const Scene& scene, double extent);
+
+/// Could all cases be drawn? @throw InvalidArgument  says which value of the plan is the reason
+void checkCases(const GlContext& context, const ScalarGrid& grid, const StudyRecord& record);
+
+class StudyRun {
+ public:
+  /// @param record  what is there already; grows, and is written to the folder after each step
+  StudyRun(const GlContext& context, const ScalarGrid& grid, StudyRecord& record, const StudyFolder& folder,
+           const StudyCallback& progress);
+  ~StudyRun();
+
+  /// Measures what is missing, until the callback asks to stop.
+  void measure();
+  /// Of the volume; 0 when nothing was left to measure.
+  std::uint64_t nonFiniteVoxels() const;
+
+ private:
+  struct Baseline;
+  const Bricks& bricksFor(const Scene& scene);
+  Baseline& baselineOf(int size);
+  const Image& referenceImage(const StudyReference& what);
+  bool report(const std::string& step, double share);
+  bool integrate(const StudyReference& what, bool coarser, Image& image, double& milliseconds);
+  bool measureReference(const StudyReference& what);
+  void measureModelError(const StudyReference& cone);
+  void measureCase(const StudyCase& what);
+  /// Of a picture that counts its fragments and times its passes, which makes it slower.
+  RenderStats countedPicture(const Scene& scene);
+  void save() const;
+
+  const GlContext& context_;
+  const ScalarGrid& grid_;
+  StudyRecord& record_;
+  const StudyFolder& folder_;
+  const StudyCallback& progress_;
+  std::map<std::pair<int, int>, std::unique_ptr<Bricks>> bricks_;  // by interior and apron
+  std::unique_ptr<Baseline> baseline_;                             // of the last size
+  std::map<std::string, Image> references_;                        // by id
+  double work_ = 0, done_ = 0;                                     // seconds that steps may take, only for their ratio
+};
+
+}  // namespace umbrick

@@ -1,6 +1,0 @@
-umbrick_tests(report earlier_study_test.cpp page_test.cpp plot_script_test.cpp statistics_test.cpp
-              study_findings_test.cpp study_plan_test.cpp study_record_test.cpp study_timing_test.cpp OPENVDB
-              study_gl_test.cpp)
-# All but the study itself is internal.
-target_include_directories(umbrick_report_tests PRIVATE ${PROJECT_SOURCE_DIR}/src)
-target_link_libraries(umbrick_report_tests PRIVATE nlohmann_json::nlohmann_json)

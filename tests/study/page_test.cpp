@@ -1,0 +1,177 @@
+#include "study/page.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "study/invented_study.h"
+#include "study/study_pictures.h"
+#include "study/study_table.h"
+#include "support/files.h"
+#include "support/temporary_folder.h"
+#include "support/xml.h"
+
+using namespace umbrick;
+using Catch::Contains;
+
+namespace {
+
+std::string pageOf(const StudyRecord& record, const TemporaryFolder& parent) {
+  const StudyFolder folder(parent.path() / "report");
+  folder.create(record);
+  Image grey(16, 16);
+  std::fill(grey.pixels.begin(), grey.pixels.end(), 0.5f);
+  if (!record.cases.empty()) writeStudyPicture(folder, record.cases.front().what.id(), grey);
+  writePage(record, folder);
+  return readBytes(folder.page());
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+}  // namespace
+
+TEST_CASE("The check of well-formedness finds what is not", "[report]") {
+  CHECK(xmlFault("<!DOCTYPE html>\n<a b='<'></a>") != "");
+  CHECK(xmlFault("<a><b></a></b>") != "");
+  CHECK(xmlFault("<a>") != "");
+  CHECK(xmlFault("<a>1 < 2</a>") != "");
+  CHECK(xmlFault("<a><b id=\"x\"/><c id=\"x\"/></a>") != "");
+  CHECK(xmlFault("<a title='x > y'>1 &lt; 2<br/><script>if (a < b) c();</script></a>").empty());
+}
+
+TEST_CASE("The page is well-formed, whatever names there are", "[report]") {
+  const TemporaryFolder folder;
+  const std::string page = pageOf(inventedStudy(), folder);
+  CHECK(xmlFault(page) == "");
+  CHECK_THAT(page, Contains("a &lt;b&gt; &amp; &quot;c&quot;.vdb") && !Contains("a <b>"));
+  // One plot per model for time and for convergence, one for the footprint and one for the directions.
+  std::size_t plots = 0;
+  for (std::size_t at = 0; (at = page.find("<svg", at)) != std::string::npos; ++at) ++plots;
+  CHECK(plots == 6);
+  CHECK_THAT(page, Contains("order 1.00"));  // inventedStudy's error is proportional to d
+  CHECK_THAT(page, Contains("data:image/png;base64,iVBORw0KGgo"));
+  CHECK_THAT(page, Contains("missing"));  // the pictures that are not there
+  CHECK_THAT(page, !Contains("Unfinished"));
+  CHECK_THAT(page, Contains("id=\"comparison\"") && Contains("id=\"windows\""));
+}
+
+TEST_CASE("The page shows an earlier study in the plots of time and in tables, and says where it has nothing",
+          "[report]") {
+  const TemporaryFolder folder;
+  StudyRecord record = inventedStudy();
+  record.earlier = readEarlierStudy(printRecord(record), "old & <grey>.json", record);
+  std::erase_if(record.earlier->front, [](const EarlierCase& one) { return one.model == Model::emission; });
+  const std::string page = pageOf(record, folder);
+  CHECK(xmlFault(page) == "");
+  CHECK_THAT(page, Contains("The Pareto front of <code>old &amp; &lt;grey&gt;.json</code>") &&
+                       Contains("earlier Pareto front") &&
+                       Contains("old &amp; &lt;grey&gt;.json</code> (umbrick 0.0) has no case"));
+}
+
+TEST_CASE("The page loads nothing from elsewhere", "[report]") {
+  const TemporaryFolder folder;
+  const std::string page = pageOf(inventedStudy(), folder);
+  for (const std::string attribute : {"src", "href"})
+    for (const char quote : {'"', '\''}) {
+      const std::string begin = attribute + "=" + quote;
+      for (std::size_t at = 0; (at = page.find(begin, at)) != std::string::npos;) {
+        at += begin.size();
+        const std::string target = page.substr(at, page.find(quote, at) - at);
+        const bool citation = target.starts_with("https://doi.org/");
+        const bool inside = target.starts_with("data:image/png;base64,") || target.starts_with("#");
+        CAPTURE(target.substr(0, 80));
+        CHECK((inside || (citation && page.compare(at - 9, 3, "<a ") == 0)));
+      }
+    }
+  CHECK_THAT(page, !Contains("@import") && !Contains("url(http") && !Contains("<link"));
+}
+
+TEST_CASE("Every anchor of the page leads somewhere", "[report]") {
+  const TemporaryFolder folder;
+  const std::string page = pageOf(inventedStudy(), folder);
+  int anchors = 0;
+  for (std::size_t at = 0; (at = page.find("href=\"#", at)) != std::string::npos; ++anchors) {
+    at += 7;
+    const std::string target = page.substr(at, page.find('"', at) - at);
+    CAPTURE(target);
+    CHECK(page.find("id=\"" + target + "\"") != std::string::npos);
+  }
+  CHECK(anchors > 20);
+}
+
+TEST_CASE("A page of a study that has not begun, or is not done, says so", "[report]") {
+  const TemporaryFolder folder;
+  StudyRecord record = inventedStudy();
+  const std::size_t all = record.cases.size();
+  record.cases.resize(3);
+  const std::string begun = pageOf(record, folder);
+  CHECK(xmlFault(begun) == "");
+  CHECK_THAT(begun, Contains("Unfinished: 3 of " + std::to_string(all) + " cases"));
+  record.cases.clear();
+  record.references.clear();
+  record.modelErrors.clear();
+  CHECK(xmlFault(pageOf(record, folder)) == "");
+}
+
+TEST_CASE("The table has a row per case, of as many columns as the head, that read back", "[report]") {
+  const StudyRecord record = inventedStudy();
+  const std::vector<std::string> lines = split(printTable(record), '\n');
+  REQUIRE(lines.size() == 1 + record.cases.size());
+  const std::vector<std::string> head = split(lines[0], ',');
+  const auto column = [&](const std::string& name) {
+    const auto at = std::find(head.begin(), head.end(), name);
+    REQUIRE(at != head.end());
+    return static_cast<std::size_t>(at - head.begin());
+  };
+  for (std::size_t i = 0; i < record.cases.size(); ++i) {
+    const std::vector<std::string> cells = split(lines[i + 1], ',');
+    REQUIRE(cells.size() == head.size());
+    CHECK(cells[column("id")] == record.cases[i].what.id());
+    CHECK(std::stod(cells[column("rmse")]) == record.cases[i].error.rmse);
+    CHECK(std::stod(cells[column("time_ratio")]) == record.cases[i].timeRatio.median);
+    CHECK(std::stod(cells[column("reference_error_rmse")]) == 0.001);
+  }
+  // Only ordinates has windows; the shares of the passes are those of its picture.
+  for (const std::string& line : std::vector<std::string>(lines.begin() + 1, lines.end())) {
+    const std::vector<std::string> cells = split(line, ',');
+    const bool windows = cells[column("method")] == "ordinates";
+    CHECK(cells[column("window_texel_world")].empty() == !windows);
+    CHECK(cells[column("windows_share")] == (windows ? "0.375" : "0"));
+    CHECK(cells[column("eye_share")] == (windows ? "0.5" : "1"));
+  }
+  // Milliseconds say something of hardware only.
+  CHECK(std::find(head.begin(), head.end(), "case_ms") == head.end());
+  StudyRecord hardware = record;
+  hardware.machine.software = false;
+  CHECK_THAT(split(printTable(hardware), '\n')[0], Contains(",case_ms,baseline_ms"));
+}
+
+TEST_CASE("Base64 is that of RFC 4648", "[report]") {
+  CHECK(base64("") == "");
+  CHECK(base64("f") == "Zg==");
+  CHECK(base64("fo") == "Zm8=");
+  CHECK(base64("foo") == "Zm9v");
+  CHECK(base64("foobar") == "Zm9vYmFy");
+  CHECK(base64(std::string("\xff\x00\xfe", 3)) == "/wD+");
+}
+
+TEST_CASE("A thumbnail keeps the mean of a picture that it divides", "[report]") {
+  Image image(12, 8);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(i % 7);
+  const Image small = shrunk(image, 4);
+  CHECK(small.width == 6);
+  CHECK(small.height == 4);
+  double a = 0, b = 0;
+  for (const float p : image.pixels) a += p;
+  for (const float p : small.pixels) b += 4 * p;
+  CHECK(b == Approx(a).epsilon(1e-6));  // single precision
+  CHECK(shrunk(image, 8).pixels == image.pixels);
+}

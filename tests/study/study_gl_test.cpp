@@ -1,0 +1,233 @@
+#include "umbrick/study/study.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "support/complaint.h"
+#include "support/files.h"
+#include "support/gl_fixture.h"
+#include "support/temporary_folder.h"
+#include "support/test_grids.h"
+#include "support/test_scenes.h"
+#include "support/xml.h"
+#include "umbrick/core/error.h"
+#include "umbrick/grid/build_grid.h"
+#include "umbrick/scene/resolve.h"
+
+using namespace umbrick;
+namespace fs = std::filesystem;
+using Catch::Contains;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+// A ball that gets denser inwards, in a file of its own.
+struct SmallStudy {
+  TemporaryFolder folder;
+  ScalarGrid grid;
+  Scene scene;
+  StudySettings settings;
+
+  SmallStudy() {
+    const fs::path file = folder.path() / "ball.vdb";
+    openvdb::io::File out(file.string());
+    grid = makeFilled(glm::ivec3(12), glm::ivec3(0),
+                      [](const glm::ivec3& p) { return std::max(0.0, 1 - glm::length(glm::dvec3(p) - 5.5) / 6); });
+    out.write({std::const_pointer_cast<openvdb::FloatGrid>(grid.grid)});
+    out.close();
+    scene.volume.file = file;
+    scene.transfer = TransferFunction({{0.1, {{0.9, 0.7, 0.5}, 0}}, {1, {{0.9, 0.7, 0.5}, 2}}});
+    scene.camera.width = scene.camera.height = 16;
+    scene.background = glm::dvec3(0.5);
+    settings.methods = {"emission", "dos"};
+    settings.slices = {8, 16};
+    settings.details["footprint"] = {2};
+    settings.bits = {{32, 32}};
+    settings.segments = {1, 2};
+    settings.sizes = {16};
+    settings.thetas = {60 * kDegree};
+    settings.repeats = 1;
+    settings.directions = 8;
+    settings.tolerance = 0.05;
+  }
+  Scene resolved() const { return resolveScene(scene, grid.worldBounds(), grid.indexToWorld()); }
+  fs::path report() const { return folder.path() / "report"; }
+  Json record() const { return Json::parse(readBytes(report() / "study.json")); }
+};
+
+std::map<std::string, std::string> contentsOf(const fs::path& folder) {
+  std::map<std::string, std::string> contents;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    contents[entry.path().string()] = entry.is_regular_file() ? readBytes(entry.path()) : "folder";
+  return contents;
+}
+
+}  // namespace
+
+TEST_CASE("A stopped study goes on where it was, and measures nothing twice", "[report]") {
+  const auto context = testContext();
+  if (!context) return;
+  const SmallStudy study;
+  std::vector<std::string> steps;
+  std::size_t stopAfter = 0;
+  const auto progress = [&](const StudyProgress& p) {
+    CHECK(p.share >= 0);
+    CHECK(p.share <= 1);
+    steps.push_back(p.step);
+    return p.casesDone < stopAfter;
+  };
+  const auto run = [&] {
+    return runStudy(*context, study.grid, study.resolved(), study.settings, study.report(), progress);
+  };
+  // In the first reference.
+  CHECK(!run().complete);
+  CHECK(study.record()["cases"].empty());
+  CHECK(study.record()["references"].empty());
+  // After two cases.
+  stopAfter = 2;
+  const StudyOutcome stopped = run();
+  CHECK(!stopped.complete);
+  CHECK(stopped.casesDone == 2);
+  const Json first = study.record();
+  REQUIRE(first["cases"].size() == 2);
+  CHECK(first["complete"] == false);
+  CHECK_THAT(readBytes(stopped.page), Contains("Unfinished: 2 of"));
+  // To the end.
+  stopAfter = 1000;
+  steps.clear();
+  const StudyOutcome finished = run();
+  CHECK(finished.complete);
+  const Json second = study.record();
+  CHECK(second["complete"] == true);
+  REQUIRE(second["cases"].size() == finished.cases);
+  // Times and all: what was measured is what it was.
+  for (std::size_t i = 0; i < 2; ++i) CHECK(second["cases"][i] == first["cases"][i]);
+  CHECK(second["references"] == first["references"]);
+  for (const std::string& step : steps) {
+    CHECK_THAT(step, !Contains("reference"));
+    for (const Json& done : first["cases"]) CHECK(step != done["id"]);
+  }
+  // The same cases as in one go.
+  SmallStudy whole;
+  whole.scene.volume.file = study.scene.volume.file;
+  runStudy(*context, whole.grid, whole.resolved(), whole.settings, whole.report());
+  const Json once = whole.record();
+  REQUIRE(once["cases"].size() == second["cases"].size());
+  for (std::size_t i = 0; i < once["cases"].size(); ++i) {
+    CHECK(once["cases"][i]["id"] == second["cases"][i]["id"]);
+    CHECK(once["cases"][i]["error"] == second["cases"][i]["error"]);
+  }
+}
+
+TEST_CASE("A complete study is only shown again", "[report]") {
+  const auto context = testContext();
+  if (!context) return;
+  const SmallStudy study;
+  const StudyOutcome outcome = runStudy(*context, study.grid, study.resolved(), study.settings, study.report());
+  REQUIRE(outcome.complete);
+  CHECK(xmlFault(readBytes(outcome.page)) == "");
+  const auto before = contentsOf(study.report());
+  fs::remove(outcome.page);
+  runStudy(*context, study.grid, study.resolved(), study.settings, study.report());
+  CHECK(contentsOf(study.report()) == before);
+}
+
+TEST_CASE("Errors fall with the slices, and the model's error is apart from the method's", "[report]") {
+  const auto context = testContext();
+  if (!context) return;
+  SmallStudy study;
+  study.settings.directions = 24;  // references, and coarser ones of half as many, are close to each other
+  study.settings.slices = {4, 64};
+  runStudy(*context, study.grid, study.resolved(), study.settings, study.report());
+  const Json record = study.record();
+  std::map<std::string, double> rmse;
+  for (const Json& one : record["cases"]) rmse[one["id"]] = one["error"]["rmse"];
+  CHECK(rmse.at("emission-N64-k1-e32-s16") < 0.25 * rmse.at("emission-N4-k1-e32-s16"));
+  CHECK(rmse.at("emission-N64-k1-e32-s16") > 0);
+  REQUIRE(record["model_errors"].size() == 1);
+  // Light from the side and from behind is missing: far more than the reference's own error.
+  CHECK(record["model_errors"][0]["error"]["rmse"] > 0.01);
+  for (const Json& reference : record["references"]) {
+    CHECK(reference["time_ratio"] > 0);
+    CHECK(reference["difference_to_coarser"]["rmse"] < 0.01);
+  }
+}
+
+TEST_CASE("The scene's model, method and background do not matter to a study", "[report]") {
+  const auto context = testContext();
+  if (!context) return;
+  SmallStudy study;
+  study.settings.slices = {8};
+  runStudy(*context, study.grid, study.resolved(), study.settings, study.report());
+  study.scene.model = Model::ambient;
+  study.scene.background.reset();
+  study.scene.sampling.spacing = 3;
+  study.scene.occlusion.footprint = 7;
+  CHECK(runStudy(*context, study.grid, study.resolved(), study.settings, study.report()).complete);
+}
+
+TEST_CASE("What a study cannot use is refused before anything is written", "[report]") {
+  const auto context = testContext();
+  if (!context) return;
+  SmallStudy study;
+  const auto refusal = [&] {
+    const auto before = contentsOf(study.folder.path());
+    const std::string message = complaint<InvalidArgument>(
+        [&] { runStudy(*context, study.grid, study.resolved(), study.settings, study.report()); });
+    CHECK(contentsOf(study.folder.path()) == before);
+    return message;
+  };
+  study.settings.methods = {"dos", "magic"};
+  CHECK_THAT(refusal(), Contains("methods: no method 'magic'"));
+  study.settings.methods = {"emission"};
+  study.settings.details.clear();
+  study.scene.camera.width = study.scene.camera.height = 16;
+
+  writeBytes(study.report(), "a file");
+  CHECK_THAT(refusal(), Contains("report: expected a folder, found a file"));
+  fs::remove(study.report());
+  fs::create_directory(study.report());
+  writeBytes(study.report() / "notes.txt", "mine");
+  CHECK_THAT(refusal(), Contains("report: holds files but no study.json"));
+  writeBytes(study.report() / "study.json", "{\"umbrick_study\": 2}");
+  const auto before = contentsOf(study.report());
+  CHECK_THAT(
+      complaint<IoError>([&] { runStudy(*context, study.grid, study.resolved(), study.settings, study.report()); }),
+      Contains("study.json:1:1: ") && Contains("settings"));
+  CHECK(contentsOf(study.report()) == before);
+  fs::remove_all(study.report());
+
+  runStudy(*context, study.grid, study.resolved(), study.settings, study.report());
+  study.settings.slices = {8, 32};
+  CHECK_THAT(refusal(), Contains("a study with other settings: slices is [8,16] there and [8,32] here"));
+  study.settings.slices = {8, 16};
+  study.scene.orbit = Orbit{1, 0};
+  CHECK_THAT(refusal(), Contains("a study of another scene: camera.eye"));
+  fs::remove_all(study.report());
+
+  study.scene.transfer = TransferFunction({{5, {{1, 1, 1}, 0}}, {6, {{1, 1, 1}, 1}}});
+  CHECK_THAT(refusal(), Contains("nothing to study"));
+  study.scene.transfer = TransferFunction({{0.1, {{1, 1, 1}, 0}}, {1, {{1, 1, 1}, 1}}});
+  study.settings.sizes = {60000};
+  CHECK_THAT(refusal(), Contains("sizes: 60000 x 60000 pixels are beyond the driver's limit of "));
+}
+
+TEST_CASE("Without gnuplot a study does not begin", "[report]") {
+  const auto context = testContext();
+  if (!context) return;
+  const SmallStudy study;
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", study.folder.path().c_str(), 1);
+  const std::string message =
+      complaint<IoError>([&] { runStudy(*context, study.grid, study.resolved(), study.settings, study.report()); });
+  setenv("PATH", path.c_str(), 1);
+  CHECK_THAT(message, Contains("gnuplot: cannot be run") && Contains("gnuplot-nox"));
+  CHECK(!fs::exists(study.report()));
+}
