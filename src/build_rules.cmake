@@ -35,32 +35,50 @@ function(umbrick_without_openvdb target)
   set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
-# Lets a program share the library's precompiled header. @param ARGN  its sources that do not include OpenVDB
+# Lets a program share the libraries' precompiled header. @param ARGN  its sources that do not include OpenVDB
 function(umbrick_reuse_openvdb target)
-  target_precompile_headers(${target} REUSE_FROM umbrick)
+  target_precompile_headers(${target} REUSE_FROM umbrick_volume)
   target_compile_options(${target} PRIVATE -fPIC)  # as the library: the compiler takes the header only then
   if(ARGN)
     umbrick_without_openvdb(${target} ${ARGN})
   endif()
 endfunction()
 
-# A room: its sources become part of the library. Those that include OpenVDB, through headers or not, stand apart.
-#   umbrick_room(core SOURCES a.cpp b.cpp OPENVDB c.cpp)
-function(umbrick_room name)
+# A library of rooms: umbrick_library(volume core ingest) makes umbrick::volume from src/core and src/ingest.
+# A program that uses some rooms of it links no foreign library that only the others need.
+function(umbrick_library name)
+  set(UMBRICK_LIBRARY umbrick_${name})
+  add_library(${UMBRICK_LIBRARY} STATIC)
+  add_library(umbrick::${name} ALIAS ${UMBRICK_LIBRARY})
+  set_target_properties(${UMBRICK_LIBRARY} PROPERTIES EXPORT_NAME ${name})
+  umbrick_flags(${UMBRICK_LIBRARY})
+  target_include_directories(${UMBRICK_LIBRARY} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>
+                                                PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/shaders)
+  target_compile_features(${UMBRICK_LIBRARY} PUBLIC cxx_std_20)
+  target_link_options(${UMBRICK_LIBRARY} INTERFACE LINKER:--as-needed)
+  foreach(room ${ARGN})
+    add_subdirectory(src/${room})
+  endforeach()
+endfunction()
+
+# A room: its sources become part of its library. Those that include OpenVDB, through headers or not, stand apart.
+#   umbrick_room(SOURCES a.cpp b.cpp OPENVDB c.cpp)
+function(umbrick_room)
   cmake_parse_arguments(ROOM "" "" "SOURCES;OPENVDB" ${ARGN})
   list(TRANSFORM ROOM_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
   list(TRANSFORM ROOM_OPENVDB PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
-  target_sources(umbrick PRIVATE ${ROOM_SOURCES} ${ROOM_OPENVDB})
+  target_sources(${UMBRICK_LIBRARY} PRIVATE ${ROOM_SOURCES} ${ROOM_OPENVDB})
   if(ROOM_SOURCES)
-    umbrick_without_openvdb(umbrick ${ROOM_SOURCES})
+    umbrick_without_openvdb(${UMBRICK_LIBRARY} ${ROOM_SOURCES})
   endif()
 endfunction()
 
-# Text files that become part of the library: writes a .cpp that defines
+# Text files that become part of a library: umbrick_embed(umbrick_render shaderText BASE ... FILES ...) writes a .cpp
+# that defines
 #   std::string_view umbrick::FUNCTION(std::string_view name)   the text of one file, empty if there is none
 #   std::vector<std::string> umbrick::FUNCTIONNames()           the names there are
 # The name of a file is its path below BASE.
-function(umbrick_embed function)
+function(umbrick_embed target function)
   cmake_parse_arguments(EMBED "" "BASE" "FILES" ${ARGN})
   set(output ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
   list(TRANSFORM EMBED_FILES PREPEND ${EMBED_BASE}/ OUTPUT_VARIABLE paths)
@@ -73,11 +91,11 @@ function(umbrick_embed function)
     VERBATIM)
   # A target of its own, since the library is declared in another folder than this rule.
   add_custom_target(umbrick_${function} DEPENDS ${output})
-  set_source_files_properties(${output} TARGET_DIRECTORY umbrick PROPERTIES GENERATED TRUE)
-  add_dependencies(umbrick umbrick_${function})
-  target_sources(umbrick PRIVATE ${output})
-  umbrick_without_openvdb(umbrick ${output})
-  set_source_files_properties(${output} TARGET_DIRECTORY umbrick PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set_source_files_properties(${output} TARGET_DIRECTORY ${target} PROPERTIES GENERATED TRUE)
+  add_dependencies(${target} umbrick_${function})
+  target_sources(${target} PRIVATE ${output})
+  umbrick_without_openvdb(${target} ${output})
+  set_source_files_properties(${output} TARGET_DIRECTORY ${target} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 # A library without a CMake package: sets PREFIX_INCLUDE_DIR and PREFIX_LIBRARY, or says which Debian package has it.

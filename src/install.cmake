@@ -1,10 +1,10 @@
-# Installs the library with its headers and a CMake package:
+# Installs the libraries with its headers and a CMake package:
 #   find_package(umbrick REQUIRED)
-#   target_link_libraries(app PRIVATE umbrick::umbrick)
+#   target_link_libraries(app PRIVATE umbrick::render)   or umbrick::volume, umbrick::study, umbrick::umbrick: all
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/umbrick)
 
-install(TARGETS umbrick EXPORT umbrickTargets
+install(TARGETS umbrick umbrick_volume umbrick_render umbrick_study EXPORT umbrickTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY include/umbrick DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT umbrickTargets NAMESPACE umbrick:: DESTINATION ${package_dir})
