@@ -57,35 +57,35 @@ ScalarGrid piece(const ScalarGrid& grid, const CoordBBox& box, bool roomAround) 
 
 }  // namespace
 
-void checkBorder(const GlContext& context, const ScalarGrid& grid, const Scene& scene,
+void checkBorder(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
                  const std::function<std::unique_ptr<Bricks>(const ScalarGrid&, const BrickOptions&)>& cut,
                  InvariantResult& result) {
   const float background = std::isfinite(grid.grid->background()) ? grid.grid->background() : 0;
-  const Leaf* leaf = visibleLeaf(*grid.grid, *scene.transfer);
-  if (!leaf || !scene.transfer->isTransparent({background, background}, {0, 0})) return;
+  const Leaf* leaf = visibleLeaf(*grid.grid, scene.transfer);
+  if (!leaf || !scene.transfer.isTransparent({background, background}, {0, 0})) return;
   for (int residue = 0; residue < 8; ++residue) {
     const Coord first = leaf->origin().offsetBy(-8 - residue), last = leaf->origin().offsetBy(7 + residue);
     const CoordBBox box(first, last);
     const ScalarGrid alone = piece(grid, box, false);
     if (alone.activeBox().empty()) continue;
-    Scene wide = scene;
-    wide.clipPlanes.clear();
-    wide.clipBox.reset();
-    wide.model = Model::emission;
+    Scene turned = unresolved(scene);
+    turned.clipPlanes.clear();
+    turned.clipBox.reset();
+    turned.model = Model::emission;
     applyQuality(std::array{Quality::draft, Quality::normal, Quality::high}[static_cast<std::size_t>(residue % 3)],
-                 wide);
-    wide.bricks.interior = 0;
-    wide.camera = Camera{};
-    wide.camera.width = wide.camera.height = 64;
-    wide.camera.projection = residue % 2 == 0 ? Projection::orthographic : Projection::perspective;
+                 turned);
+    turned.bricks.interior = 0;
+    turned.camera = Camera{};
+    turned.camera.width = turned.camera.height = 64;
+    turned.camera.projection = residue % 2 == 0 ? Projection::orthographic : Projection::perspective;
     // Around the piece, each time from somewhere else, so that each of its faces is in front or behind some time.
-    wide.orbit = Orbit{0.8 * residue, 0.9 - 0.25 * residue};
-    const std::string spacing = std::to_string(wide.sampling.spacing);
-    wide = resolveScene(wide, alone.worldBounds(), alone.indexToWorld());
+    turned.orbit = Orbit{0.8 * residue, 0.9 - 0.25 * residue};
+    const std::string spacing = std::to_string(turned.sampling.spacing);
+    const ResolvedScene wide = resolveScene(turned, alone.worldBounds(), alone.indexToWorld());
     BrickOptions options;
     options.apron = requiredApron(wide, alone.indexToWorld());
     options.interior = brickInterior(wide, alone.indexToWorld(), alone.worldBounds());
-    options.gradients = scene.transfer->is2d();
+    options.gradients = scene.transfer.is2d();
     const auto draw = [&](const ScalarGrid& volume) {
       const std::unique_ptr<Bricks> bricks = cut(volume, options);
       return SliceRenderer(context, *bricks, wide).render().colour;

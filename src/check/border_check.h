@@ -12,7 +12,7 @@ namespace umbrick {
 /// 8, and renders each in slabs as wide as every quality has them: as it is, and with empty space around it, which must
 /// make no difference. Nothing is measured where the background is visible, which then ends somewhere else.
 /// @param cut  makes bricks
-void checkBorder(const GlContext& context, const ScalarGrid& grid, const Scene& scene,
+void checkBorder(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
                  const std::function<std::unique_ptr<Bricks>(const ScalarGrid&, const BrickOptions&)>& cut,
                  InvariantResult& result);
 

@@ -59,7 +59,7 @@ CheckView alignedView(const Camera& base, const ScalarGrid& grid, const Box& bou
 
 }  // namespace
 
-std::vector<CheckView> checkViews(const ScalarGrid& grid, const Scene& resolved) {
+std::vector<CheckView> checkViews(const ScalarGrid& grid, const ResolvedScene& resolved) {
   const Box bounds = grid.worldBounds();
   if (bounds.empty()) throw InvalidArgument("check: grid \"" + grid.name + "\" has no active voxel");
   const GridFrame frame = gridFrame(grid.indexToWorld());

@@ -12,6 +12,7 @@
 #include "check/sampler_precision.h"
 #include "check/slice_check.h"
 #include "umbrick/core/error.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/shade/prepare.h"
 #include "umbrick/shade/slice_renderer.h"
 #include "umbrick/slice/proxy_slices.h"
@@ -44,7 +45,7 @@ struct ModelResults {
     const std::string m = ", " + modelName(model);
     const std::string picture = "largest difference of colour, V and depth";
     const std::string rounding = "rounding of texture coordinates and sums";
-    const std::string light = model == Model::cone && method == Method::dos ? ", light beyond 4 deviations" : "";
+    const std::string light = traitsOf(model).occlusion && method == Method::dos ? ", light beyond 4 deviations" : "";
     edges = makeResult(1, "bricked equals unbricked" + m, picture, rounding + light);
     pool = makeResult(1, "a pool smaller than the volume" + m, picture, rounding + light);
     textures = makeResult(1, "several textures" + m, picture, rounding + light);
@@ -60,7 +61,7 @@ struct ModelResults {
 
 class Checker {
  public:
-  Checker(const GlContext& context, const ScalarGrid& grid, const Scene& scene, const CheckOptions& options)
+  Checker(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene, const CheckOptions& options)
       : context_(context),
         grid_(grid),
         scene_(scene),
@@ -98,8 +99,8 @@ class Checker {
   }
 
  private:
-  Scene sceneOf(const CheckView& view, Model model) const {
-    Scene scene = scene_;
+  ResolvedScene sceneOf(const CheckView& view, Model model) const {
+    ResolvedScene scene = scene_;
     scene.camera = view.camera;
     if (view.spacing > 0) scene.sampling.spacing = view.spacing;
     scene.model = model;
@@ -115,14 +116,14 @@ class Checker {
     BrickOptions options;
     options.interior = edge;
     options.apron = apron_;
-    options.gradients = scene_.transfer->is2d();
+    options.gradients = scene_.transfer.is2d();
     return options_.cut ? options_.cut(grid_, options) : brickGrid(grid_, options);
   }
 
   // One apron for all views, so that a volume is cut once per edge.
   void cutAll() {
     for (const CheckView& view : views_) {
-      Scene scene = sceneOf(view, Model::emission);
+      ResolvedScene scene = sceneOf(view, Model::emission);
       scene.bricks.interior = 256;
       apron_ = std::max(apron_, requiredApron(scene, toWorld_));
     }
@@ -149,7 +150,7 @@ class Checker {
   }
 
   void checkSlicesOf(const CheckView& view) {
-    const Scene scene = sceneOf(view, Model::emission);
+    const ResolvedScene scene = sceneOf(view, Model::emission);
     SliceCheckOptions options;
     options.slices = options_.probedSlices;
     options.samplerPrecision = precision_;
@@ -170,7 +171,7 @@ class Checker {
     double farthest = 0;
   };
 
-  Drawn draw(const Bricks& bricks, const Scene& scene, RenderOptions options = {}) {
+  Drawn draw(const Bricks& bricks, const ResolvedScene& scene, RenderOptions options = {}) {
     step(drawing_);
     options.visibilityAndDepth = true;
     options.countFragments = false;
@@ -184,12 +185,12 @@ class Checker {
 
   // The whole volume as one texture or, when that is too large, the largest bricks of which one fits.
   void chooseReference() {
-    Scene scene = sceneOf(views_.front(), Model::emission);
+    ResolvedScene scene = sceneOf(views_.front(), Model::emission);
     scene.bricks.culling = false;
     BrickOptions options;
     options.interior = sceneEdge_;
     options.apron = apron_;
-    options.gradients = scene_.transfer->is2d();
+    options.gradients = scene_.transfer.is2d();
     std::string why;
     for (const int edge : {0, 256, 128, 64}) {
       try {
@@ -212,7 +213,7 @@ class Checker {
   }
 
   // How far rounding may move samples, voxels.
-  double displacement(const Scene& scene, double farthest, int textureEdge) const {
+  double displacement(const ResolvedScene& scene, double farthest, int textureEdge) const {
     const IndexView view = indexView(scene.camera, toWorld_);
     const double scale = scene.camera.projection == Projection::perspective ? farthest : 1;
     double sideways = 0;
@@ -230,10 +231,10 @@ class Checker {
     PictureDifference perVoxel;  // of displacement along each axis
   };
 
-  Reference drawReference(const Scene& scene) {
+  Reference drawReference(const ResolvedScene& scene) {
     Reference reference{draw(*reference_, scene), {}};
     const double distance = displacement(scene, reference.drawn.farthest, reference.drawn.picture.stats.textureEdge);
-    Scene moved = scene;
+    ResolvedScene moved = scene;
     const glm::dvec3 shift = glm::dmat3(toWorld_) * glm::dvec3(distance);
     moved.camera.eye += shift;
     moved.camera.lookAt += shift;
@@ -244,7 +245,7 @@ class Checker {
     return reference;
   }
 
-  PictureLimit limitFor(const Reference& reference, const Scene& scene, const Picture& picture) const {
+  PictureLimit limitFor(const Reference& reference, const ResolvedScene& scene, const Picture& picture) const {
     const int textureEdge = std::max(picture.stats.textureEdge, reference.drawn.picture.stats.textureEdge);
     const double distance = displacement(scene, reference.drawn.farthest, textureEdge);
     const PictureDifference& rate = reference.perVoxel;
@@ -252,7 +253,7 @@ class Checker {
                         reference.drawn.picture.stats.slices);
   }
 
-  void compare(const Drawn& a, const Drawn& b, const Reference& reference, const Scene& scene, double extra,
+  void compare(const Drawn& a, const Drawn& b, const Reference& reference, const ResolvedScene& scene, double extra,
                const std::string& where, InvariantResult& all, InvariantResult* visibility) const {
     const PictureLimit limit = limitFor(reference, scene, a.picture);
     const PictureDifference found = difference(a.picture, b.picture, scene, reference.drawn.farthest);
@@ -265,7 +266,7 @@ class Checker {
 
   void checkPicturesOf(const CheckView& view, Model model) {
     drawing_ = view.name + ": " + modelName(model);
-    Scene scene = sceneOf(view, model);
+    ResolvedScene scene = sceneOf(view, model);
     ModelResults& results = model == Model::cone ? cone_ : emission_;
     const double saturation = scene.sampling.saturation > 0 ? scene.sampling.saturation : SamplingOptions{}.saturation;
     scene.sampling.saturation = 0;
@@ -289,7 +290,7 @@ class Checker {
 
     // A saturated pixel lets through less than `saturation`; what dos leaves out at each look is below 1e-5.
     const double looks = 1 + static_cast<double>(whole.picture.stats.slices) / 24;
-    const double extra = saturation + (model == Model::cone && scene.method == Method::dos ? 1e-5 * looks : 0);
+    const double extra = saturation + (occlusionMethod(scene) == Method::dos ? 1e-5 * looks : 0);
     scene.sampling.saturation = saturation;
     const Drawn culled = draw(bricks, scene);
     scene.bricks.culling = false;
@@ -304,7 +305,7 @@ class Checker {
   }
 
   // A pool that must recycle its slots, and bricks spread over several textures.
-  void checkAtlas(const Drawn& whole, const Reference& reference, const Scene& scene, const CheckView& view,
+  void checkAtlas(const Drawn& whole, const Reference& reference, const ResolvedScene& scene, const CheckView& view,
                   ModelResults& results) {
     const Bricks& bricks = *bricks_.at(pooledEdge_);
     const RenderStats& stats = whole.picture.stats;
@@ -341,7 +342,7 @@ class Checker {
     compareTextures(edge);
   }
 
-  void checkJumps(const Drawn& drawn, const Reference& reference, const Scene& scene, const Bricks& bricks,
+  void checkJumps(const Drawn& drawn, const Reference& reference, const ResolvedScene& scene, const Bricks& bricks,
                   const std::string& where, InvariantResult& result) const {
     // Faces of x and z are seen as lines only by a parallel view along y.
     if (scene.camera.projection != Projection::orthographic) return;
@@ -390,7 +391,7 @@ class Checker {
 
   const GlContext& context_;
   const ScalarGrid& grid_;
-  Scene scene_;
+  ResolvedScene scene_;
   const CheckOptions& options_;
   const glm::dmat4 toWorld_;
   std::vector<CheckView> views_;
@@ -420,8 +421,8 @@ class Checker {
 
 }  // namespace
 
-std::vector<InvariantResult> checkInvariants(const GlContext& context, const ScalarGrid& grid, const Scene& resolved,
-                                             const CheckOptions& options) {
+std::vector<InvariantResult> checkInvariants(const GlContext& context, const ScalarGrid& grid,
+                                             const ResolvedScene& resolved, const CheckOptions& options) {
   return Checker(context, grid, resolved, options).run();
 }
 

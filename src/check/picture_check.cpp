@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "check/result.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/slice/proxy_slices.h"
 
 namespace umbrick {
@@ -20,7 +21,7 @@ double lastPlace(int bits) { return bits == 16 ? 0x1p-11 : 0x1p-24; }
 
 }  // namespace
 
-PictureDifference difference(const Picture& a, const Picture& b, const Scene& scene, double farthest) {
+PictureDifference difference(const Picture& a, const Picture& b, const ResolvedScene& scene, double farthest) {
   PictureDifference result;
   const double ambient = std::max({scene.ambient.r, scene.ambient.g, scene.ambient.b, 1e-30});
   for (std::size_t i = 0; i < a.visibility.pixels.size(); ++i) {
@@ -34,18 +35,18 @@ PictureDifference difference(const Picture& a, const Picture& b, const Scene& sc
   return result;
 }
 
-PictureLimit pictureLimit(const PictureDifference& shifted, const Scene& scene, std::int64_t slices) {
+PictureLimit pictureLimit(const PictureDifference& shifted, const ResolvedScene& scene, std::int64_t slices) {
   // Each slab adds a product and rounds twice, in each of two pictures; the occlusion buffer or the windows do the
   // same.
   const auto n = static_cast<double>(slices);
   double sums = 2 * n * lastPlace(scene.sampling.bits);
-  if (scene.model == Model::cone) sums += 2 * n * lastPlace(scene.occlusion.bits);
+  if (occlusionMethod(scene)) sums += 2 * n * lastPlace(scene.occlusion.bits);
   PictureLimit limit;
   // All samples were displaced by the most that rounding can do, and all one way; in the other picture it may be the
   // other.
   limit.rounding = {2 * shifted.colour + sums, 2 * shifted.visibility + sums, 2 * shifted.depth + 2 * sums};
   // Beyond four deviations of a random walk lies 3.2e-5 of the light, on each of four sides. Ordinates leave none out.
-  if (scene.model == Model::cone && scene.method == Method::dos) limit.light = 4 * 3.2e-5;
+  if (occlusionMethod(scene) == Method::dos) limit.light = 4 * 3.2e-5;
   return limit;
 }
 
@@ -58,7 +59,7 @@ LayerShare worstLayer(const PictureDifference& difference, const PictureLimit& l
   return worst;
 }
 
-double seamExcess(const Picture& bricked, const Picture& other, const Scene& scene, const Bricks& bricks,
+double seamExcess(const Picture& bricked, const Picture& other, const ResolvedScene& scene, const Bricks& bricks,
                   std::size_t& pairs) {
   const IndexView view = indexView(scene.camera, bricks.indexToWorld);
   const ScreenPlane screen = screenPlane(scene.camera);

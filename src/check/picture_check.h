@@ -3,7 +3,7 @@
 #include <glm/vec3.hpp>
 #include <string>
 
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 #include "umbrick/shade/slice_renderer.h"
 
 namespace umbrick {
@@ -13,7 +13,7 @@ namespace umbrick {
 struct PictureDifference {
   double colour = 0, visibility = 0, depth = 0;
 };
-PictureDifference difference(const Picture& a, const Picture& b, const Scene& scene, double farthest);
+PictureDifference difference(const Picture& a, const Picture& b, const ResolvedScene& scene, double farthest);
 
 /// Limits that pictures of equal samples keep.
 struct PictureLimit {
@@ -23,7 +23,7 @@ struct PictureLimit {
 
 /// @param shifted   difference that a displacement of all samples makes, by as much as rounding may move them
 /// @param slices    that add up along a pixel
-PictureLimit pictureLimit(const PictureDifference& shifted, const Scene& scene, std::int64_t slices);
+PictureLimit pictureLimit(const PictureDifference& shifted, const ResolvedScene& scene, std::int64_t slices);
 
 /// The layer that is nearest to its limit.
 struct LayerShare {
@@ -35,7 +35,7 @@ LayerShare worstLayer(const PictureDifference& difference, const PictureLimit& l
 
 /// How much steeper V is across projected brick faces than in the other picture: largest excess of the step between two
 /// neighbouring pixels on either side of a face of constant x or z. For parallel views straight at the faces.
-double seamExcess(const Picture& bricked, const Picture& other, const Scene& scene, const Bricks& bricks,
+double seamExcess(const Picture& bricked, const Picture& other, const ResolvedScene& scene, const Bricks& bricks,
                   std::size_t& pairs);
 
 }  // namespace umbrick

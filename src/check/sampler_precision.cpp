@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "umbrick/core/error.h"
+#include "umbrick/scene/resolve.h"
 #include "umbrick/shade/slice_renderer.h"
 
 namespace umbrick {
@@ -51,10 +52,11 @@ double samplerPrecision(const GlContext& context, const Bricks& volume, const st
   scene.camera.height = 1;
   const double pixel = 7.5 / scene.camera.width;
   scene.camera.viewHeight = pixel;
-  scene.sampling = {.spacing = 1, .spacingInVoxels = false};
+  scene.sampling = {.spacing = 1};
+  scene.spacingUnit = SpacingUnit::world;
   scene.bricks.culling = false;
   scene.bricks.format = texels;
-  SliceRenderer renderer(context, stripes, scene);
+  SliceRenderer renderer(context, stripes, resolveScene(scene, {}, stripes.indexToWorld));
   renderer.render();
   const Image row = renderer.probe(4);
   double worst = 0;

@@ -206,10 +206,10 @@ std::string printPixel(const glm::ivec2& pixel) {
 
 }  // namespace
 
-void checkSlices(const GlContext& context, const ScalarGrid& grid, const Bricks& bricks, const Scene& scene,
+void checkSlices(const GlContext& context, const ScalarGrid& grid, const Bricks& bricks, const ResolvedScene& scene,
                  const std::string& view, const SliceCheckOptions& options, const SliceResults& results) {
-  Scene drawn = scene;
-  drawn.transfer = constantMedium(options.complete ? 1e-9 : 0, scene.transfer->is2d());
+  ResolvedScene drawn = scene;
+  drawn.transfer = constantMedium(options.complete ? 1e-9 : 0, scene.transfer.is2d());
   drawn.model = Model::emission;
   drawn.bricks.culling = false;
   drawn.sampling.saturation = 0;
@@ -227,7 +227,7 @@ void checkSlices(const GlContext& context, const ScalarGrid& grid, const Bricks&
     // The first, the last and others between them.
     const std::int64_t slice = probes > 1 ? i * (count - 1) / (probes - 1) : 0;
     const Image probe = renderer.probe(slice);
-    const SliceExpectation expected(grid, bricks, cells, mediumBox(*drawn.transfer, bricks.domain), drawn.camera,
+    const SliceExpectation expected(grid, bricks, cells, mediumBox(drawn.transfer, bricks.domain), drawn.camera,
                                     depths[static_cast<std::size_t>(slice)], drawn.sampling.spacing, options, stats);
     const Counts counts = tbb::parallel_reduce(
         tbb::blocked_range<int>(0, probe.height, 8), Counts{},

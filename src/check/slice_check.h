@@ -18,7 +18,7 @@ struct SliceResults {
 /// Draws slices of a view without culling and compares, pixel by pixel, the number of bricks that shade it with the
 /// lattice cell that its sample lies in, and the value with OpenVDB's BoxSampler at the same world point.
 /// @param scene  its medium, clipping and near distance are of no account
-void checkSlices(const GlContext& context, const ScalarGrid& grid, const Bricks& bricks, const Scene& scene,
+void checkSlices(const GlContext& context, const ScalarGrid& grid, const Bricks& bricks, const ResolvedScene& scene,
                  const std::string& view, const SliceCheckOptions& options, const SliceResults& results);
 
 }  // namespace umbrick

@@ -270,7 +270,13 @@ JsonValue JsonValue::at(std::string_view key) const {
   return *value;
 }
 
-void JsonValue::allowFields(std::initializer_list<std::string_view> keys) const {
+const std::string& JsonValue::oneOf(const std::vector<std::string>& names) const {
+  const std::string& text = string();
+  if (std::find(names.begin(), names.end(), text) == names.end()) failUnknownChoice({names.begin(), names.end()});
+  return text;
+}
+
+void JsonValue::allowFields(std::span<const std::string_view> keys) const {
   if (!isObject()) failExpected("an object");
   for (const std::size_t child : node().children)
     if (std::find(keys.begin(), keys.end(), document_->nodes_[child].key) == keys.end())

@@ -73,6 +73,7 @@ class JsonValue {
   bool boolean() const;
   const std::string& string() const;
   /// A string that is one of a few names.
+  const std::string& oneOf(const std::vector<std::string>& names) const;
   template <typename T>
   T choice(std::span<const std::pair<std::string_view, T>> names) const {
     const std::string& text = string();
@@ -90,7 +91,10 @@ class JsonValue {
   std::optional<JsonValue> find(std::string_view key) const;
   JsonValue at(std::string_view key) const;
   /// Refuses fields of other names and suggests the nearest one that exists.
-  void allowFields(std::initializer_list<std::string_view> keys) const;
+  void allowFields(std::span<const std::string_view> keys) const;
+  void allowFields(std::initializer_list<std::string_view> keys) const {
+    allowFields(std::span(keys.begin(), keys.size()));
+  }
 
   [[noreturn]] void fail(const std::string& message) const;
   [[noreturn]] void failExpected(std::string_view expected) const;

@@ -8,7 +8,8 @@
 
 namespace umbrick {
 
-ConvexRegion::ConvexRegion(const Scene& scene, const IndexBox& box, const glm::dmat4& indexToWorld, bool behindEye) {
+ConvexRegion::ConvexRegion(const ResolvedScene& scene, const IndexBox& box, const glm::dmat4& indexToWorld,
+                           bool behindEye) {
   std::vector<glm::dvec4> world = scene.clipPlanes;
   for (int axis = 0; axis < 3; ++axis) {
     glm::dvec4 low(0), high(0);

@@ -6,7 +6,7 @@
 
 #include "reference/index_ray.h"
 #include "umbrick/core/box.h"
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 
@@ -15,7 +15,7 @@ class ConvexRegion {
  public:
   /// The box, the clip planes and the clip box of the scene and what of space the camera sees.
   /// @param behindEye  also what lies behind the plane of the eye
-  ConvexRegion(const Scene& scene, const IndexBox& box, const glm::dmat4& indexToWorld, bool behindEye);
+  ConvexRegion(const ResolvedScene& scene, const IndexBox& box, const glm::dmat4& indexToWorld, bool behindEye);
 
   /// The part of the ray with t >= begin that lies inside.
   Interval clip(const IndexRay& ray, double begin) const;

@@ -1,4 +1,5 @@
 #include "reference/monte_carlo.h"
+#include "umbrick/scene/capabilities.h"
 
 #include <array>
 #include <cmath>
@@ -85,11 +86,11 @@ MonteCarloPixel::Collision MonteCarloPixel::collide(const IndexRay& ray, const I
 
 // Radiances whose mean is the light.
 LightDirection MonteCarloPixel::chooseLight(const glm::dvec3& towardsEye, Random& random) const {
-  const Scene& scene = space_.scene;
+  const ResolvedScene& scene = space_.scene;
   const double source = space_.lights && space_.lights->size() > 1 ? random.uniform() : 0;
   const double u = random.uniform(), v = random.uniform();
   if (space_.lights) return space_.lights->sample(source, u, v);
-  const double aperture = scene.model == Model::ambient ? 3.14159265358979323846 : scene.occlusion.aperture;
+  const double aperture = traitsOf(scene.model).sphere ? 3.14159265358979323846 : scene.occlusion.aperture;
   return {sampleCone(towardsEye, aperture, u, v), glm::dvec3(1)};
 }
 
@@ -123,7 +124,7 @@ std::optional<PixelResult> MonteCarloPixel::integrate(int x, int y) {
   Random random(options_.seed,
                 static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width) + static_cast<std::uint64_t>(x));
   const glm::dvec3 towardsEye =
-      space_.scene.model == Model::coneRay ? -ray.direction : -cameraFrame(space_.scene.camera).forward;
+      traitsOf(space_.scene.model).aroundRay ? -ray.direction : -cameraFrame(space_.scene.camera).forward;
   RunningMoments moments;  // light, opacity, visibility, depth
   // An event that n paths did not see has a probability of the order of 1 / n: a pixel whose paths all agree is not
   // known better than that.
@@ -139,7 +140,7 @@ std::optional<PixelResult> MonteCarloPixel::integrate(int x, int y) {
     if (hit.happened) {
       double visibility = 1;
       glm::dvec3 light = hit.medium.albedo;
-      if (space_.scene.model != Model::emission) {
+      if (traitsOf(space_.scene.model).occlusion) {
         const LightDirection chosen = chooseLight(towardsEye, random);
         const double transmittance = estimateTransmittance(ray.index.at(hit.t), chosen.direction, random);
         light *= transmittance * chosen.radiance;

@@ -1,4 +1,5 @@
 #include "reference/quadrature.h"
+#include "umbrick/scene/capabilities.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +63,7 @@ QuadraturePixel::QuadraturePixel(const ReferenceSpace& space, const ReferenceOpt
   // A part stands for the V at its centre: the error goes with the square of its optical depth.
   // Without V only the albedo varies: three Gauss nodes have exp(-x) over 0.5 to 1e-8.
   eyeOptions_.largestTau =
-      space.scene.model == Model::emission ? 0.5 : std::clamp(2 * std::sqrt(options.tolerance), 1e-3, 0.1);
+      !traitsOf(space.scene.model).occlusion ? 0.5 : std::clamp(2 * std::sqrt(options.tolerance), 1e-3, 0.1);
   eyeOptions_.darkest = std::min(1e-6, 0.01 * options.tolerance);
   aim(space.directions);
 }
@@ -88,7 +89,7 @@ std::optional<PixelResult> QuadraturePixel::integrate(int x, int y) {
   result.opacity = collectScatterers(space_.field, accessor_, space_.classifier, ray.index, part, eyeOptions_, parts_,
                                      counts_.cells);
   if (parts_.empty()) return result;
-  if (space_.scene.model == Model::emission) {
+  if (!traitsOf(space_.scene.model).occlusion) {
     for (const Scatterer& p : parts_) {
       result.light += p.light;
       result.visibility += p.alpha;
@@ -97,7 +98,7 @@ std::optional<PixelResult> QuadraturePixel::integrate(int x, int y) {
     result.depth *= ray.depthPerLength;
     return result;
   }
-  if (space_.scene.model == Model::coneRay)
+  if (traitsOf(space_.scene.model).aroundRay)
     aim(evenLight(coneDirections(-ray.direction, space_.scene.occlusion.aperture, options_.directions)));
   before_.assign(1, Scatterer{});
   before_.reserve(parts_.size() + 1);

@@ -18,7 +18,7 @@ struct ReferenceSpace {
   const Classifier& classifier;
   const EyeRays& rays;
   const ConvexRegion& region;
-  const Scene& scene;
+  const ResolvedScene& scene;
   const LightSet* lights;                         // of cone and lights
   const std::vector<LightDirection>& directions;  // of all models but emission and coneRay
 };

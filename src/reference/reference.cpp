@@ -19,6 +19,7 @@
 #include "reference/quadrature.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/resolve.h"
 
 namespace umbrick {
@@ -33,13 +34,8 @@ void checkAtLeast(const char* field, T value, T least) {
                           std::to_string(least));
 }
 
-// Whether the model's light is that of lightDirections.
-bool hasLights(Model model) { return model == Model::cone || model == Model::lights; }
-
-void check(const ScalarGrid& grid, const Scene& scene, const ReferenceOptions& options) {
+void check(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOptions& options) {
   if (!grid.grid) throw InvalidArgument("reference: there is no grid");
-  if (!scene.transfer || scene.orbit || scene.sampling.spacingInVoxels)
-    throw InvalidArgument("reference: the scene is not resolved for its volume");
   checkAtLeast("step", options.step, 0.0);
   checkAtLeast("directions", options.directions, 1);
   checkAtLeast("samples", options.samples, 2);
@@ -47,7 +43,7 @@ void check(const ScalarGrid& grid, const Scene& scene, const ReferenceOptions& o
   checkAtLeast("threads", options.threads, 0);
   if (!(options.tolerance > 0 && options.tolerance <= 1))
     throw InvalidArgument("tolerance is " + std::to_string(options.tolerance) + ", must be in (0, 1]");
-  if (!options.lights.empty() && !hasLights(scene.model))
+  if (!options.lights.empty() && !traitsOf(scene.model).directions)
     throw InvalidArgument("lights: are given, but the model " + modelName(scene.model) + " does not take a list");
   for (const auto& [direction, radiance] : options.lights) {
     if (!(std::abs(glm::length(direction) - 1) < 1e-6))
@@ -59,15 +55,16 @@ void check(const ScalarGrid& grid, const Scene& scene, const ReferenceOptions& o
   }
 }
 
-std::optional<LightSet> lightsOf(const Scene& scene, const ReferenceOptions& options) {
-  if (!hasLights(scene.model)) return std::nullopt;
+std::optional<LightSet> lightsOf(const ResolvedScene& scene, const ReferenceOptions& options) {
+  if (!traitsOf(scene.model).directions) return std::nullopt;
   return options.lights.empty() ? LightSet(scene) : LightSet(options.lights);
 }
 
 // What the quadrature sums over, where it is the same for all pixels.
-std::vector<LightDirection> directionsOf(const Scene& scene, const ReferenceOptions& options, const LightSet* lights) {
+std::vector<LightDirection> directionsOf(const ResolvedScene& scene, const ReferenceOptions& options,
+                                         const LightSet* lights) {
   if (options.integrator != Integrator::quadrature) return {};
-  if (scene.model == Model::ambient) return evenLight(sphereDirections(options.directions));
+  if (traitsOf(scene.model).sphere) return evenLight(sphereDirections(options.directions));
   if (!lights) return {};
   return options.lights.empty() ? lights->directions(options.directions, 0) : options.lights;
 }
@@ -81,7 +78,7 @@ ReferencePicture blankPicture(const Camera& camera) {
   return picture;
 }
 
-void store(const PixelResult& pixel, const Scene& scene, int x, int y, ReferencePicture& picture) {
+void store(const PixelResult& pixel, const ResolvedScene& scene, int x, int y, ReferencePicture& picture) {
   const glm::dvec3 behind = scene.background ? *scene.background : glm::dvec3(0);
   for (int i = 0; i < 3; ++i) {
     picture.colour.at(x, y)[i] =
@@ -124,8 +121,8 @@ class Progress {
 
 // All pixels, each tile by one thread. What a pixel is does not depend on who takes it.
 template <class MakeIntegrator>
-RayCounts integrateAll(const Scene& scene, const ReferenceOptions& options, const MakeIntegrator& makeIntegrator,
-                       ReferencePicture& picture) {
+RayCounts integrateAll(const ResolvedScene& scene, const ReferenceOptions& options,
+                       const MakeIntegrator& makeIntegrator, ReferencePicture& picture) {
   const int width = scene.camera.width, height = scene.camera.height;
   const int columns = (width + kTile - 1) / kTile, rows = (height + kTile - 1) / kTile;
   const std::size_t tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
@@ -167,21 +164,21 @@ RayCounts integrateAll(const Scene& scene, const ReferenceOptions& options, cons
 
 }  // namespace
 
-ReferencePicture renderReference(const ScalarGrid& grid, const Scene& scene, const ReferenceOptions& options) {
+ReferencePicture renderReference(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOptions& options) {
   check(grid, scene, options);
   validateScene(scene);
   const std::optional<LightSet> lights = lightsOf(scene, options);
   ReferencePicture picture = blankPicture(scene.camera);
   const glm::dmat4 indexToWorld = grid.indexToWorld();
   const Stopwatch prepare;
-  const Classifier classifier(*scene.transfer);
+  const Classifier classifier(scene.transfer);
   const Field field(grid, classifier, options.skipEmpty);
   picture.stats.fieldMs = prepare.elapsedMs();
   picture.stats.nonFiniteVoxels = field.nonFiniteVoxels();
   picture.stats.blocks = field.blocks();
   const EyeRays rays(scene.camera, indexToWorld);
-  const bool behindEye = scene.model == Model::coneRay || scene.model == Model::ambient;
-  const ConvexRegion region(scene, mediumBox(*scene.transfer, field.domain()), indexToWorld, behindEye);
+  const bool behindEye = traitsOf(scene.model).behindEye;
+  const ConvexRegion region(scene, mediumBox(scene.transfer, field.domain()), indexToWorld, behindEye);
   const LightSet* const given = lights ? &*lights : nullptr;
   const std::vector<LightDirection> directions = directionsOf(scene, options, given);
   const ReferenceSpace space{field, classifier, rays, region, scene, given, directions};

@@ -22,21 +22,11 @@ class Checker {
   void require(bool holds, const std::string& field, const std::string& is, const std::string& range) {
     if (!holds && !complaint_) complaint_ = {field, "is " + is + ", must be " + range};
   }
-  void requireFinite(const glm::dvec3& v, const std::string& field) {
-    require(isFinite(v), field, print(v), "three finite numbers");
-  }
   void requireRadiance(const glm::dvec3& v, const std::string& field) {
     require(isFinite(v) && v.r >= 0 && v.g >= 0 && v.b >= 0, field, print(v), "three finite numbers of 0 or more");
   }
   void requireDirection(const glm::dvec3& v, const std::string& field) {
     require(isFinite(v) && v != glm::dvec3(0), field, print(v), "three finite numbers that are not all 0");
-  }
-  void requireWithin(int value, int low, int high, const std::string& field) {
-    require(value >= low && value <= high, field, std::to_string(value),
-            std::to_string(low) + " to " + std::to_string(high));
-  }
-  void requireEither(int value, int a, int b, const std::string& field) {
-    require(value == a || value == b, field, std::to_string(value), std::to_string(a) + " or " + std::to_string(b));
   }
   void complain(const std::string& field, const std::string& message) {
     if (!complaint_) complaint_ = {field, message};

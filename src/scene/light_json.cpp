@@ -1,7 +1,6 @@
 #include "scene/light_json.h"
 
 #include "core/json_writer.h"
-#include "scene/names.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -12,7 +11,6 @@ constexpr Name<LightType> kLightTypes[]{{"cone", LightType::cone},
                                         {"directional", LightType::directional},
                                         {"directions", LightType::directions},
                                         {"environment", LightType::environment}};
-constexpr Name<LightFrame> kLightFrames[]{{"view", LightFrame::view}, {"world", LightFrame::world}};
 
 glm::dvec3 vectorOf(const JsonValue& value) {
   const std::vector<double> numbers = value.numbers(3);

@@ -12,6 +12,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/random.h"
 #include "umbrick/optics/directions.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
 namespace {
@@ -105,14 +106,14 @@ void checkCount(int count) {
 
 }  // namespace
 
-LightSet::LightSet(const Scene& scene) {
-  if (scene.orbit) throw InvalidArgument("lights: the scene is not resolved for its volume");
+LightSet::LightSet(const ResolvedScene& scene) {
   const CameraFrame frame = cameraFrame(scene.camera);
   const glm::dmat3 viewToWorld(frame.right, frame.up, -frame.forward);
-  if (scene.model == Model::cone) {
+  const ModelTraits& model = traitsOf(scene.model);
+  if (model.directions && model.cone) {
     lights_.push_back(
         makeLight(ConeLight{{0, 0, 1}, scene.occlusion.aperture, glm::dvec3(1)}, viewToWorld, -frame.forward));
-  } else if (scene.model == Model::lights) {
+  } else if (model.directions) {
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
       const LightSource& source = scene.lights[i];
       const bool view = source.frame == LightFrame::view;

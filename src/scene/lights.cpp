@@ -4,12 +4,13 @@
 
 namespace umbrick {
 
-std::vector<LightDirection> lightDirections(const Scene& resolved, int count, double rotation) {
-  return LightSet(resolved).directions(count, rotation);
+std::vector<LightDirection> lightDirections(const ResolvedScene& scene, int count, double rotation) {
+  return LightSet(scene).directions(count, rotation);
 }
 
-std::vector<LightDirection> lightSamples(const Scene& resolved, std::uint64_t first, int count, std::uint64_t seed) {
-  return LightSet(resolved).samples(first, count, seed);
+std::vector<LightDirection> lightSamples(const ResolvedScene& scene, std::uint64_t first, int count,
+                                         std::uint64_t seed) {
+  return LightSet(scene).samples(first, count, seed);
 }
 
 }  // namespace umbrick

@@ -12,20 +12,28 @@ double shortestVoxelEdge(const glm::dmat4& indexToWorld) {
                    glm::length(glm::dvec3(indexToWorld[2]))});
 }
 
-Scene resolveScene(const Scene& scene, const Box& worldBounds, const glm::dmat4& indexToWorld) {
+ResolvedScene resolveScene(const Scene& scene, const Box& worldBounds, const glm::dmat4& indexToWorld) {
   if (!scene.transfer) throw InvalidArgument("scene: no transfer function");
   validateScene(scene);
-  Scene resolved = scene;
-  if (resolved.orbit) {
-    resolved.camera = orbitCamera(worldBounds, resolved.orbit->azimuth, resolved.orbit->elevation, resolved.camera);
-    resolved.orbit.reset();
-  }
-  if (resolved.sampling.spacingInVoxels) {
-    resolved.sampling.spacing *= shortestVoxelEdge(indexToWorld);
-    resolved.sampling.spacingInVoxels = false;
-  }
+  ResolvedScene resolved(scene, *scene.transfer);
+  if (scene.orbit)
+    resolved.camera = orbitCamera(worldBounds, scene.orbit->azimuth, scene.orbit->elevation, scene.camera);
+  if (scene.spacingUnit == SpacingUnit::voxel) resolved.sampling.spacing *= shortestVoxelEdge(indexToWorld);
   return resolved;
 }
+
+Scene unresolved(const ResolvedScene& scene) {
+  Scene written;
+  static_cast<SceneSettings&>(written) = scene;
+  written.transfer = scene.transfer;
+  written.orbit.reset();
+  written.spacingUnit = SpacingUnit::world;
+  return written;
+}
+
+void validateScene(const ResolvedScene& scene) { validateScene(unresolved(scene)); }
+
+std::string printScene(const ResolvedScene& scene) { return printScene(unresolved(scene)); }
 
 IndexBox mediumBox(const TransferFunction& transfer, const IndexBox& domain) {
   if (!transfer.is2d() || domain.empty()) return domain;

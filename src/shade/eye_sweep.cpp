@@ -6,7 +6,7 @@ namespace umbrick {
 namespace {
 // Slices between two looks at which pixels are saturated. A look costs about as much as a slice of constant colour, and
 // a pixel is shaded for half as many slices too long on average: the dearer a slice, the sooner a look pays.
-std::int64_t saturationInterval(const Scene& scene) { return std::max(1, 8 / scene.sampling.segments); }
+std::int64_t saturationInterval(const ResolvedScene& scene) { return std::max(1, 8 / scene.sampling.segments); }
 }  // namespace
 
 void EyeSweep::begin(const Frame& frame) {

@@ -11,7 +11,7 @@
 #include "shade/transfer_lookup.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/gl/program.h"
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 #include "umbrick/shade/slice_renderer.h"
 
 namespace umbrick {
@@ -53,7 +53,7 @@ class PassClock {
 
 struct Frame {
   const GlFunctions& gl;
-  const Scene& scene;
+  const ResolvedScene& scene;
   Camera camera;
   IndexView view;
   std::vector<glm::dvec4> planes;  // that cut slabs, in view coordinates

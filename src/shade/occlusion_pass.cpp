@@ -16,7 +16,7 @@ class OcclusionPass : public SlicePass {
  public:
   void begin(Frame& frame, std::span<const SweepRun>) override {
     const GlFunctions& gl = frame.gl;
-    const OcclusionOptions& options = frame.scene.occlusion;
+    const DosOptions& options = frame.scene.occlusion.dos;
     disk_ = diskGrid(options.footprint);
     ShaderConstants constants = slabConstants(frame);
     constants["kTaps"] = static_cast<int>(disk_.size());
@@ -56,7 +56,7 @@ class OcclusionPass : public SlicePass {
   // pixels at once, which fills whole blocks of a rasteriser where the polygons of small bricks do not, and bricks
   // multiply it.
   static bool spreadsFirst(const Frame& frame) {
-    return frame.scene.occlusion.passes == 1 && frame.scene.occlusion.algorithm == 3;
+    return frame.scene.occlusion.dos.passes == 1 && frame.scene.occlusion.dos.algorithm == 3;
   }
 
   // How slice i reads the slice before it: see footprint.glsl.
@@ -66,7 +66,7 @@ class OcclusionPass : public SlicePass {
     const double extent = d * std::tan(frame.scene.occlusion.aperture);  // Eq. 11
     const double pixel = 2 * frame.view.halfExtent.y / frame.camera.height;
     if (frame.view.projection == Projection::orthographic) return {1, extent / pixel, 0};
-    if (!frame.scene.occlusion.perspectiveCorrection) {
+    if (!frame.scene.occlusion.dos.perspectiveCorrection) {
       // As if the view were parallel: the footprint keeps the size it has at the point looked at.
       return {1, extent / (pixel * glm::length(frame.camera.lookAt - frame.camera.eye)), 0};
     }
@@ -121,7 +121,7 @@ class OcclusionPass : public SlicePass {
     if (spreadsFirst(frame)) {
       if (!region.empty()) drawSpread(frame, step, region, target, false);
       if (!draws.empty()) drawBoth(frame, blend_.current(), draws, step, target);
-    } else if (frame.scene.occlusion.passes == 1) {
+    } else if (frame.scene.occlusion.dos.passes == 1) {
       if (!draws.empty()) drawBoth(frame, both_.current(), draws, step, target);
       if (!region.empty()) drawSpread(frame, step, region, target, true);
     } else {

@@ -33,7 +33,7 @@ class OrdinatesPass : public SlicePass {
     origins_.clear();
     for (const Brick& brick : frame.atlas.bricks()) origins_.push_back(brick.origin);
     const double texel =
-        latticeTexel(frame.scene.occlusion.scale, frame.slices.spacing, frame.voxelEdge, frame.diagonal);
+        latticeTexel(frame.scene.occlusion.ordinates.scale, frame.slices.spacing, frame.voxelEdge, frame.diagonal);
     GLint mostTexels = 0;
     frame.gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &mostTexels);
     light_.geometry = lightGeometry(volumeOf(frame), light_.aimed.paths, texel, frame.sample.latticeShift, mostTexels);
@@ -101,10 +101,11 @@ class OrdinatesPass : public SlicePass {
   void aim(const Frame& frame) {
     const bool ofScene = frame.sample.lights.empty();
     if (ofScene && aimedFrom_ == frame.camera) return;
-    Scene scene = frame.scene;
+    ResolvedScene scene = frame.scene;
     scene.camera = frame.camera;
-    light_.aimed = aimLight(ofScene ? lightDirections(scene, scene.occlusion.directions) : frame.sample.lights,
-                            cameraFrame(frame.camera));
+    light_.aimed =
+        aimLight(ofScene ? lightDirections(scene, scene.occlusion.ordinates.directions) : frame.sample.lights,
+                 cameraFrame(frame.camera));
     const glm::dvec3 whole = light_.aimed.whole;
     brightest_ = scene.sampling.bits == 16 ? std::max({1.0, whole.r, whole.g, whole.b}) : 1;
     aimedFrom_.reset();

@@ -11,7 +11,7 @@
 
 namespace umbrick {
 
-int requiredApron(const Scene& resolved, const glm::dmat4& indexToWorld) {
+int requiredApron(const ResolvedScene& resolved, const glm::dmat4& indexToWorld) {
   const IndexView view = indexView(resolved.camera, indexToWorld);
   // Whatever the quadrature: segments and planes that cut slabs have samples anywhere in a slab.
   const glm::dvec3 axes = slabReach(view, resolved.sampling.spacing);
@@ -27,7 +27,7 @@ int requiredApron(const Scene& resolved, const glm::dmat4& indexToWorld) {
   return std::max(1, static_cast<int>(wanted));
 }
 
-int brickInterior(const Scene& resolved, const glm::dmat4& indexToWorld, const Box& worldBounds) {
+int brickInterior(const ResolvedScene& resolved, const glm::dmat4& indexToWorld, const Box& worldBounds) {
   const int apron = requiredApron(resolved, indexToWorld);
   if (resolved.bricks.interior > 0) return resolved.bricks.interior;
   const Camera& camera = resolved.camera;

@@ -12,6 +12,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/random.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/resolve.h"
 #include "umbrick/shade/prepare.h"
 
@@ -94,8 +95,8 @@ class Stream {
       rounding_[axis] = random.uniform();
     }
   }
-  RenderSample sample(const Scene& scene, int pass) const {
-    const int count = scene.occlusion.directions;
+  RenderSample sample(const ResolvedScene& scene, int pass) const {
+    const int count = scene.occlusion.ordinates.directions;
     RenderSample sample;
     sample.lights =
         lightSamples(scene, static_cast<std::uint64_t>(pass) * static_cast<std::uint64_t>(count), count, seed_);
@@ -112,8 +113,8 @@ class Stream {
   glm::dvec2 shift_{0}, rounding_{0};
 };
 
-void check(const Scene& scene, const ProgressiveOptions& options) {
-  if ((scene.model != Model::cone && scene.model != Model::lights) || scene.method != Method::ordinates)
+void check(const ResolvedScene& scene, const ProgressiveOptions& options) {
+  if (!traitsOf(scene.model).directions || !traitsOf(scene.method).directions)
     throw InvalidArgument("progressive: needs the model cone or lights and the method ordinates, found " +
                           modelName(scene.model) + " and " + methodName(scene.method));
   if (options.passes < 1)
@@ -126,7 +127,7 @@ void check(const Scene& scene, const ProgressiveOptions& options) {
                           std::to_string(options.targetError) + ", must be 0 or more");
 }
 
-bool fits(const Bricks& volume, const Scene& scene) {
+bool fits(const Bricks& volume, const ResolvedScene& scene) {
   try {
     return requiredApron(scene, volume.indexToWorld) <= volume.layout.apron;
   } catch (const InvalidArgument&) {
@@ -138,19 +139,20 @@ bool fits(const Bricks& volume, const Scene& scene) {
 
 double ErrorEstimate::total() const { return std::hypot(statistical, systematic); }
 
-Scene coarserScene(const Scene& scene) {
-  Scene coarse = scene;
+ResolvedScene coarserScene(const ResolvedScene& scene) {
+  ResolvedScene coarse = scene;
   coarse.sampling.spacing *= 2;
-  coarse.occlusion.scale = scene.occlusion.scale / 2;  // an automatic one is made explicit by renderProgressive
+  coarse.occlusion.ordinates.scale =
+      scene.occlusion.ordinates.scale / 2;  // an automatic one is made explicit by renderProgressive
   return coarse;
 }
 
 namespace {
 
-Scene finerScene(const Scene& scene) {
-  Scene fine = scene;
+ResolvedScene finerScene(const ResolvedScene& scene) {
+  ResolvedScene fine = scene;
   fine.sampling.spacing /= 2;
-  fine.occlusion.scale *= 2;
+  fine.occlusion.ordinates.scale *= 2;
   return fine;
 }
 
@@ -166,13 +168,13 @@ double errorOverDifference(double ratio, double texelVoxels) {
 // Passes over one scene.
 class PassSeries {
  public:
-  PassSeries(const GlContext& context, const Bricks& volume, const Scene& scene, std::uint64_t seed,
+  PassSeries(const GlContext& context, const Bricks& volume, const ResolvedScene& scene, std::uint64_t seed,
              const RenderOptions& render)
       : context_(context), volume_(volume), scene_(scene), render_(render), fine_(context, volume, scene, render) {
     for (int i = 0; i < kStreams; ++i) streams_.emplace_back(seed, static_cast<std::uint64_t>(i));
   }
 
-  const Scene& scene() const { return scene_; }
+  const ResolvedScene& scene() const { return scene_; }
 
   // One more; the picture is the mean so far.
   void pass(Picture& picture, ErrorEstimate& error) {
@@ -183,9 +185,9 @@ class PassSeries {
     all_.add(picture);
     if (passes_ == 0) {
       // An automatic texel is that of the first picture from now on, so that twice and half of it are what they say.
-      scene_.occlusion.scale = shortestVoxelEdge(volume_.indexToWorld) / picture.stats.windowTexel;
+      scene_.occlusion.ordinates.scale = shortestVoxelEdge(volume_.indexToWorld) / picture.stats.windowTexel;
       // Coarser pictures cost an eighth, finer ones eight times as much, but fit bricks of any apron.
-      const Scene coarse = coarserScene(scene_);
+      const ResolvedScene coarse = coarserScene(scene_);
       const bool fit = fits(volume_, coarse);
       ratio_ = fit ? 2 : 0.5;
       other_.emplace(context_, volume_, fit ? coarse : finerScene(scene_), render_);
@@ -200,7 +202,7 @@ class PassSeries {
             momentsOf([&](std::size_t k) { return otherMeans_[k].colour(i) - means_[k].colour(i); });
         return moments.mean * moments.mean - moments.variance;
       });
-      error.systematic = errorOverDifference(ratio_, 1 / scene_.occlusion.scale) * difference;
+      error.systematic = errorOverDifference(ratio_, 1 / scene_.occlusion.ordinates.scale) * difference;
       other_.reset();
     }
     all_.store(picture);
@@ -215,7 +217,7 @@ class PassSeries {
 
   const GlContext& context_;
   const Bricks& volume_;
-  Scene scene_;
+  ResolvedScene scene_;
   RenderOptions render_;
   SliceRenderer fine_;
   std::optional<SliceRenderer> other_;  // of slabs and texels `ratio_` times as large
@@ -228,14 +230,14 @@ class PassSeries {
 
 }  // namespace
 
-ProgressivePicture renderProgressive(const GlContext& context, const Bricks& volume, const Scene& scene,
+ProgressivePicture renderProgressive(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
                                      const ProgressiveOptions& options, const RenderOptions& render,
                                      const std::function<bool(const ProgressivePicture&)>& onPass) {
   check(scene, options);
   const Stopwatch watch;
   const double finest = shortestVoxelEdge(volume.indexToWorld) / 8;
   auto series = std::make_unique<PassSeries>(context, volume, scene, options.seed, render);
-  ProgressivePicture best, current;
+  ProgressivePicture best{.scene = scene}, current{.scene = scene};
   bool refined = false;
   double systematicBefore = kInfinity;  // of the coarser scene
   best.error = current.error = {kInfinity, kInfinity};

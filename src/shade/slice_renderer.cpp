@@ -13,6 +13,7 @@
 #include "shade/sweep_plan.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/resolve.h"
 
 namespace umbrick {
@@ -64,12 +65,13 @@ std::vector<glm::ivec3> originsOf(const std::vector<Brick>& bricks) {
 
 class SliceRenderer::Implementation {
  public:
-  Implementation(const GlContext& context, const Bricks& volume, const Scene& scene, const RenderOptions& options)
+  Implementation(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
+                 const RenderOptions& options)
       : gl_(context.gl()), volume_(volume), scene_(scene), options_(options) {
     checkScene(context);
     const SamplingOptions& sampling = scene.sampling;
     const VoxelFormat format = parseVoxelFormat(scene.bricks.format, volume);
-    transfer_.emplace(gl_, *scene.transfer, sampling, volume, format);
+    transfer_.emplace(gl_, scene.transfer, sampling, volume, format);
     const Range background{volume.background, volume.background};
     backgroundVisible_ = !volume.domain.empty() && transfer_->isVisible(background, {0, 0});
     std::vector<Brick> bricks = visibleBricks(volume, *transfer_, scene.bricks, backgroundVisible_);
@@ -84,15 +86,16 @@ class SliceRenderer::Implementation {
     targets.width = scene.camera.width;
     targets.height = scene.camera.height;
     targets.eyeBits = sampling.bits;
-    const bool dos = scene.model == Model::cone && scene.method == Method::dos;
+    const std::optional<Method> method = occlusionMethod(scene);
+    const bool dos = method == Method::dos;
     targets.occlusionBits = dos ? scene.occlusion.bits : 0;
     targets.aux = options.visibilityAndDepth;
     targets_.emplace(gl_, targets);
     polygons_.emplace(gl_);
-    pass_ = dos ? makeOcclusionPass() : scene.model == Model::emission ? makeEmissionPass() : makeOrdinatesPass();
+    pass_ = !method ? makeEmissionPass() : dos ? makeOcclusionPass() : makeOrdinatesPass();
   }
 
-  const Scene& scene() const { return scene_; }
+  const ResolvedScene& scene() const { return scene_; }
 
   Picture render(const Camera& camera, const RenderSample& sample) {
     if (camera.width != scene_.camera.width || camera.height != scene_.camera.height)
@@ -194,19 +197,18 @@ class SliceRenderer::Implementation {
 
  private:
   void checkScene(const GlContext& context) const {
-    if (!scene_.transfer || scene_.orbit || scene_.sampling.spacingInVoxels)
-      throw InvalidArgument("render: the scene is not resolved for its volume");
-    if (scene_.model == Model::coneRay || scene_.model == Model::ambient)
+    if (!supports(Method::ordinates, scene_.model))
       throw InvalidArgument("model: " + modelName(scene_.model) +
                             " is integrated by the reference alone; slices render emission, cone and lights");
-    if (scene_.model == Model::lights && scene_.method == Method::dos)
-      throw InvalidArgument("method: dos knows one cone around the view axis; lights need ordinates");
+    if (!supports(scene_.method, scene_.model))
+      throw InvalidArgument("method: " + methodName(scene_.method) + " knows one cone around the view axis; " +
+                            modelName(scene_.model) + " need ordinates");
     const int most = context.maxTextureEdge2d();
     if (scene_.camera.width > most || scene_.camera.height > most)
       throw InvalidArgument("size: " + std::to_string(scene_.camera.width) + " x " +
                             std::to_string(scene_.camera.height) + " is beyond the driver's limit of " +
                             std::to_string(most) + " pixels along an edge");
-    if (scene_.transfer->is2d() && !volume_.hasGradients)
+    if (scene_.transfer.is2d() && !volume_.hasGradients)
       throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
   }
 
@@ -221,7 +223,7 @@ class SliceRenderer::Implementation {
     std::vector<ClipPlane> planes = scene_.clipPlanes;
     if (scene_.clipBox) appendBoxPlanes(planes, *scene_.clipBox);
     if (backgroundVisible_)
-      appendIndexBoxPlanes(planes, mediumBox(*scene_.transfer, volume_.domain), volume_.indexToWorld);
+      appendIndexBoxPlanes(planes, mediumBox(scene_.transfer, volume_.domain), volume_.indexToWorld);
     for (ClipPlane& plane : planes) plane = planeInView(plane, camera);
     if (camera.nearDistance > 0) planes.emplace_back(0, 0, 1, -camera.nearDistance);
     return planes;
@@ -231,7 +233,7 @@ class SliceRenderer::Implementation {
   std::vector<glm::dvec4> viewBounds(const Camera& camera, std::vector<glm::dvec4> planes) const {
     if (backgroundVisible_ || volume_.domain.empty()) return planes;
     std::vector<ClipPlane> box;
-    appendIndexBoxPlanes(box, mediumBox(*scene_.transfer, volume_.domain), volume_.indexToWorld);
+    appendIndexBoxPlanes(box, mediumBox(scene_.transfer, volume_.domain), volume_.indexToWorld);
     for (const ClipPlane& plane : box) planes.push_back(planeInView(plane, camera));
     return planes;
   }
@@ -305,7 +307,7 @@ class SliceRenderer::Implementation {
 
   const GlFunctions& gl_;
   const Bricks& volume_;
-  const Scene scene_;
+  const ResolvedScene scene_;
   const RenderOptions options_;
   bool backgroundVisible_ = false;
   std::vector<glm::ivec3> origins_;  // of the visible bricks
@@ -319,7 +321,7 @@ class SliceRenderer::Implementation {
   std::optional<Frame> frame_;  // of the last picture
 };
 
-SliceRenderer::SliceRenderer(const GlContext& context, const Bricks& volume, const Scene& scene,
+SliceRenderer::SliceRenderer(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
                              const RenderOptions& options)
     : implementation_(std::make_unique<Implementation>(context, volume, scene, options)) {}
 SliceRenderer::~SliceRenderer() = default;

@@ -5,7 +5,7 @@
 #include "umbrick/gl/objects.h"
 #include "umbrick/gl/program.h"
 #include "umbrick/optics/transfer_stretches.h"
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 

@@ -14,57 +14,54 @@ void setSize(Camera& camera, int height) {
   camera.height = height;
 }
 
-std::string sizeOption(const Scene& scene) {
+std::string sizeOption(const ResolvedScene& scene) {
   return " --size " + std::to_string(scene.camera.width) + "x" + std::to_string(scene.camera.height);
 }
 
 }  // namespace
 
-Scene studyScene(const Scene& resolved, const StudyPlan& plan, double voxelEdge) {
-  Scene scene = resolved;
+ResolvedScene studyScene(const ResolvedScene& resolved, const StudyPlan& plan, double voxelEdge) {
+  ResolvedScene scene = resolved;
   scene.background.reset();
   scene.model = Model::emission;
   scene.method = Method::dos;
   scene.sampling.spacing = SamplingOptions{}.spacing * voxelEdge;
-  scene.sampling.spacingInVoxels = false;
   scene.sampling.segments = plan.settings.segments.front();
   scene.sampling.bits = plan.baseBits.eye;
-  const bool perspectiveCorrection = scene.occlusion.perspectiveCorrection;
+  const bool perspectiveCorrection = scene.occlusion.dos.perspectiveCorrection;
   scene.occlusion = OcclusionOptions{};
-  scene.occlusion.perspectiveCorrection = perspectiveCorrection;
+  scene.occlusion.dos.perspectiveCorrection = perspectiveCorrection;
   setSize(scene.camera, plan.baseSize);
   return scene;
 }
 
-Scene caseScene(const Scene& scene, const StudyCase& what, const StudyGeometry& geometry) {
+ResolvedScene caseScene(const ResolvedScene& scene, const StudyCase& what, const StudyGeometry& geometry) {
   const StudyMethod& method = studyMethod(what.method);
-  Scene result = scene;
+  ResolvedScene result = scene;
   setSize(result.camera, what.size);
   result.model = method.model;
   result.sampling.spacing = geometry.extent / what.slices;
-  result.sampling.spacingInVoxels = false;
-  result.sampling.segments = what.segments == kAutomaticSegments
-                                 ? automaticSegments(result.sampling.spacing, geometry.voxelEdge)
-                                 : what.segments;
+  result.sampling.segments =
+      what.segments == kAutomaticSegments ? segmentsOf(result.sampling.spacing / geometry.voxelEdge) : what.segments;
   result.sampling.bits = what.bits.eye;
   if (method.model != Model::emission) {
     result.occlusion.bits = what.bits.occlusion;
     result.occlusion.aperture = what.theta;
-    result.occlusion.scale = what.scale;
+    result.occlusion.ordinates.scale = what.scale;
   }
   method.apply(what.detail, result);
   return result;
 }
 
-Scene referenceScene(const Scene& scene, const StudyReference& what) {
-  Scene result = scene;
+ResolvedScene referenceScene(const ResolvedScene& scene, const StudyReference& what) {
+  ResolvedScene result = scene;
   setSize(result.camera, what.size);
   result.model = what.model;
   if (what.model == Model::cone) result.occlusion.aperture = what.theta;
   return result;
 }
 
-Scene baselineScene(const Scene& scene, int size, const StudyGeometry& geometry) {
+ResolvedScene baselineScene(const ResolvedScene& scene, int size, const StudyGeometry& geometry) {
   StudyCase baseline;
   baseline.method = "emission";
   baseline.slices = kBaselineSlices;
@@ -79,9 +76,9 @@ ReferenceOptions referenceOptions(const StudySettings& settings, bool coarser) {
   return options;
 }
 
-std::string renderCommand(const StudyCase& what, const Scene& scene, const StudyGeometry& geometry) {
+std::string renderCommand(const StudyCase& what, const ResolvedScene& scene, const StudyGeometry& geometry) {
   const StudyMethod& method = studyMethod(what.method);
-  const Scene result = caseScene(scene, what, geometry);
+  const ResolvedScene result = caseScene(scene, what, geometry);
   std::string text = "umbrick render scene.json --model " + modelName(method.model);
   const std::string options = method.options(what.detail);
   if (!options.empty()) text += " " + options;
@@ -94,7 +91,7 @@ std::string renderCommand(const StudyCase& what, const Scene& scene, const Study
   return text;
 }
 
-std::string referenceCommand(const StudyReference& what, const Scene& scene, const StudySettings& settings) {
+std::string referenceCommand(const StudyReference& what, const ResolvedScene& scene, const StudySettings& settings) {
   std::string text = "umbrick reference scene.json --model " + modelName(what.model);
   if (what.model == Model::cone) text += " --theta " + jsonDegrees(what.theta);
   return text + " --directions " + std::to_string(settings.directions) + " --tolerance " +

@@ -16,21 +16,21 @@ struct StudyGeometry {
 /// What a study of the scene is of: without background radiance, with fixed values where the plan has its own.
 /// @param resolved   see resolveScene
 /// @param voxelEdge  the shortest, world units
-Scene studyScene(const Scene& resolved, const StudyPlan& plan, double voxelEdge);
+ResolvedScene studyScene(const ResolvedScene& resolved, const StudyPlan& plan, double voxelEdge);
 
 /// @param scene  of studyScene
-Scene caseScene(const Scene& scene, const StudyCase& what, const StudyGeometry& geometry);
-Scene referenceScene(const Scene& scene, const StudyReference& what);
+ResolvedScene caseScene(const ResolvedScene& scene, const StudyCase& what, const StudyGeometry& geometry);
+ResolvedScene referenceScene(const ResolvedScene& scene, const StudyReference& what);
 /// Emission with `kBaselineSlices`, 1 segment and 32 bits, what times are a multiple of.
-Scene baselineScene(const Scene& scene, int size, const StudyGeometry& geometry);
+ResolvedScene baselineScene(const ResolvedScene& scene, int size, const StudyGeometry& geometry);
 inline constexpr int kBaselineSlices = 256;
 
 /// @param coarser  with half of the directions and four times the tolerance
 ReferenceOptions referenceOptions(const StudySettings& settings, bool coarser = false);
 
 /// Commands for a shell in the folder of the report; file names of a study need no quotes.
-std::string renderCommand(const StudyCase& what, const Scene& scene, const StudyGeometry& geometry);
-std::string referenceCommand(const StudyReference& what, const Scene& scene, const StudySettings& settings);
+std::string renderCommand(const StudyCase& what, const ResolvedScene& scene, const StudyGeometry& geometry);
+std::string referenceCommand(const StudyReference& what, const ResolvedScene& scene, const StudySettings& settings);
 std::string compareCommand(const StudyCase& what, const StudyReference& reference);
 
 }  // namespace umbrick

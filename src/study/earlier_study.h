@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 struct StudyRecord;

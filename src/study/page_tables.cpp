@@ -83,7 +83,7 @@ std::vector<Variation> variationsOf(const StudyCase& what, const StudyPlan& plan
 }  // namespace
 
 std::string describeSegments(int segments) {
-  if (segments == kAutomaticSegments) return "segments of at most " + printShort(kLongestSegmentVoxels) + " voxels";
+  if (segments == kAutomaticSegments) return "segments of at most " + printShort(kSegmentVoxels) + " voxels";
   return std::to_string(segments) + (segments == 1 ? " segment" : " segments") + " per slab";
 }
 

@@ -12,15 +12,15 @@
 
 namespace umbrick {
 
-StudyOutcome runStudy(const GlContext& context, const ScalarGrid& grid, const Scene& scene,
+StudyOutcome runStudy(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
                       const StudySettings& settings, const std::filesystem::path& root,
                       const std::function<bool(const StudyProgress&)>& progress, const std::filesystem::path& earlier) {
   // Everything that can be refused is refused before anything is written.
-  StudyRecord record;
-  record.plan = planStudy(settings, scene.occlusion.aperture);
+  const StudyPlan plan = planStudy(settings, scene.occlusion.aperture);
   validateScene(scene);
-  record.geometry.voxelEdge = shortestVoxelEdge(grid.indexToWorld());
-  record.scene = studyScene(scene, record.plan, record.geometry.voxelEdge);
+  const double voxelEdge = shortestVoxelEdge(grid.indexToWorld());
+  StudyRecord record{.plan = plan, .scene = studyScene(scene, plan, voxelEdge)};
+  record.geometry.voxelEdge = voxelEdge;
   record.volume = identify(scene.volume.file);
   record.scene.volume.file = record.volume.file;
   record.machine = describeMachine(context, gnuplotVersion());

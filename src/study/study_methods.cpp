@@ -11,11 +11,11 @@ const StudyMethod::Detail kFootprint{"footprint", "footprints", "n",       "n x 
                                      1,           16,           {2, 3, 5}, {3}};
 
 template <int Algorithm, int Passes>
-void applyDos(int footprint, Scene& scene) {
+void applyDos(int footprint, ResolvedScene& scene) {
   scene.method = Method::dos;
-  scene.occlusion.algorithm = Algorithm;
-  scene.occlusion.passes = Passes;
-  scene.occlusion.footprint = footprint;
+  scene.occlusion.dos.algorithm = Algorithm;
+  scene.occlusion.dos.passes = Passes;
+  scene.occlusion.dos.footprint = footprint;
 }
 
 template <int Algorithm, int Passes>
@@ -32,19 +32,13 @@ double emissionWork(int) { return 1; }
 double dosWork(int footprint) { return 1 + 0.25 * footprint * footprint; }
 double ordinatesWork(int directions) { return 2 + 0.15 * directions; }
 
-void applyOrdinates(int directions, Scene& scene) {
+void applyOrdinates(int directions, ResolvedScene& scene) {
   scene.method = Method::ordinates;
-  scene.occlusion.directions = directions;
+  scene.occlusion.ordinates.directions = directions;
 }
 std::string ordinatesOptions(int directions) { return "--method ordinates --directions " + std::to_string(directions); }
 
 }  // namespace
-
-int automaticSegments(double spacing, double voxelEdge) {
-  // Exactly 0.6 voxels, but for rounding, is one segment.
-  const double wanted = std::ceil(spacing / (kLongestSegmentVoxels * voxelEdge) - 1e-9);
-  return static_cast<int>(std::clamp(wanted, 1.0, 8.0));
-}
 
 const std::vector<StudyMethod>& studyMethods() {
   // Many slices are what emission and dos need; ordinates does with few, of several segments each.
@@ -55,7 +49,7 @@ const std::vector<StudyMethod>& studyMethods() {
        .title = "emission",
        .model = Model::emission,
        .detail = {},
-       .apply = [](int, Scene&) {},
+       .apply = [](int, ResolvedScene&) {},
        .options = [](int) { return std::string(); },
        .work = emissionWork,
        .slices = kMany,
@@ -65,7 +59,7 @@ const std::vector<StudyMethod>& studyMethods() {
        .title = "emission, no early rejection",
        .model = Model::emission,
        .detail = {},
-       .apply = [](int, Scene& scene) { scene.sampling.saturation = 0; },
+       .apply = [](int, ResolvedScene& scene) { scene.sampling.saturation = 0; },
        .options = [](int) { return std::string("--saturation 0"); },
        .work = emissionWork,
        .slices = kMany,

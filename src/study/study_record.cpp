@@ -145,7 +145,7 @@ Spread readSpread(const JsonValue& value) {
 }
 
 StudyReference readReference(const JsonValue& value) {
-  return {parseModel(value.at("model").string()), value.at("size").integer(), value.at("theta").degrees()};
+  return {value.at("model").choice<Model>(kModels), value.at("size").integer(), value.at("theta").degrees()};
 }
 
 CaseResult readCase(const JsonValue& value, const StudyPlan& plan) {

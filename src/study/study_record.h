@@ -55,15 +55,15 @@ struct ModelError {
 };
 
 struct StudyRecord {
-  StudyPlan plan;
-  Scene scene;  // resolved; what the plan sweeps has a fixed value
-  VolumeIdentity volume;
-  Machine machine;
-  StudyGeometry geometry;
-  std::vector<ReferenceResult> references;
-  std::vector<ModelError> modelErrors;
-  std::vector<CaseResult> cases;
-  std::optional<EarlierStudy> earlier;  // shown beside, no part of the study
+  StudyPlan plan = {};
+  ResolvedScene scene;  // what the plan sweeps has a fixed value
+  VolumeIdentity volume = {};
+  Machine machine = {};
+  StudyGeometry geometry = {};
+  std::vector<ReferenceResult> references = {};
+  std::vector<ModelError> modelErrors = {};
+  std::vector<CaseResult> cases = {};
+  std::optional<EarlierStudy> earlier = {};  // shown beside, no part of the study
 
   bool complete() const;
   const CaseResult* find(const StudyCase& what) const;

@@ -20,16 +20,16 @@
 namespace umbrick {
 namespace {
 
-BrickOptions bricksOf(const ScalarGrid& grid, const Scene& scene) {
+BrickOptions bricksOf(const ScalarGrid& grid, const ResolvedScene& scene) {
   BrickOptions options;
   options.interior = brickInterior(scene, grid.indexToWorld(), grid.worldBounds());
   options.apron = requiredApron(scene, grid.indexToWorld());
   return options;
 }
 
-std::unique_ptr<Bricks> cut(const ScalarGrid& grid, const Scene& scene) {
+std::unique_ptr<Bricks> cut(const ScalarGrid& grid, const ResolvedScene& scene) {
   BrickOptions options = bricksOf(grid, scene);
-  options.gradients = scene.transfer->is2d();
+  options.gradients = scene.transfer.is2d();
   return scene.bricks.bricked ? brickGrid(grid, options) : unbrickedGrid(grid, options);
 }
 
@@ -59,13 +59,13 @@ std::string referenceKey(const StudyRecord& record, const StudyReference& what) 
 
 }  // namespace
 
-double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Scene& scene) {
+double visibleExtent(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene) {
   StudyCase probe;
   probe.method = "emission";
   probe.slices = 1;
   probe.size = 64;  // pixels: enough to know what lies in the picture
   const double voxelEdge = shortestVoxelEdge(grid.indexToWorld()), spacing = 0.5 * voxelEdge;
-  const Scene fine = caseScene(scene, probe, {spacing, voxelEdge});
+  const ResolvedScene fine = caseScene(scene, probe, {spacing, voxelEdge});
   const std::unique_ptr<Bricks> bricks = cut(grid, fine);
   SliceRenderer renderer(context, *bricks, fine, quietly());
   const auto slices = static_cast<double>(renderer.render().stats.slices);
@@ -75,7 +75,7 @@ double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Sce
   return slices * spacing;
 }
 
-int leastSlices(const ScalarGrid& grid, const Scene& scene, double extent) {
+int leastSlices(const ScalarGrid& grid, const ResolvedScene& scene, double extent) {
   if (scene.sampling.quadrature != Quadrature::preintegrated) return 1;
   // See requiredApron: a slab reaches at most to the other side of a brick.
   const glm::dvec3 reach = slabReach(indexView(scene.camera, grid.indexToWorld()), extent);
@@ -85,7 +85,7 @@ int leastSlices(const ScalarGrid& grid, const Scene& scene, double extent) {
 
 void checkCases(const GlContext& context, const ScalarGrid& grid, const StudyRecord& record) {
   for (const StudyCase& what : record.plan.cases) {
-    const Scene scene = caseScene(record.scene, what, record.geometry);
+    const ResolvedScene scene = caseScene(record.scene, what, record.geometry);
     if (std::max(scene.camera.width, scene.camera.height) > context.maxTextureEdge2d())
       throw InvalidArgument("sizes: " + std::to_string(scene.camera.width) + " x " +
                             std::to_string(scene.camera.height) + " pixels are beyond the driver's limit of " +
@@ -162,7 +162,7 @@ bool StudyRun::report(const std::string& step, double share) {
   return progress_({done, step, record_.cases.size(), record_.plan.cases.size()});
 }
 
-const Bricks& StudyRun::bricksFor(const Scene& scene) {
+const Bricks& StudyRun::bricksFor(const ResolvedScene& scene) {
   const BrickOptions options = bricksOf(grid_, scene);
   std::unique_ptr<Bricks>& bricks = bricks_[{options.interior, options.apron}];
   if (!bricks) bricks = cut(grid_, scene);
@@ -172,7 +172,7 @@ const Bricks& StudyRun::bricksFor(const Scene& scene) {
 StudyRun::Baseline& StudyRun::baselineOf(int size) {
   if (!baseline_ || baseline_->size != size) {
     baseline_.reset();
-    const Scene scene = baselineScene(record_.scene, size, record_.geometry);
+    const ResolvedScene scene = baselineScene(record_.scene, size, record_.geometry);
     baseline_.reset(new Baseline{size, SliceRenderer(context_, bricksFor(scene), scene, quietly())});
   }
   return *baseline_;
@@ -241,7 +241,7 @@ void StudyRun::measureModelError(const StudyReference& cone) {
 
 // --- cases ---
 
-RenderStats StudyRun::countedPicture(const Scene& scene) {
+RenderStats StudyRun::countedPicture(const ResolvedScene& scene) {
   RenderOptions options;
   options.timePasses = true;
   SliceRenderer renderer(context_, bricksFor(scene), scene, options);
@@ -250,7 +250,7 @@ RenderStats StudyRun::countedPicture(const Scene& scene) {
 }
 
 void StudyRun::measureCase(const StudyCase& what) {
-  const Scene scene = caseScene(record_.scene, what, record_.geometry);
+  const ResolvedScene scene = caseScene(record_.scene, what, record_.geometry);
   const StudyReference reference = record_.plan.referenceOf(what);
   const Image& truth = referenceImage(reference);
   Baseline& baseline = baselineOf(what.size);

@@ -16,10 +16,10 @@ using StudyCallback = std::function<bool(const StudyProgress&)>;
 
 /// Depth between the nearest and the farthest visible brick in the picture of a scene, world units.
 /// @throw InvalidArgument  nothing is visible
-double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Scene& scene);
+double visibleExtent(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene);
 
 /// With fewer slices bricks are too narrow for the slabs. @param extent  of visibleExtent
-int leastSlices(const ScalarGrid& grid, const Scene& scene, double extent);
+int leastSlices(const ScalarGrid& grid, const ResolvedScene& scene, double extent);
 
 /// Could all cases be drawn? @throw InvalidArgument  says which value of the plan is the reason
 void checkCases(const GlContext& context, const ScalarGrid& grid, const StudyRecord& record);
@@ -38,7 +38,7 @@ class StudyRun {
 
  private:
   struct Baseline;
-  const Bricks& bricksFor(const Scene& scene);
+  const Bricks& bricksFor(const ResolvedScene& scene);
   Baseline& baselineOf(int size);
   const Image& referenceImage(const StudyReference& what);
   bool report(const std::string& step, double share);
@@ -47,7 +47,7 @@ class StudyRun {
   void measureModelError(const StudyReference& cone);
   void measureCase(const StudyCase& what);
   /// Of a picture that counts its fragments and times its passes, which makes it slower.
-  RenderStats countedPicture(const Scene& scene);
+  RenderStats countedPicture(const ResolvedScene& scene);
   void save() const;
 
   const GlContext& context_;

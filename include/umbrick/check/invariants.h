@@ -9,7 +9,7 @@
 #include "umbrick/brick/brick_grid.h"
 #include "umbrick/brick/bricks.h"
 #include "umbrick/gl/context.h"
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 
@@ -43,7 +43,7 @@ struct CheckView {
 /// Face-on, diagonal and from inside under perspective; face-on and diagonal in parallel view; and a parallel view in
 /// which slices lie exactly on voxel planes and brick faces, and pixel centres on brick faces. Image size from the
 /// scene's camera. @throw InvalidArgument  the grid has no active voxel
-std::vector<CheckView> checkViews(const ScalarGrid& grid, const Scene& resolved);
+std::vector<CheckView> checkViews(const ScalarGrid& grid, const ResolvedScene& resolved);
 
 struct CheckOptions {
   std::vector<int> edges{8, 16, 32, 64};  // interiors to compare; those narrower than the apron are left out
@@ -63,7 +63,7 @@ struct CheckOptions {
 /// @throw InvalidArgument  as SliceRenderer, checkViews and brickGrid
 /// @throw GlError, IoError
 /// @pre `context` is current
-std::vector<InvariantResult> checkInvariants(const GlContext& context, const ScalarGrid& grid, const Scene& resolved,
-                                             const CheckOptions& options = {});
+std::vector<InvariantResult> checkInvariants(const GlContext& context, const ScalarGrid& grid,
+                                             const ResolvedScene& resolved, const CheckOptions& options = {});
 
 }  // namespace umbrick

@@ -4,10 +4,13 @@
 #include <glm/vec3.hpp>
 
 #include "umbrick/core/box.h"
+#include "umbrick/core/names.h"
 
 namespace umbrick {
 
 enum class Projection { perspective, orthographic };
+inline constexpr Name<Projection> kProjections[]{{"perspective", Projection::perspective},
+                                                 {"orthographic", Projection::orthographic}};
 
 struct Camera {
   glm::dvec3 eye{0, 0, 1};     // world

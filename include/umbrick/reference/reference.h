@@ -77,6 +77,7 @@ struct ReferencePicture {
 /// Sources of the model: Max 1995, doi:10.1109/2945.468400; Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
 /// @param scene  resolved, see resolveScene
 /// @throw InvalidArgument  an unresolved scene, an option out of range, a light that lightDirections refuses
-ReferencePicture renderReference(const ScalarGrid& grid, const Scene& scene, const ReferenceOptions& options = {});
+ReferencePicture renderReference(const ScalarGrid& grid, const ResolvedScene& scene,
+                                 const ReferenceOptions& options = {});
 
 }  // namespace umbrick

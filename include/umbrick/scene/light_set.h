@@ -40,7 +40,7 @@ class Light {
 class LightSet {
  public:
   /// @throw InvalidArgument  as lightDirections
-  explicit LightSet(const Scene& resolved);
+  explicit LightSet(const ResolvedScene& scene);
   /// Of these directions and no others.
   explicit LightSet(std::vector<LightDirection> directions);
 

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "umbrick/core/names.h"
 #include "umbrick/image/image.h"
 
 namespace umbrick {
@@ -13,6 +14,7 @@ namespace umbrick {
 /// What a source's directions are given in. view: right, up and towards the viewer, so that the light moves with the
 /// camera; world: the world's axes. All directions point towards the light and may have any length.
 enum class LightFrame { view, world };
+inline constexpr Name<LightFrame> kLightFrames[]{{"view", LightFrame::view}, {"world", LightFrame::world}};
 
 /// The same radiance from every direction of a cone: a tilted cone, or, narrow, a distant light with soft shadows. A
 /// point of albedo 1 scatters L_a * radiance * the mean of T over the solid angle, whatever the angle is: radiance 1

@@ -4,7 +4,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 
@@ -16,7 +16,7 @@ struct LightDirection {
   glm::dvec3 radiance;   // weight times colour; for `cone` all components are the weight, and the weights sum to 1
 };
 
-/// About `count` directions for the light of a resolved scene whose model is cone or lights, the same for the same
+/// About `count` directions for the light of a scene whose model is cone or lights, the same for the same
 /// arguments: for a cone spiralDirections, from 65 directions on coneDirections; for an environment map its median cut
 /// (Debevec 2005, "A Median Cut Algorithm for Light Probe Sampling"), which keeps all of its light. Lights of one
 /// direction and explicit lists come as they are, whatever `count` is; the other sources share what is left as their
@@ -24,9 +24,9 @@ struct LightDirection {
 /// variance of the sum least (Neyman 1934). Power is the mean of R, G and B where nothing is in the way. A map is
 /// walked in every call: 70 ms of one core for 2048 x 1024 pixels, 30 ms in lightSamples.
 /// @param rotation  rad; other sets of the same light, whose mean is a finer one
-/// @throw InvalidArgument  emission, coneRay, ambient; count < 1; an orbit; a light that does not fit the viewer's
+/// @throw InvalidArgument  emission, coneRay, ambient; count < 1; a light that does not fit the viewer's
 ///                         hemisphere (names it)
-std::vector<LightDirection> lightDirections(const Scene& resolved, int count, double rotation = 0);
+std::vector<LightDirection> lightDirections(const ResolvedScene& scene, int count, double rotation = 0);
 
 /// Points first, first + 1, ..., first + count - 1 of a low-discrepancy sequence of directions, of equal weight within
 /// a light: sets that follow each other average to their union, and the union gets finer as a whole. Points are those
@@ -38,6 +38,7 @@ std::vector<LightDirection> lightDirections(const Scene& resolved, int count, do
 /// has the light's exact mean.
 /// @param seed  shifts the sequence (Cranley and Patterson 1976)
 /// @throw InvalidArgument  as lightDirections
-std::vector<LightDirection> lightSamples(const Scene& resolved, std::uint64_t first, int count, std::uint64_t seed);
+std::vector<LightDirection> lightSamples(const ResolvedScene& scene, std::uint64_t first, int count,
+                                         std::uint64_t seed);
 
 }  // namespace umbrick

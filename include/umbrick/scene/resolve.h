@@ -1,17 +1,40 @@
 // What follows from a scene once its volume is known.
 #pragma once
 #include <glm/mat4x4.hpp>
+#include <string>
+#include <utility>
 
 #include "umbrick/core/box.h"
 #include "umbrick/scene/scene.h"
 
 namespace umbrick {
 
-/// The scene with everything that depends on the volume written out: an orbit becomes a camera, a spacing in voxels
-/// (shortest edge) becomes world units. Resolving twice changes nothing.
+/// A scene whose volume is known: the camera is placed, the spacing of slices is in world units, and there is a
+/// transfer function. Renderers, reference and checks take nothing else.
+struct ResolvedScene : SceneSettings {
+  TransferFunction transfer;
+  bool operator==(const ResolvedScene&) const = default;
+
+ private:
+  ResolvedScene(const SceneSettings& settings, TransferFunction function)
+      : SceneSettings(settings), transfer(std::move(function)) {}
+  friend ResolvedScene resolveScene(const Scene&, const Box&, const glm::dmat4&);
+};
+
+/// Writes out everything that depends on the volume: an orbit becomes a camera, a spacing in voxels (shortest edge)
+/// becomes world units.
 /// @param worldBounds  of the volume, see orbitCamera
 /// @throw InvalidArgument  no transfer function, an empty volume that an orbit should look at, or as validateScene
-Scene resolveScene(const Scene& scene, const Box& worldBounds, const glm::dmat4& indexToWorld);
+ResolvedScene resolveScene(const Scene& scene, const Box& worldBounds, const glm::dmat4& indexToWorld);
+
+/// Returns the scene that resolves to this one, whatever the volume.
+Scene unresolved(const ResolvedScene& scene);
+
+/// @throw InvalidArgument  as validateScene(unresolved(scene))
+void validateScene(const ResolvedScene& scene);
+
+/// As printScene(unresolved(scene)).
+std::string printScene(const ResolvedScene& scene);
 
 /// Length of a voxel's shortest edge, world units.
 double shortestVoxelEdge(const glm::dmat4& indexToWorld);

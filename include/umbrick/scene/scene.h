@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "umbrick/core/camera.h"
+#include "umbrick/core/names.h"
 #include "umbrick/optics/transfer_function.h"
 #include "umbrick/scene/light_source.h"
 
@@ -18,44 +19,62 @@ namespace umbrick {
 /// What light is scattered at a point: `emission` all of the ambient radiance; the others the share V of it that the
 /// medium lets in, as the mean over directions of a cone around the slice normal (`cone`) or around the ray to the eye
 /// (`coneRay`, Eq. 6 of Schott et al. to the letter), of the whole sphere (`ambient`, their Fig. 2a), or what the
-/// medium lets in of the scene's light sources (`lights`). The slice renderer knows
-/// emission, cone and lights, the reference all.
+/// medium lets in of the scene's light sources (`lights`). What follows from a model is in capabilities.h.
 enum class Model { emission, cone, coneRay, ambient, lights };
-/// What a scene file and the command line call it: "emission", "cone", "cone-ray", "ambient", "lights".
-std::string modelName(Model model);
-/// @throw InvalidArgument  another name; lists those there are
-Model parseModel(std::string_view name);
-/// How the share is computed. dos: directional occlusion shading, Schott et al. 2009,
+inline constexpr Name<Model> kModels[]{{"emission", Model::emission},
+                                       {"cone", Model::cone},
+                                       {"cone-ray", Model::coneRay},
+                                       {"ambient", Model::ambient},
+                                       {"lights", Model::lights}};
+inline std::string modelName(Model model) { return std::string(nameOf(kModels, model)); }
+
+/// How the share V is computed. dos: directional occlusion shading, Schott et al. 2009,
 /// doi:10.1111/j.1467-8659.2009.01464.x. ordinates: a set of directions, each with a transmittance of its own that is
-/// carried along its paths
+/// carried along its paths.
 enum class Method { dos, ordinates };
-/// What a scene file and the command line call it.
-std::string methodName(Method method);
+inline constexpr Name<Method> kMethods[]{{"dos", Method::dos}, {"ordinates", Method::ordinates}};
+inline std::string methodName(Method method) { return std::string(nameOf(kMethods, method)); }
 
 /// How a slab between two slices is integrated.
 enum class Quadrature {
   preintegrated,  // value taken as linear between front and back of the slab
   midpoint,       // the medium at the middle of the slab, for all of it
 };
+inline constexpr Name<Quadrature> kQuadratures[]{{"preintegrated", Quadrature::preintegrated},
+                                                 {"midpoint", Quadrature::midpoint}};
 
+/// What `dos` needs.
+struct DosOptions {
+  int footprint = 3;                  // n: n x n samples over the cone's footprint on the previous slice
+  int passes = 1;                     // Algorithm 1 of the paper: 2, two passes a slice; 1, multiple render targets
+  int algorithm = 3;                  // 2: exact distance per sample; 3: slice distance for every sample
+  bool perspectiveCorrection = true;  // Eqs. 12-15 of the paper
+  bool operator==(const DosOptions&) const = default;
+};
+
+/// What `ordinates` needs.
+struct OrdinatesOptions {
+  int directions = 16;  // K: about so many over the cone or the lights
+  double scale = 0;  // window texels per voxel edge; 0: as large as the larger of slab and voxel, or as 1/2048 of the
+                     // volume's diagonal where that is larger
+  bool operator==(const OrdinatesOptions&) const = default;
+};
+
+/// How light is occluded.
 struct OcclusionOptions {
   double aperture = 1.0471975511965976;  // theta: half-angle of the cone, rad, in [0, pi/2)
-  int footprint = 3;                     // n: n x n samples over the cone's footprint on the previous slice, 1 to 16
-  int passes = 1;                        // Algorithm 1 of the paper: 2, two passes a slice; 1, multiple render targets
-  int algorithm = 3;                     // 2: exact distance per sample; 3: slice distance for every sample
-  bool perspectiveCorrection = true;     // Eqs. 12-15 of the paper
-  int bits = 32;                         // of the occlusion buffer or the windows, 16 or 32; see SamplingOptions
-  int directions = 16;                   // K: of ordinates, about so many over the cone, 1 to 1024
-  double scale = 0;  // of ordinates: window texels per voxel edge; 0: as large as the larger of slab and voxel,
-                     // or as 1/2048 of the volume's diagonal where that is larger
+  int bits = 32;                         // of dos's occlusion buffer or ordinates' windows, see SamplingOptions
+  DosOptions dos;
+  OrdinatesOptions ordinates;
   bool operator==(const OcclusionOptions&) const = default;
 };
 
+/// Where along a view ray the medium is looked at.
 struct SamplingOptions {
-  double spacing = 0.5;         // d: distance of slices along the view direction
-  bool spacingInVoxels = true;  // spacing counts the shortest voxel edge, else world units
+  double spacing = 0.5;  // d: distance of slices along the view direction, in the scene's spacingUnit; in a
+                         // ResolvedScene in world units
   Quadrature quadrature = Quadrature::preintegrated;
-  int segments = 1;  // of equal length, in which a slab is integrated along the ray, 1 to 8
+  int segments = 1;  // of equal length, in which a slab is integrated along the ray
   /// Of the eye buffer: 32 (float) or 16 (fixed point). A slice rounds 16 bits to steps of 2^-16 and is off by up to
   /// one and a half of them: N slices by at most N 2.3e-5, mostly by much less (an occlusion buffer of 16 bits as much
   /// again). But a pixel of opacity A gains nothing by slabs of opacity below 2^-17 / (1 - A), which is what thin fog
@@ -64,6 +83,21 @@ struct SamplingOptions {
   double saturation = 1e-3;  // pixels with less transmittance than this are shaded no more; 0: never
   bool operator==(const SamplingOptions&) const = default;
 };
+
+/// Segments of slabs are no longer than this where they are chosen, voxels (shortest edge).
+inline constexpr double kSegmentVoxels = 0.625;
+inline constexpr int kMostSegments = 8;
+/// Returns how many segments of that length a slab needs, at most kMostSegments.
+/// @param slabVoxels  the thickness of a slab
+int segmentsOf(double slabVoxels);
+
+enum class SpacingUnit {
+  voxel,  // the shortest edge of a voxel
+  world,
+};
+inline constexpr Name<SpacingUnit> kSpacingUnits[]{{"voxel", SpacingUnit::voxel}, {"world", SpacingUnit::world}};
+
+inline constexpr std::string_view kTexelFormats[]{"auto", "unorm8", "unorm16", "half", "float32"};
 
 inline constexpr int kMostInterior = 256;
 
@@ -91,11 +125,10 @@ struct Orbit {
   bool operator==(const Orbit&) const = default;
 };
 
-struct Scene {
+/// What a scene has whether or not its volume is known. Units, ranges and help of each field: scene_fields.h.
+struct SceneSettings {
   VolumeReference volume;
-  std::optional<TransferFunction> transfer;  // windowed and scaled already
   Camera camera;
-  std::optional<Orbit> orbit = Orbit{};  // when set, eye, lookAt, up and viewHeight follow from the volume
   Model model = Model::emission;
   Method method = Method::ordinates;
   glm::dvec3 ambient{1};                 // L_a, radiance from every direction
@@ -106,6 +139,14 @@ struct Scene {
   std::vector<ClipPlane> clipPlanes;
   std::optional<Box> clipBox;  // world
   BrickSettings bricks;
+  bool operator==(const SceneSettings&) const = default;
+};
+
+/// A scene as a user writes it. resolveScene() makes a ResolvedScene of it, which is what pictures are made from.
+struct Scene : SceneSettings {
+  std::optional<TransferFunction> transfer;      // windowed and scaled already
+  std::optional<Orbit> orbit = Orbit{};          // when set, eye, lookAt, up and viewHeight follow from the volume
+  SpacingUnit spacingUnit = SpacingUnit::voxel;  // of sampling.spacing
   bool operator==(const Scene&) const = default;
 };
 
@@ -141,8 +182,10 @@ std::string printScene(const Scene& scene);
 
 /// What ordinates spend on a picture.
 enum class Quality { draft, normal, high };
-/// Sets method, spacing, segments, directions and the scale of windows to what goes together. RMSE of linear
-/// premultiplied RGB on the bundled CT, 256 x 256: see the README.
+inline constexpr Name<Quality> kQualities[]{
+    {"draft", Quality::draft}, {"normal", Quality::normal}, {"high", Quality::high}};
+/// Sets method, spacing, segments, directions and the scale of windows to what goes together. The error of each is in
+/// tools/benchmark/README.md.
 void applyQuality(Quality quality, Scene& scene);
 
 /// Checks every field against its range, however the scene was made.

@@ -3,13 +3,13 @@
 #include <glm/mat4x4.hpp>
 
 #include "umbrick/core/box.h"
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 
 /// Apron voxels that slabs of a resolved scene read beyond a brick: half a slab along the view rays.
 /// @throw InvalidArgument  a spacing of so many voxels that the apron would be wider than a brick
-int requiredApron(const Scene& resolved, const glm::dmat4& indexToWorld);
+int requiredApron(const ResolvedScene& resolved, const glm::dmat4& indexToWorld);
 
 /// Owned voxels along the edge of a brick: what the scene says, or for 0 the largest of
 ///   24                  small enough to skip most of what is empty
@@ -18,6 +18,6 @@ int requiredApron(const Scene& resolved, const glm::dmat4& indexToWorld);
 /// rounded up to a multiple of 8, 256 at most.
 /// @param worldBounds  of the active voxels
 /// @throw InvalidArgument  as requiredApron
-int brickInterior(const Scene& resolved, const glm::dmat4& indexToWorld, const Box& worldBounds);
+int brickInterior(const ResolvedScene& resolved, const glm::dmat4& indexToWorld, const Box& worldBounds);
 
 }  // namespace umbrick

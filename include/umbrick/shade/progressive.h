@@ -5,7 +5,7 @@
 
 #include "umbrick/brick/bricks.h"
 #include "umbrick/gl/context.h"
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 #include "umbrick/shade/slice_renderer.h"
 
 namespace umbrick {
@@ -41,11 +41,11 @@ struct ProgressiveOptions {
 };
 
 struct ProgressivePicture {
-  Picture picture;  // mean of the passes; stats of the last one
+  Picture picture = {};  // mean of the passes; stats of the last one
   int passes = 0;
   double seconds = 0;
-  ErrorEstimate error;
-  Scene scene;  // that the passes are of: the one given, or a finer one, whose windows have an explicit scale
+  ErrorEstimate error = {};
+  ResolvedScene scene;  // that the passes are of: the one given, or a finer one, whose windows have an explicit scale
   bool reachedTarget = false;
 };
 
@@ -62,12 +62,12 @@ inline constexpr int kStreams = 4;
 /// the systematic error comes from the difference to slabs half as thick, at eight times the cost of the first passes
 /// @param onPass  called after every pass with the picture so far; false stops
 /// @throw InvalidArgument  a model or a method without directions; an option out of range; as SliceRenderer
-ProgressivePicture renderProgressive(const GlContext& context, const Bricks& volume, const Scene& scene,
+ProgressivePicture renderProgressive(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
                                      const ProgressiveOptions& options, const RenderOptions& render = {},
                                      const std::function<bool(const ProgressivePicture&)>& onPass = {});
 
 /// The scene with slabs, their segments and window texels twice as large, by which the systematic error is estimated;
 /// texels that the renderer chooses (scale 0) are doubled when it has chosen.
-Scene coarserScene(const Scene& scene);
+ResolvedScene coarserScene(const ResolvedScene& scene);
 
 }  // namespace umbrick

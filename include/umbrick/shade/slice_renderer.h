@@ -9,7 +9,7 @@
 #include "umbrick/gl/context.h"
 #include "umbrick/image/image.h"
 #include "umbrick/scene/lights.h"
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 
@@ -95,7 +95,8 @@ class SliceRenderer {
   /// @throw InvalidArgument  an image beyond the driver's limit, a volume with a too narrow apron, a budget too small
   /// @throw GlError
   /// @pre `context` is current and outlives this
-  SliceRenderer(const GlContext& context, const Bricks& volume, const Scene& scene, const RenderOptions& options = {});
+  SliceRenderer(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
+                const RenderOptions& options = {});
   ~SliceRenderer();
 
   /// One picture. Bricks that fit the budget stay for the next one.

@@ -49,7 +49,7 @@ struct StudyOutcome {
 /// @throw IoError  gnuplot is missing or fails, a file of the folder is damaged or cannot be written
 /// @throw GlError
 /// @pre `context` is current
-StudyOutcome runStudy(const GlContext& context, const ScalarGrid& grid, const Scene& scene,
+StudyOutcome runStudy(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
                       const StudySettings& settings, const std::filesystem::path& folder,
                       const std::function<bool(const StudyProgress&)>& progress = {},
                       const std::filesystem::path& earlier = {});

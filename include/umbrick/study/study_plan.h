@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 
@@ -24,22 +24,18 @@ struct StudyMethod {
     int least = 1, most = 1;
     std::vector<int> full, quick;  // values that are swept unless the user says others
   } detail;
-  void (*apply)(int detail, Scene& scene);  // makes a scene of the model one of this method
-  std::string (*options)(int detail);       // the same as options of `umbrick render`
-  double (*work)(int detail);               // of a slice, about so many times that of emission
-  std::vector<int> slices, quickSlices;     // where it is worth using; swept unless the user says others
-  bool usual = true;                        // part of a study unless the user says otherwise
-  bool quick = false;                       // and of a quick one
+  void (*apply)(int detail, ResolvedScene& scene);  // makes a scene of the model one of this method
+  std::string (*options)(int detail);               // the same as options of `umbrick render`
+  double (*work)(int detail);                       // of a slice, about so many times that of emission
+  std::vector<int> slices, quickSlices;             // where it is worth using; swept unless the user says others
+  bool usual = true;                                // part of a study unless the user says otherwise
+  bool quick = false;                               // and of a quick one
   bool fineSegments = false;  // at the base slabs are cut into kAutomaticSegments, else into the fewest that are swept
   bool windows = false;       // carries light in windows, whose scale is swept
 };
 
-/// As many segments as make them no longer than this, at most 8.
+/// As many segments as segmentsOf() says.
 inline constexpr int kAutomaticSegments = 0;
-inline constexpr double kLongestSegmentVoxels = 0.6;
-/// @param spacing    of slices, world units
-/// @param voxelEdge  the shortest, world units
-int automaticSegments(double spacing, double voxelEdge);
 
 /// emission       slices, pixels that are opaque are shaded no more (as the scene says)
 /// emission-full  the same without that shortcut, the reference point of convergence

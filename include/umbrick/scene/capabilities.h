@@ -1,0 +1,41 @@
+// What follows from a model and a method, as tables: code asks these and compares no names.
+#pragma once
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "umbrick/scene/scene.h"
+
+namespace umbrick {
+
+/// What a model is.
+struct ModelTraits {
+  Model model;
+  std::string_view meaning;  // for help: "whole sphere"
+  bool occlusion = false;    // the medium dims light on its way to a point
+  bool cone = false;         // light comes from a cone of half-angle theta
+  bool aroundRay = false;    // that cone is around the ray to the eye, not around the view axis
+  bool sphere = false;       // light comes from the whole sphere
+  bool directions = false;   // light is a set of directions in front of the viewer, see lightDirections
+  bool sources = false;      // light comes from the scene's light sources
+  bool behindEye = false;    // what lies behind the eye occludes, too
+};
+std::span<const ModelTraits> modelTraits();
+const ModelTraits& traitsOf(Model model);
+
+/// What a method of occlusion can do.
+struct MethodTraits {
+  Method method;
+  std::string_view meaning;
+  bool sources = false;     // any sources in front of the viewer; else one cone around the view axis
+  bool directions = false;  // light is a set of directions, so that pictures of other sets can be averaged
+};
+const MethodTraits& traitsOf(Method method);
+
+/// Returns the method that computes a scene's occlusion; none where its model has no occlusion.
+std::optional<Method> occlusionMethod(const SceneSettings& scene);
+
+/// Can the method compute the light of the model?
+bool supports(Method method, Model model);
+
+}  // namespace umbrick

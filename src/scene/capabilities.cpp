@@ -1,0 +1,57 @@
+#include "umbrick/scene/capabilities.h"
+
+#include <algorithm>
+
+namespace umbrick {
+namespace {
+
+constexpr ModelTraits kModelTraits[]{
+    {.model = Model::emission, .meaning = "no occlusion"},
+    {.model = Model::cone, .meaning = "around the slice normal", .occlusion = true, .cone = true, .directions = true},
+    {.model = Model::coneRay,
+     .meaning = "around the view ray",
+     .occlusion = true,
+     .cone = true,
+     .aroundRay = true,
+     .behindEye = true},
+    {.model = Model::ambient, .meaning = "whole sphere", .occlusion = true, .sphere = true, .behindEye = true},
+    {.model = Model::lights,
+     .meaning = "the scene's light.sources",
+     .occlusion = true,
+     .directions = true,
+     .sources = true},
+};
+
+constexpr MethodTraits kMethodTraits[]{
+    {.method = Method::dos, .meaning = "one occlusion buffer that is blurred from slice to slice"},
+    {.method = Method::ordinates,
+     .meaning = "a transmittance for each of a set of directions",
+     .sources = true,
+     .directions = true},
+};
+
+}  // namespace
+
+std::span<const ModelTraits> modelTraits() { return kModelTraits; }
+
+const ModelTraits& traitsOf(Model model) {
+  return *std::find_if(std::begin(kModelTraits), std::end(kModelTraits),
+                       [&](const ModelTraits& traits) { return traits.model == model; });
+}
+
+const MethodTraits& traitsOf(Method method) {
+  return *std::find_if(std::begin(kMethodTraits), std::end(kMethodTraits),
+                       [&](const MethodTraits& traits) { return traits.method == method; });
+}
+
+std::optional<Method> occlusionMethod(const SceneSettings& scene) {
+  if (!traitsOf(scene.model).occlusion) return std::nullopt;
+  return scene.method;
+}
+
+bool supports(Method method, Model model) {
+  const ModelTraits& light = traitsOf(model);
+  return !light.occlusion || (light.directions && (!light.sources || traitsOf(method).sources));
+}
+
+}  // namespace umbrick

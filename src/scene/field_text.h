@@ -1,0 +1,19 @@
+// The value of a field as text, for scenes, messages and help.
+#pragma once
+#include <string>
+
+#include "umbrick/scene/scene_fields.h"
+
+namespace umbrick {
+
+/// Returns the value as JSON; empty where the scene has no such field, or an optional one is not set.
+/// @throw InvalidArgument  not finite
+std::string jsonText(const FieldPlace& place);
+
+/// Returns the value as messages say it: any number, angles with their unit.
+std::string messageText(const FieldPlace& place);
+
+/// Is the value in its range?
+bool inRange(const FieldPlace& place, const FieldRange& range);
+
+}  // namespace umbrick

@@ -1,0 +1,34 @@
+#include <algorithm>
+#include <cmath>
+
+#include "umbrick/scene/scene.h"
+
+namespace umbrick {
+namespace {
+
+struct QualityRow {
+  Quality quality;
+  double spacing;  // voxels
+  int segments, directions;
+};
+// `draft` has segments of twice the usual length.
+constexpr QualityRow kRows[]{{Quality::draft, 5, 4, 6}, {Quality::normal, 2.5, 4, 16}, {Quality::high, 1.25, 2, 32}};
+
+}  // namespace
+
+int segmentsOf(double slabVoxels) {
+  // A slab of exactly one segment's length, but for rounding, is one segment.
+  return std::clamp(static_cast<int>(std::ceil(slabVoxels / kSegmentVoxels - 1e-9)), 1, kMostSegments);
+}
+
+void applyQuality(Quality quality, Scene& scene) {
+  const QualityRow& row = *std::find_if(std::begin(kRows), std::end(kRows),
+                                        [&](const QualityRow& candidate) { return candidate.quality == quality; });
+  scene.spacingUnit = SpacingUnit::voxel;
+  scene.sampling.spacing = row.spacing;
+  scene.sampling.segments = row.segments;
+  scene.method = Method::ordinates;
+  scene.occlusion.ordinates = {.directions = row.directions, .scale = 0};
+}
+
+}  // namespace umbrick

@@ -1,0 +1,224 @@
+#include "umbrick/scene/scene_fields.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/json_writer.h"
+#include "scene/field_text.h"
+
+namespace umbrick {
+namespace {
+
+// The table. Help tells what a field is; range and default are added by helpText().
+const std::vector<SceneField>& table() {
+  static const std::vector<SceneField> fields{
+      {"camera.projection", "", "Camera", "perspective or orthographic",
+       [](Scene& s) -> FieldPlace { return Choice(s.camera.projection, kProjections); }},
+      {"camera.azimuth", "azimuth", "Camera", "of the eye around the volume, degrees",
+       [](Scene& s) -> FieldPlace { return s.orbit ? FieldPlace(Angle{&s.orbit->azimuth}) : FieldPlace(); }},
+      {"camera.elevation", "elevation", "Camera", "of the eye above the volume, degrees",
+       [](Scene& s) -> FieldPlace { return s.orbit ? FieldPlace(Angle{&s.orbit->elevation}) : FieldPlace(); }},
+      {"camera.eye", "eye", "Camera", "where the camera stands, world",
+       [](Scene& s) { return s.orbit ? FieldPlace() : FieldPlace(&s.camera.eye); }},
+      {"camera.lookAt", "look-at", "Camera", "where it looks, world",
+       [](Scene& s) { return s.orbit ? FieldPlace() : FieldPlace(&s.camera.lookAt); }},
+      {"camera.up", "up", "Camera", "what is up in the picture",
+       [](Scene& s) { return s.orbit ? FieldPlace() : FieldPlace(&s.camera.up); }},
+      {"camera.viewHeight",
+       "view-height",
+       "Camera",
+       "of a parallel view that is placed by its eye, world units",
+       [](Scene& s) { return s.orbit ? FieldPlace() : FieldPlace(&s.camera.viewHeight); },
+       {.low = 0, .lowOpen = true}},
+      {"camera.fov",
+       "fov",
+       "Camera",
+       "full vertical angle of view, degrees",
+       [](Scene& s) -> FieldPlace { return Angle{&s.camera.fov}; },
+       {.low = 0, .high = 180, .lowOpen = true, .highOpen = true}},
+      {"camera.near",
+       "near",
+       "Camera",
+       "nothing nearer than this is seen, world units",
+       [](Scene& s) -> FieldPlace { return &s.camera.nearDistance; },
+       {.low = 0}},
+      {"camera.size",
+       "size",
+       "Camera",
+       "of the picture, pixels",
+       [](Scene& s) -> FieldPlace {
+         return PixelSize{&s.camera.width, &s.camera.height};
+       },
+       {.low = 1}},
+
+      {"model", "model", "Light",
+       "emission (no occlusion), cone (around the slice normal), cone-ray (around the view ray), ambient (whole "
+       "sphere) "
+       "or lights (the scene's light.sources); cone-ray and ambient only in the reference",
+       [](Scene& s) -> FieldPlace { return Choice(s.model, kModels); }},
+      {"method", "method", "Light", "of the models cone (dos or ordinates) and lights (ordinates)",
+       [](Scene& s) -> FieldPlace { return Choice(s.method, kMethods); }},
+
+      {"light.ambient",
+       "ambient",
+       "Light",
+       "radiance from every direction, linear RGB",
+       [](Scene& s) -> FieldPlace { return &s.ambient; },
+       {.low = 0}},
+      {"light.background",
+       "background",
+       "Light",
+       "radiance behind the volume, linear RGB; makes the picture opaque",
+       [](Scene& s) -> FieldPlace { return &s.background; },
+       {.low = 0}},
+
+      {"sampling.spacing",
+       "spacing",
+       "Sampling",
+       "distance of slices",
+       [](Scene& s) -> FieldPlace { return &s.sampling.spacing; },
+       {.low = 0, .lowOpen = true},
+       "; cone and lights of a volume without a scene: as the quality says"},
+      {"sampling.unit", "spacing-unit", "Sampling", "voxel (its shortest edge) or world",
+       [](Scene& s) -> FieldPlace { return Choice(s.spacingUnit, kSpacingUnits); }},
+      {"sampling.quadrature", "quadrature", "Sampling", "of a slab: preintegrated or midpoint",
+       [](Scene& s) -> FieldPlace { return Choice(s.sampling.quadrature, kQuadratures); }},
+      {"sampling.segments",
+       "segments",
+       "Sampling",
+       "of a slab, integrated one by one along the ray",
+       [](Scene& s) -> FieldPlace { return &s.sampling.segments; },
+       {.low = 1, .high = kMostSegments},
+       "; with a quality: no longer than 0.625 voxels"},
+      {"sampling.bits",
+       "eye-bits",
+       "Sampling",
+       "of the eye buffer: 32 (float) or 16 (fixed point, off by up to 2.3e-5 per slice; slabs of less opacity than "
+       "8e-6 "
+       "are lost)",
+       [](Scene& s) -> FieldPlace { return &s.sampling.bits; },
+       {.low = 16, .high = 32, .endsOnly = true}},
+      {"sampling.saturation",
+       "saturation",
+       "Sampling",
+       "transmittance below which a pixel is done; 0: never",
+       [](Scene& s) -> FieldPlace { return &s.sampling.saturation; },
+       {.low = 0, .high = 1, .highOpen = true}},
+
+      {"occlusion.theta",
+       "theta",
+       "Light",
+       "half-angle of the cone, degrees",
+       [](Scene& s) -> FieldPlace { return Angle{&s.occlusion.aperture}; },
+       {.low = 0, .high = 90, .highOpen = true}},
+      {"occlusion.footprint",
+       "footprint",
+       "Light",
+       "of dos, n: n x n samples over the cone's footprint",
+       [](Scene& s) -> FieldPlace { return &s.occlusion.dos.footprint; },
+       {.low = 1, .high = 16}},
+      {"occlusion.passes",
+       "passes",
+       "Light",
+       "of dos, 2: two passes per slice, 1: multiple render targets",
+       [](Scene& s) -> FieldPlace { return &s.occlusion.dos.passes; },
+       {.low = 1, .high = 2, .endsOnly = true}},
+      {"occlusion.algorithm",
+       "algorithm",
+       "Light",
+       "of dos, 2: exact distance per sample, 3: slice distance",
+       [](Scene& s) -> FieldPlace { return &s.occlusion.dos.algorithm; },
+       {.low = 2, .high = 3, .endsOnly = true}},
+      {"occlusion.perspectiveCorrection", "no-perspective-correction", "Light",
+       "of dos: footprint as in a parallel view",
+       [](Scene& s) -> FieldPlace { return &s.occlusion.dos.perspectiveCorrection; }},
+      {"occlusion.bits",
+       "occlusion-bits",
+       "Light",
+       "of the occlusion buffer or the windows: 32 (float) or 16 (fixed point, as the eye buffer)",
+       [](Scene& s) -> FieldPlace { return &s.occlusion.bits; },
+       {.low = 16, .high = 32, .endsOnly = true}},
+      {"occlusion.directions",
+       "directions",
+       "Light",
+       "of ordinates, K: about so many over the cone or the lights",
+       [](Scene& s) -> FieldPlace { return &s.occlusion.ordinates.directions; },
+       {.low = 1, .high = 1024}},
+      {"occlusion.scale",
+       "occlusion-scale",
+       "Light",
+       "of ordinates: window texels per voxel edge",
+       [](Scene& s) -> FieldPlace { return &s.occlusion.ordinates.scale; },
+       {.low = 0},
+       ": a texel is as large as the larger of slab and voxel, in huge volumes 1/2048 of the diagonal"},
+
+      {"bricks.bricked", "unbricked", "Bricks", "the whole volume as one texture",
+       [](Scene& s) -> FieldPlace { return &s.bricks.bricked; }},
+      {"bricks.interior",
+       "brick-edge",
+       "Bricks",
+       "owned voxels along an edge",
+       [](Scene& s) -> FieldPlace { return &s.bricks.interior; },
+       {.low = 8, .high = kMostInterior, .multipleOf = 8, .orElse = 0},
+       ": from the sizes of slabs and pixels"},
+      {"bricks.culling", "no-culling", "Bricks", "draw bricks that the transfer function makes invisible, too",
+       [](Scene& s) -> FieldPlace { return &s.bricks.culling; }},
+      {"bricks.format",
+       "texel-format",
+       "Bricks",
+       "auto, unorm8, unorm16, half or float32",
+       [](Scene& s) -> FieldPlace { return Choice(s.bricks.format, kTexelFormats); },
+       {},
+       ": the smallest exact one"},
+      {"bricks.budgetMiB",
+       "memory-budget",
+       "Bricks",
+       "of the bricks' textures, MiB",
+       [](Scene& s) -> FieldPlace { return &s.bricks.budgetMiB; },
+       {.low = 1, .high = 0x1p40}},
+  };
+  return fields;
+}
+
+}  // namespace
+
+std::vector<std::string> Choice::names() const {
+  std::vector<std::string> list;
+  for (std::size_t i = 0; i < count_; ++i) list.emplace_back(nameAt_(names_, i));
+  return list;
+}
+
+std::string_view Choice::get() const {
+  for (std::size_t i = 0; i < count_; ++i)
+    if (isAt_(names_, i, target_)) return nameAt_(names_, i);
+  return {};
+}
+
+bool Choice::set(std::string_view name) const {
+  for (std::size_t i = 0; i < count_; ++i)
+    if (nameAt_(names_, i) == name) {
+      assign_(names_, i, target_);
+      return true;
+    }
+  return false;
+}
+
+std::string_view SceneField::section() const {
+  const std::size_t dot = path.find('.');
+  return dot == std::string_view::npos ? std::string_view() : path.substr(0, dot);
+}
+
+std::string_view SceneField::key() const {
+  const std::size_t dot = path.find('.');
+  return dot == std::string_view::npos ? path : path.substr(dot + 1);
+}
+
+std::span<const SceneField> sceneFields() { return table(); }
+
+const SceneField* findSceneField(std::string_view optionOrPath) {
+  for (const SceneField& field : table())
+    if (field.path == optionOrPath || (!field.option.empty() && field.option == optionOrPath)) return &field;
+  return nullptr;
+}
+
+}  // namespace umbrick
