@@ -1,4 +1,5 @@
 # Rules that every target shares: warnings, sanitizers, rooms, embedded text.
+# SPDX-License-Identifier: Apache-2.0
 
 # Flags of every target of the project, kept off its users.
 function(umbrick_flags target)

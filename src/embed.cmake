@@ -1,4 +1,5 @@
 # Writes OUTPUT, a C++ file that holds the text of the files NAMES (comma-separated, below BASE); see build_rules.cmake.
+# SPDX-License-Identifier: Apache-2.0
 string(REPLACE "," ";" names "${NAMES}")
 set(entries "")
 foreach(name IN LISTS names)

@@ -1,6 +1,7 @@
 # Installs the libraries with its headers and a CMake package:
 #   find_package(umbrick REQUIRED)
 #   target_link_libraries(app PRIVATE umbrick::render)   or umbrick::volume, umbrick::study, umbrick::umbrick: all
+# SPDX-License-Identifier: Apache-2.0
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/umbrick)
 

@@ -1,5 +1,6 @@
 # Fails on an #include against the table of the rooms, by file and line: cmake -DTOP=<checkout> -P rooms.cmake
 # A room includes its own headers, the public headers of the rooms that the table names, and those of src/core.
+# SPDX-License-Identifier: Apache-2.0
 set(may_core "")
 set(may_image core)
 set(may_optics core)

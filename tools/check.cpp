@@ -1,4 +1,5 @@
 // umbrick check: do bricks change anything? The invariants of the renderer, measured on a volume.
+// SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
 #include <algorithm>

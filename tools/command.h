@@ -1,4 +1,5 @@
 // A sub-command of the umbrick program: declares its options, then runs.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <CLI/CLI.hpp>
 #include <functional>

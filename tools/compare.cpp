@@ -1,4 +1,5 @@
 // umbrick compare: how far a picture is from its reference.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

@@ -1,4 +1,5 @@
 // What `umbrick compare` measures of each layer, its limits, and how both are printed.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <glm/vec2.hpp>

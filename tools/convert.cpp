@@ -1,4 +1,5 @@
 // umbrick convert: a volume of any format that is read to a sparse .vdb, with the loss it cost.
+// SPDX-License-Identifier: Apache-2.0
 #include <tbb/global_control.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
 // Grids of a .vdb or .nvdb to a file of their own, with the loss it cost.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -1,4 +1,5 @@
 // Level sets in the place of grids that umbrick convert built.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <string>

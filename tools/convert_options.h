@@ -1,4 +1,5 @@
 // What umbrick convert is asked for.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <CLI/CLI.hpp>
 #include <array>

@@ -1,4 +1,5 @@
 // What umbrick convert --plan prints.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 

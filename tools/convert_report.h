@@ -1,4 +1,5 @@
 // What umbrick convert prints about a grid that it built.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -1,4 +1,5 @@
 // Sequences: one output for each of many numbered inputs.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -1,4 +1,5 @@
 // The volumes that umbrick convert reads, as they are converted.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <memory>

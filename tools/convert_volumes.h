@@ -1,4 +1,5 @@
 // Volumes to grids of a file, to a file for each frame, or to a plan of it.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
 

@@ -1,4 +1,5 @@
 // The list of formats that are read.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <CLI/CLI.hpp>
 

@@ -1,4 +1,5 @@
 // Names of the grids that several volumes become.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <string>

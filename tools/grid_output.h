@@ -1,4 +1,5 @@
 // What convert writes: the format by the extension of the output.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -1,4 +1,5 @@
 // umbrick info: what is in a .vdb or .nvdb file.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,4 +1,5 @@
 // The umbrick program: one sub-command per file beside this one.
+// SPDX-License-Identifier: Apache-2.0
 #include <exception>
 #include <iostream>
 #include <string>

@@ -1,4 +1,5 @@
 // Where a picture goes and as what, shared by the sub-commands that make one.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <CLI/CLI.hpp>
 #include <filesystem>

@@ -1,4 +1,5 @@
 // How far a long job is, on a terminal, and whether the user wants it to stop.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 

@@ -1,4 +1,5 @@
 // umbrick reference: the picture that a renderer should make, integrated on the CPU.
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/reference/reference.h"
 
 #include <iostream>

@@ -1,4 +1,5 @@
 // umbrick render: a picture of a volume.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

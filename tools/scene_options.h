@@ -1,4 +1,5 @@
 // The options that describe a scene, shared by the sub-commands that make pictures.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <CLI/CLI.hpp>
 #include <filesystem>

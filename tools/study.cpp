@@ -1,4 +1,5 @@
 // umbrick study: what accuracy costs on a scene, as a table, plots and a page.
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/study/study.h"
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,5 @@
 // Checks of option values: finite numbers, with messages that say what was expected.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <CLI/CLI.hpp>
 #include <cmath>

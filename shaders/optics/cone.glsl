@@ -1,5 +1,6 @@
 // The occlusion cone: directions within `aperture` of its axis. Also compiled as C++ by src/optics/medium.cpp.
 // Angles in radians, aperture in (0, pi/2). Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
+// SPDX-License-Identifier: Apache-2.0
 
 // Solid angle of the cone, sr. Written with the half angle, since 1 - cos(aperture) would cancel for a narrow cone.
 float coneSolidAngle(float aperture) {

@@ -1,5 +1,6 @@
 // A piece of a ray on which extinction runs linearly. Also compiled as C++ by src/optics/medium.cpp.
 // sigma_t in 1/world unit, optical depths without unit. Needs log, max and sqrt.
+// SPDX-License-Identifier: Apache-2.0
 
 // Where the light comes from that a piece of constant albedo scatters to the eye: the mean place, as a share of the piece
 // counted from its front, weighted by extinction and by what the piece itself lets through. Since albedo is linear

@@ -1,5 +1,6 @@
 // What a slab of constant medium lets through and scatters. Also compiled as C++ by src/optics/medium.cpp.
 // sigma_t in 1/world unit, lengths in world units.
+// SPDX-License-Identifier: Apache-2.0
 
 // Share of radiance that survives a segment of constant sigma_t. PBR 4th ed., Eq. 11.5.
 float transmittance(float sigma_t, float ds) { return exp(-sigma_t * ds); }

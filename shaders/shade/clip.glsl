@@ -1,5 +1,6 @@
 // The part of a slab that clip planes leave, along one ray.
 // Planes as in umbrick/slice/proxy_slices.h: kept where dot(xyz, view coordinates) + w >= 0.
+// SPDX-License-Identifier: Apache-2.0
 uniform vec4 clip_planes[kClipPlanes > 0 ? kClipPlanes : 1];
 
 // Front and back of what is kept, -1 at the front of the slab and 1 at its back; empty when front >= back.

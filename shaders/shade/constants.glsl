@@ -1,4 +1,5 @@
 // Numbers that shaders and C++ share. Also compiled as C++ by src/shade/constants.h.
+// SPDX-License-Identifier: Apache-2.0
 
 // Attributes of the vertices of polygons, see polygon_buffer.h.
 const int kPositionAttribute = 0;

@@ -3,6 +3,7 @@
 // Writes  eye  premultiplied RGBA, blended under: (ONE_MINUS_DST_ALPHA, ONE)
 //         aux  kAux: opacity-weighted visibility and depth, blended alike
 // Max 1995, Optical models for direct volume rendering, doi:10.1109/2945.468400
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/slab.glsl"
 flat in vec4 slab_centre;
 layout(location = 0) out vec4 eye;

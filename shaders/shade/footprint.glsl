@@ -1,5 +1,6 @@
 // The occlusion buffer of the slice before, read over the footprint of the cone.
 // Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, Eqs. 10-15, Algorithms 2 and 3.
+// SPDX-License-Identifier: Apache-2.0
 #include "optics/slab.glsl"
 #include "shade/constants.glsl"
 layout(binding = kOcclusionUnit) uniform sampler2D occlusion_prev;  // 1 = unoccluded

@@ -1,4 +1,5 @@
 // One triangle that covers the image.
+// SPDX-License-Identifier: Apache-2.0
 uniform float depth;  // normalised device coordinate
 
 void main() {

@@ -1,4 +1,5 @@
 // A polygon of a proxy slice, for a target with one layer per slice. As slice.vert.
+// SPDX-License-Identifier: Apache-2.0
 #extension GL_ARB_shader_viewport_layer_array : require
 #include "shade/constants.glsl"
 layout(location = kPositionAttribute) in vec2 position;

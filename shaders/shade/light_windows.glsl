@@ -2,6 +2,7 @@
 // is texel U = X + s slope_k of the plane of k, its shift rounded to whole texels, the same on every slice. A window is the
 // part of that plane that is in use, stored modulo the size of the texture. See shaders/README.md.
 // A window is a vec4: xy the texels in use; zw where the first of them is in the texture.
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/constants.glsl"
 layout(binding = kWindowsImage, r32f) coherent uniform image2DArray float_windows;
 layout(binding = kWindowsImage, r16) coherent uniform image2DArray fixed_windows;

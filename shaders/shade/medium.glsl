@@ -4,6 +4,7 @@
 //               1  1D function; the medium at the middle
 //               2  2D function; value and gradient magnitude run linearly from front to back
 //               3  2D function; the medium at the middle
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/constants.glsl"
 layout(binding = kAtlasUnit) uniform sampler3D atlas;      // r: value, g: gradient magnitude, in texel units
 // RGBA32F, one column a stretch of the values, as many as a power of two; the last stretch is repeated. Ends are in texel

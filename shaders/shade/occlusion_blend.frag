@@ -5,6 +5,7 @@
 //         occlusion  blended by multiplication (ZERO, SRC_COLOR) with the mean that occlusion_spread.frag has left
 //         aux        kAux: opacity-weighted visibility and depth, blended as eye
 // Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, section 4, Algorithm 3
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/slab.glsl"
 #include "shade/footprint.glsl"
 flat in vec4 slab_centre;

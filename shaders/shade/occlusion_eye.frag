@@ -3,6 +3,7 @@
 // Writes  eye  premultiplied RGBA, blended under: (ONE_MINUS_DST_ALPHA, ONE)
 //         aux  kAux: opacity-weighted visibility and depth, blended alike
 // Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, Algorithm 1
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/slab.glsl"
 #include "shade/footprint.glsl"
 flat in vec4 slab_centre;

@@ -2,6 +2,7 @@
 // Reads   atlas, transfer (see medium.glsl)   occlusion_prev (see footprint.glsl)
 // Writes  occlusion  blending off; pixels that no brick covers come from occlusion_spread.frag
 // Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, Algorithm 1
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/slab.glsl"
 #include "shade/footprint.glsl"
 flat in vec4 slab_centre;

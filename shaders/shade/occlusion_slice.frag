@@ -4,6 +4,7 @@
 //         occlusion  blending off; pixels that no brick covers come from occlusion_spread.frag
 //         aux        kAux: opacity-weighted visibility and depth, blended as eye
 // Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, section 4
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/slab.glsl"
 #include "shade/footprint.glsl"
 flat in vec4 slab_centre;

@@ -2,6 +2,7 @@
 // Reads   atlas, transfer (see medium.glsl)   visibility, visibility_weight (see window_step.comp)
 // Writes  eye  premultiplied RGBA, blended under: (ONE_MINUS_DST_ALPHA, ONE)
 //         aux  kAux: opacity-weighted visibility and depth, blended alike
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/slab.glsl"
 #include "shade/constants.glsl"
 layout(binding = kVisibilityUnit) uniform sampler2DArray visibility;

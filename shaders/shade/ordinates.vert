@@ -1,4 +1,5 @@
 // A polygon of a proxy slice that looks up a layer of its own. As slice.vert.
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/constants.glsl"
 layout(location = kPositionAttribute) in vec2 position;
 layout(location = kSlabAttribute) in vec4 slab;

@@ -1,6 +1,7 @@
 // What a slice samples, for tests: the interpolated value at the slab's middle, and how often a pixel is hit.
 // Reads   atlas
 // Writes  probe  r: value in texel units, g: 1; blended additively
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/ray.glsl"
 #include "shade/constants.glsl"
 layout(binding = kAtlasUnit) uniform sampler3D atlas;

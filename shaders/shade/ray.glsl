@@ -1,6 +1,7 @@
 // Where a fragment's view ray crosses the slab of its slice.
 // Screen points, depths and atlas coordinates are those of umbrick/core/camera.h and umbrick/brick/bricks.h: the point of
 // screen point p at depth s is  eye + s (forward + p.x right + p.y up)  under perspective.
+// SPDX-License-Identifier: Apache-2.0
 uniform vec2 screen_scale;    // pixels to screen points
 uniform vec2 screen_offset;
 uniform vec3 across_x;        // atlas coordinates per unit to the right, on the slice

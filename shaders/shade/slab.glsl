@@ -1,4 +1,5 @@
 // What one fragment finds in its slab.
+// SPDX-License-Identifier: Apache-2.0
 #include "optics/slab.glsl"
 #include "optics/ramp.glsl"
 #include "shade/ray.glsl"

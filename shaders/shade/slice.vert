@@ -2,6 +2,7 @@
 // Reads   position  normalised device coordinates
 //         slab      xyz: atlas coordinates of the slice plane at the centre of the image, for the polygon's brick;
 //                   w: depth of the slice's middle, world units
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/constants.glsl"
 layout(location = kPositionAttribute) in vec2 position;
 layout(location = kSlabAttribute) in vec4 slab;

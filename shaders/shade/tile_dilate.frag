@@ -1,6 +1,7 @@
 // Spreads the state of tiles along one axis: what light can reach counts like the tile itself.
 // Reads   state_before  by tile, see tile_state.frag
 // Writes  state         by tile
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/constants.glsl"
 layout(binding = kTileStateUnit) uniform sampler2D state_before;
 uniform vec2 reach;    // of each channel, tiles

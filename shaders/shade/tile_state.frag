@@ -3,6 +3,7 @@
 //         occlusion_prev  1 = unoccluded
 //         covered_by      RG32F, by tile: first and last slice with a brick there
 // Writes  state  by tile; r: 1 where a pixel's colour can still change, g: 1 where light is, or soon will be, occluded
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/constants.glsl"
 layout(binding = kEyeUnit) uniform sampler2D eye_so_far;
 layout(binding = kCoveredByUnit) uniform sampler2D covered_by;

@@ -1,5 +1,6 @@
 // Opens some of the windows for a run of slices: paths that were not in use before are clear.
 // Writes  windows  see light_windows.glsl
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/light_windows.glsl"
 layout(local_size_x = kLatticeTile, local_size_y = kLatticeTile) in;
 uniform vec4 window[kWindows];         // see light_windows.glsl

@@ -7,6 +7,7 @@
 //         weights     how much of a texel the eye sees, which the window of the view axis tells. Interpolation between what
 //                     is times this and this itself leaves out texels that are hidden in a medium, as with colours that are
 //                     premultiplied by opacity
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/light_windows.glsl"
 layout(local_size_x = kLatticeTile, local_size_y = kLatticeTile) in;
 layout(binding = kExtinctionUnit) uniform sampler2DArray extinction;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "atlas/texel_format.h"
 
 #include "umbrick/atlas/brick_atlas.h"

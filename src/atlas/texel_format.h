@@ -1,4 +1,5 @@
 // How voxels are stored in texels of one or two channels (value; value and gradient magnitude).
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/brick/brick_grid.h"
 
 #include <tbb/blocked_range.h>

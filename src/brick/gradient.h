@@ -1,4 +1,5 @@
 // Gradient magnitude of voxels in world units.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 // The range of a leaf's values.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <array>

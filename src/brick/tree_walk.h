@@ -1,4 +1,5 @@
 // Visits the leaves and tiles of an OpenVDB tree that overlap a box, each once, without a look-up per voxel.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>

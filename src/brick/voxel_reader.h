@@ -1,4 +1,5 @@
 // Boxes of a grid's voxels, as arrays or as ranges of values.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // One pass over all voxels of a grid: what values there are, and which lattice cells they reach.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
 // Whether what lies at the border of a volume is drawn as whole as what lies inside of it.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <memory>

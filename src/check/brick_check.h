@@ -1,4 +1,5 @@
 // Invariants of bricks that need no picture.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "umbrick/check/invariants.h"
 

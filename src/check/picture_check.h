@@ -1,4 +1,5 @@
 // Pictures that should be the same: how far apart they are, and how far they may be.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/vec3.hpp>
 #include <string>

@@ -1,4 +1,5 @@
 // How measurements of several views become one result.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <limits>
 #include <string>

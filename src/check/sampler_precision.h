@@ -1,4 +1,5 @@
 // How finely the driver places samples between texels, and how far rounding moves them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 

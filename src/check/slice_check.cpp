@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "check/slice_check.h"
 
 #include <openvdb/tools/Interpolation.h>

@@ -1,4 +1,5 @@
 // Invariants of single slices, by what each pixel samples.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "umbrick/check/invariants.h"
 

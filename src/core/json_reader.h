@@ -1,4 +1,5 @@
 // JSON that knows where it stands: a wrong value is reported with file, line, column and path.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,5 @@
 // Writing JSON: each function returns the text of one value, and values are put together from the inside out.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <utility>

@@ -1,4 +1,5 @@
 // A whole text file in memory.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <string>

@@ -1,4 +1,5 @@
 // The two ways to a context; each throws GlError with the reason when it does not work here.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
 

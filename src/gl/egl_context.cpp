@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+
 // Before osmesa.h, whose older OpenGL header would hide the types of the newer functions.
 #include "umbrick/gl/functions.h"
 

@@ -1,4 +1,5 @@
 // A library that is loaded when it is first needed, so that a machine without it can still run the rest.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <initializer_list>
 

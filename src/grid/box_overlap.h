@@ -1,4 +1,5 @@
 // Which voxels of one lattice the voxels of another cover, along one axis.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 // What a grid holds and what was lost on the way, for the report and for the file.
+// SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <sstream>
 

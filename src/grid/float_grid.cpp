@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/grid/float_grid.h"
 
 template class openvdb::Grid<openvdb::FloatTree>;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/grid/grid_filters.h"
 
 #include <openvdb/tools/Dense.h>

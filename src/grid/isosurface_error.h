@@ -1,4 +1,5 @@
 // How far a level set is from the surface that it stands for.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <glm/mat4x4.hpp>

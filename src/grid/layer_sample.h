@@ -1,4 +1,5 @@
 // Totals of a volume from some of its layers.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
 #include <cstddef>

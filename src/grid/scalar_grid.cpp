@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/grid/scalar_grid.h"
 
 #include "umbrick/core/error.h"

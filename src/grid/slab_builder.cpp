@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "grid/slab_builder.h"
 
 #include <tbb/blocked_range.h>

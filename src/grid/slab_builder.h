@@ -1,4 +1,5 @@
 // Leaves out of a slab of dense voxels, on all cores.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,5 @@
 // What becomes of one voxel, and of one leaf of voxels, when a volume is made sparse.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/Prune.h>
 #include <openvdb/tree/LeafManager.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <openvdb/tree/LeafManager.h>
 #include <tbb/parallel_reduce.h>
 

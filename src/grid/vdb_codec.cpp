@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/grid/vdb_codec.h"
 
 #include <openvdb/io/Archive.h>

@@ -1,4 +1,5 @@
 // What two images must have in common to be compared, and what a screen shows of them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cmath>

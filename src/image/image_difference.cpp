@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/image/image_difference.h"
 
 #include <tbb/blocked_range.h>

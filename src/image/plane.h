@@ -1,4 +1,5 @@
 // One channel in double precision, and filters that act along rows and columns.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <vector>

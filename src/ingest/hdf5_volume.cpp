@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/ingest/hdf5_volume.h"
 
 #include <hdf5.h>

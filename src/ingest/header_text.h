@@ -1,4 +1,5 @@
 // Pieces that headers written as text have in common.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/ingest/image_stack.h"
 
 #include <fnmatch.h>

@@ -1,4 +1,5 @@
 // Units of length and names of patient space, as volume files spell them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <string>

@@ -1,4 +1,5 @@
 // The fixed header of NIfTI-1, NIfTI-2 and Analyze 7.5 files.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <bit>

@@ -1,4 +1,5 @@
 // The text at the head of a NRRD file.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -1,4 +1,5 @@
 // What every source says about where its voxels came from.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <string_view>

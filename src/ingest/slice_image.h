@@ -1,4 +1,5 @@
 // One grey image of a stack. libtiff and libpng are seen by the .cpp files alone.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>

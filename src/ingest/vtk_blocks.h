@@ -1,4 +1,5 @@
 // The bytes of an array of a VTK XML file: a length and plain bytes, or blocks that are packed one by one.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <cstdint>

@@ -1,4 +1,5 @@
 // Interpolation of display colours in the spaces that ParaView names.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/vec3.hpp>
 

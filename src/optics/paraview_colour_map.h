@@ -1,4 +1,5 @@
 // ParaView's colour-map JSON.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "core/json_reader.h"
 #include "umbrick/optics/transfer_function.h"

@@ -1,4 +1,5 @@
 // The transfer function along a cell of a ray, in pieces on which extinction is a polynomial.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/vec3.hpp>
 #include <optional>

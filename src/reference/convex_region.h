@@ -1,4 +1,5 @@
 // The space that holds the medium: an intersection of half-spaces.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>

@@ -1,4 +1,5 @@
 // Polynomials of degree three: what trilinear interpolation is along a line.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <array>

@@ -1,4 +1,5 @@
 // The ray of a pixel, and what of the light that leaves it comes from where.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>

@@ -1,4 +1,5 @@
 // The voxels that a transfer function makes visible, in blocks of 8 x 8 x 8 cells, found by a tree.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>

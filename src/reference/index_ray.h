@@ -1,4 +1,5 @@
 // A line in continuous index space.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cmath>

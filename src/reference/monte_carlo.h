@@ -1,4 +1,5 @@
 // The unbiased integrator.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 

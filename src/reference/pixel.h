@@ -1,4 +1,5 @@
 // What an integrator finds out about one pixel.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <functional>

@@ -1,4 +1,5 @@
 // How the ranges of fields are checked: the first complaint counts, and messages read alike.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
 #include <glm/vec3.hpp>

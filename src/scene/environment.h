@@ -1,4 +1,5 @@
 // The half of an environment map in front of the viewer, as directions.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/mat3x3.hpp>
 #include <vector>

@@ -1,4 +1,5 @@
 // The value of a field as text, for scenes, messages and help.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 

@@ -1,4 +1,5 @@
 // The ranges of a light source's fields, and whether its light comes from the viewer's side.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <glm/vec3.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/light_json.h"
 
 #include "core/json_writer.h"

@@ -1,4 +1,5 @@
 // Light sources as JSON, see parseScene.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <string>

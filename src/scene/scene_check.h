@@ -1,4 +1,5 @@
 // The ranges of a scene's fields, in one place for scenes from files and from code.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <string>

@@ -1,4 +1,5 @@
 // Emission and absorption: slices blend into the eye buffer and need nothing of each other.
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/eye_sweep.h"
 
 namespace umbrick {

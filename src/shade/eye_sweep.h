@@ -1,4 +1,5 @@
 // Slices blended into the eye buffer, nearest first, without the pixels that are saturated.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <span>

@@ -1,4 +1,5 @@
 // Sample positions over the footprint of the occlusion cone.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/vec2.hpp>
 #include <vector>

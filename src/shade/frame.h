@@ -1,4 +1,5 @@
 // What the passes of one picture share.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -1,4 +1,5 @@
 // Tiles of the light's lattice: where, on each slice, light has work to do.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <span>

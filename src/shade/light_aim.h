@@ -1,4 +1,5 @@
 // The directions of the light as the slices of a picture see them, and how far light moves across from slice to slice.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/common.hpp>
 #include <glm/vec2.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/light_extinction.h"
 
 namespace umbrick {

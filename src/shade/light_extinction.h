@@ -1,4 +1,5 @@
 // The slabs of a run of slices as light meets them: their optical depth, drawn on the lattice of the light.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <span>

@@ -1,5 +1,6 @@
 // The geometry of the light of one picture: the lattice on which light is known, and where on it something is seen or
 // occludes. shaders/README.md draws the frames of reference.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <glm/vec2.hpp>

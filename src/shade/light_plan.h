@@ -1,4 +1,5 @@
 // What of the light's windows a sweep needs, worked out before anything is drawn.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <glm/vec2.hpp>

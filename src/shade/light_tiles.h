@@ -1,4 +1,5 @@
 // Finds, by tiles of the image, what the occlusion sweep need not do.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <span>
 

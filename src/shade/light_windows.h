@@ -1,4 +1,5 @@
 // The windows of the light in graphics memory: opens them run by run and takes light through the slices.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <span>

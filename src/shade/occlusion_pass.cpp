@@ -1,5 +1,6 @@
 // Directional occlusion shading: every slice reads the occlusion buffer of the slice before and writes its own.
 // Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
+// SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>

@@ -10,6 +10,7 @@
 //   draw    light_extinction            what the slices of a run dim light by
 //           light_windows               takes light through them
 //           eye_sweep                   draws them, lit, into the picture
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <glm/vec4.hpp>
 #include <optional>

@@ -1,4 +1,5 @@
 // The polygons of a run of slices as vertices and triangles in graphics memory.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <span>

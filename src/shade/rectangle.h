@@ -1,4 +1,5 @@
 // Rectangles on slices: where something is seen, occludes or is read.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/common.hpp>
 #include <glm/vec2.hpp>

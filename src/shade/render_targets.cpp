@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/render_targets.h"
 
 #include <glm/vec4.hpp>

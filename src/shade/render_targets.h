@@ -1,4 +1,5 @@
 // The buffers that a picture is made in.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 

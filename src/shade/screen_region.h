@@ -1,4 +1,5 @@
 // Where on the screen the occlusion of a slice differs from 1 and is still going to be read.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/vec2.hpp>
 #include <span>

@@ -1,4 +1,5 @@
 // Runs of slices whose bricks fit the atlas together.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <span>

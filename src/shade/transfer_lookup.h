@@ -1,4 +1,5 @@
 // The transfer function as the texture that shaders integrate it from, and what can be seen through it.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "umbrick/atlas/brick_atlas.h"
 #include "umbrick/brick/bricks.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "slice/plane_cut.h"
 
 namespace umbrick {

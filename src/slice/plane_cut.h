@@ -1,4 +1,5 @@
 // The polygon in which a plane cuts a parallelepiped, by the signs of its corners.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/slice/proxy_slices.h"
 
 #include <tbb/blocked_range.h>

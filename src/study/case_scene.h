@@ -1,4 +1,5 @@
 // The scenes of a study, and the commands that make their pictures again.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 

@@ -1,4 +1,5 @@
 // What an earlier study of the same scene measured, to be shown beside a new one.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <string_view>

@@ -1,4 +1,5 @@
 // How far a picture of a study is from its reference.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 

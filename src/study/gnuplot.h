@@ -1,4 +1,5 @@
 // The program that draws the plots.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <string>

@@ -1,4 +1,5 @@
 // Where two JSON values differ, for messages.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>

@@ -1,4 +1,5 @@
 // Where a study runs.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 

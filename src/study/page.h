@@ -1,4 +1,5 @@
 // index.html: the study for a reader, in one file.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,5 @@
 // A click on a column's head sorts the table by it; a second click turns the order round.
+// SPDX-License-Identifier: Apache-2.0
 for (const table of document.querySelectorAll("table.sortable"))
   table.querySelectorAll("th").forEach((head, column) =>
     head.addEventListener("click", () => {

@@ -1,4 +1,5 @@
 // Pieces of an HTML page that needs no other file. What they return is well-formed as XML, too.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <string>

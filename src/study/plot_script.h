@@ -1,4 +1,5 @@
 // A plot as gnuplot's script and data, from which anyone can draw it again.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <string>

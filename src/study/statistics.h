@@ -1,4 +1,5 @@
 // Numbers from measurements: spread of times, Pareto front, order of convergence.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <optional>

@@ -1,4 +1,5 @@
 // What follows from the measurements of a study: who is on the Pareto front, the orders of convergence.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <set>

@@ -1,4 +1,5 @@
 // Where a study keeps what.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <string>

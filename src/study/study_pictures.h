@@ -1,4 +1,5 @@
 // The pictures of a study: as a screen shows them, and their errors as colours.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "study/study_folder.h"
 #include "umbrick/image/image.h"

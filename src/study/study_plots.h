@@ -1,4 +1,5 @@
 // The plots of a study.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <vector>

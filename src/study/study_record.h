@@ -1,4 +1,5 @@
 // All that is known of a study: what it is of, where it ran, and what was measured so far. Kept as study.json.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>

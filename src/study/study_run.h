@@ -1,4 +1,5 @@
 // The measuring part of a study.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <map>

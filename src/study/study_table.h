@@ -1,4 +1,5 @@
 // study.csv: a row per case.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 

@@ -1,4 +1,5 @@
 // Timing by turns, so that what else the machine does falls on both alike.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <vector>

@@ -1,4 +1,5 @@
 // Which volume a study is of.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <filesystem>

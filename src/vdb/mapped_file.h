@@ -1,4 +1,5 @@
 // The bytes of a file in memory, and a stream over them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <filesystem>

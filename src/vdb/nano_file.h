@@ -1,4 +1,5 @@
 // NanoVDB files (.nvdb) as OpenVDB grids. NanoVDB itself is seen by the .cpp file alone.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/vdb/read_grid.h"
 
 #include <openvdb/tree/LeafManager.h>

@@ -1,4 +1,5 @@
 // Walks over a .vdb file as OpenVDB would read it, and checks every length on the way.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <cstring>

@@ -1,4 +1,5 @@
 // A .vdb file opened for reading: its table of grids, and the grids one by one.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <openvdb/math/Maps.h>
 #include <openvdb/tools/Dense.h>
 

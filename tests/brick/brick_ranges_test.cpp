@@ -1,4 +1,5 @@
 // Which bricks there are and what is said of them: ranges, gradients, formats, domain, limits.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <glm/matrix.hpp>
 

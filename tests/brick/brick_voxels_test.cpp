@@ -1,4 +1,5 @@
 // What read() gives: the voxels of the grid, in interior and apron, wherever the grid lies.
+// SPDX-License-Identifier: Apache-2.0
 #include <openvdb/tools/Interpolation.h>
 #include <tbb/parallel_for.h>
 

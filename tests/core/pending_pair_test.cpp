@@ -1,4 +1,5 @@
 // What stands there when a program ends between two steps of writing a header and its data.
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/core/pending_pair.h"
 
 #include <fcntl.h>

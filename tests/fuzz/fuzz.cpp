@@ -1,4 +1,5 @@
 // A libFuzzer program: UMBRICK_FUZZ_TARGET names what it feeds, of gridTargets() with UMBRICK_FUZZ_GRIDS.
+// SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
 #include <cstdint>

@@ -1,4 +1,5 @@
 // Feeds bytes to a reader and holds it to its word: a result, or an Error that says why not.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cstddef>

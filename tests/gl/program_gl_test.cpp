@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/gl/program.h"
 
 #include <algorithm>
@@ -57,8 +58,8 @@ TEST_CASE("Every line of a shader keeps its number and its file", "[gl]") {
   for (int file = 1; file < 9; ++file)
     found += static_cast<int>(count(source, "#line " + std::to_string(10'000 * file + 1) + "\n" + body));
   CHECK(found == 1);
-  // After an include in line 2 the file goes on at its line 3.
-  CHECK_THAT(shaderSource("shade/slab.glsl"), Contains("#line 3\n#line 20001\n"));
+  // After an include in line 3 the file goes on at its line 4.
+  CHECK_THAT(shaderSource("shade/slab.glsl"), Contains("#line 4\n#line 20001\n"));
 }
 
 TEST_CASE("A shader that does not exist is named", "[gl]") {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/grid/build_grid.h"
 
 #include <openvdb/tools/Count.h>

@@ -1,4 +1,5 @@
 // Boxes and masks of grids, voxel by voxel.
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/grid/grid_filters.h"
 
 #include <catch2/catch.hpp>

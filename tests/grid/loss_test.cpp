@@ -1,4 +1,5 @@
 // What is lost, stated, kept and checked.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>

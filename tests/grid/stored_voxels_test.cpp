@@ -1,4 +1,5 @@
 // Voxels are made sparse as they are stored; the floats that they stand for must give the same grid.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <random>

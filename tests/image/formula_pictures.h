@@ -1,4 +1,5 @@
 // Pictures made by formulas that a few lines in any language repeat, for numbers computed elsewhere.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,5 @@
 // What tests/fuzz starts from and what broke a reader once.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 
 #include "fuzz/readers.h"

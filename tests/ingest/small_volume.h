@@ -1,4 +1,5 @@
 // The voxels of a small volume, 2 x 3 x 2, that tests of formats write and read.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <vector>

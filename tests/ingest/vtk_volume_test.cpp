@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/ingest/vtk_volume.h"
 
 #include <lz4.h>

@@ -1,4 +1,5 @@
 // What a user of the library would write first: a preset, a check, an error.
+// SPDX-License-Identifier: Apache-2.0
 #include <umbrick/core/error.h>
 #include <umbrick/optics/transfer_function.h>
 #include <umbrick/shade/slice_renderer.h>

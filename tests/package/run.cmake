@@ -1,4 +1,5 @@
 # Installs the build in BUILD below WORK, then configures, builds and runs the user's project in SOURCE.
+# SPDX-License-Identifier: Apache-2.0
 file(REMOVE_RECURSE ${WORK})
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)

@@ -1,4 +1,5 @@
 // The two integrators against each other, and what must not change a picture.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 
 #include "reference/reference_fixture.h"

@@ -1,5 +1,6 @@
 // The reference against an integrator that knows no blocks, no domain and no pieces: short steps through the
 // interpolated voxels of the whole of space that a ray can meet anything in.
+// SPDX-License-Identifier: Apache-2.0
 #include <openvdb/openvdb.h>
 
 #include <catch2/catch.hpp>

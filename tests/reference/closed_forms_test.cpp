@@ -1,4 +1,5 @@
 // The reference against closed forms: emission and absorption. Max 1995, doi:10.1109/2945.468400
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <numbers>
 

@@ -1,4 +1,5 @@
 // How fast the reference converges in each of its discretisations. Etiene et al. 2014, doi:10.1109/TVCG.2013.90
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 
 #include "reference/reference_fixture.h"

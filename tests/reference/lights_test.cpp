@@ -1,4 +1,5 @@
 // Any directions of light: laws and closed forms, by both integrators.
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/scene/lights.h"
 
 #include <catch2/catch.hpp>

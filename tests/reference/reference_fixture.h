@@ -1,4 +1,5 @@
 // Media with closed forms, as grids, and what the reference makes of them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
 #include <string>

@@ -1,4 +1,5 @@
 // How much of the light arrives: media, views and options for the tests of it.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "reference/reference_fixture.h"
 #include "umbrick/grid/float_grid.h"

@@ -1,5 +1,6 @@
 // The light that reaches a point, against closed forms, by both integrators.
 // Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, Eqs. 6-10
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <numbers>
 

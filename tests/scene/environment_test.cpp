@@ -1,4 +1,5 @@
 // Environment maps as lists and samples of directions.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>

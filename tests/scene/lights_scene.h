@@ -1,4 +1,5 @@
 // A resolved scene for its lights' sake.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <vector>

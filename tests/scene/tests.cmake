@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 umbrick_tests(scene scene_test.cpp lights_test.cpp environment_test.cpp)

@@ -1,4 +1,5 @@
 // What a scene or a volume cannot do is said in one line.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <string>
 

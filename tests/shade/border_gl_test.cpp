@@ -1,5 +1,6 @@
 // Slabs reach half their thickness beyond the voxels that their middle lies between: what lies at the border of a
 // volume must be as whole as what lies inside of it.
+// SPDX-License-Identifier: Apache-2.0
 #include <openvdb/openvdb.h>
 
 #include <set>

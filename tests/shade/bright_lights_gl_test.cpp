@@ -1,4 +1,5 @@
 // Light brighter than 1 reaches the picture.
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/hard_case.h"
 
 using namespace umbrick;

@@ -1,4 +1,5 @@
 // Renderer and closed forms that the reference is held against as well.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <numbers>
 

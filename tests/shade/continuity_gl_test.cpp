@@ -1,5 +1,6 @@
 // A camera that moves a little changes the picture a little: nothing pops as slices, bricks, their number, culling and
 // the rejection of saturated pixels shift. Soft balls and a hard-edged wall, in many bricks.
+// SPDX-License-Identifier: Apache-2.0
 #include <functional>
 #include <string>
 

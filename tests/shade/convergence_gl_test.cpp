@@ -1,5 +1,6 @@
 // How fast pictures of slices converge to the reference, and that dos does not.
 // Etiene et al. 2014, doi:10.1109/TVCG.2013.90
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 
 #include "shade/grid_picture.h"

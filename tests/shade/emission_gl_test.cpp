@@ -1,4 +1,5 @@
 // Emission and absorption against closed forms. Max 1995, doi:10.1109/2945.468400
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <string>
 

@@ -1,4 +1,5 @@
 // Pictures of a grid, cut into bricks as the scene needs them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
 

@@ -1,6 +1,7 @@
 // Hard cases of the buffers: very many slices, 16 bits, and next to nothing per slice.
 // Elsewhere: opacities of a slab from 1e-6 to 1e3 (emission_gl_test), 16-bit occlusion of some 30 slabs
 // (occlusion_gl_test), what 16 bits cost on a scan (README).
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -2,6 +2,7 @@
 // Elsewhere: chords from inside a homogeneous box and beyond a near distance (emission_gl_test), light in a medium
 // wider than the image (occlusion_gl_test), slabs thinner than a slice that clip planes leave (emission_gl_test,
 // occlusion_gl_test), images that are not square (check), views along planes of the grid (hard_transforms_gl_test).
+// SPDX-License-Identifier: Apache-2.0
 #include <string>
 
 #include "shade/hard_case.h"

@@ -1,4 +1,5 @@
 // Pictures of a grid beside those of the reference, for hard cases.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,5 +1,6 @@
 // The formulas of shaders/optics as a driver computes them.
 // Elsewhere: the same lines compiled as C++ (optics: medium_test).
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/vec4.hpp>

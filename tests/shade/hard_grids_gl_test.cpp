@@ -2,6 +2,7 @@
 // Elsewhere: volumes without bricks (bad_input_gl_test); a visible background against closed forms (emission_gl_test);
 // that bricks change nothing far from the origin, in level sets and where the background is seen (check); what a
 // program says of grids that cannot be rendered (tools: hard_volumes_test).
+// SPDX-License-Identifier: Apache-2.0
 #include <limits>
 #include <string>
 

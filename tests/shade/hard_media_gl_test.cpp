@@ -1,6 +1,7 @@
 // Hard cases of what voxels and the transfer function say: solid media, numbers that are none or hardly one.
 // Elsewhere: sigma_t d from 1e-8 to 1e4 (emission_gl_test), the formulas themselves (hard_formulas_gl_test, optics:
 // medium_test), the one line that the programs say of NaN and Inf (tools: hard_volumes_test).
+// SPDX-License-Identifier: Apache-2.0
 #include <limits>
 #include <string>
 

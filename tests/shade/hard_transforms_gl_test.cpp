@@ -1,6 +1,7 @@
 // Hard cases of where a volume is and how it lies: index to world, cameras along its planes.
 // Elsewhere: chords through rotated, anisotropic, sheared and mirrored boxes (emission_gl_test); that bricks change
 // nothing in such volumes, on faces and voxel planes, and 1e6 voxels from the origin (check).
+// SPDX-License-Identifier: Apache-2.0
 #include <string>
 #include <utility>
 

@@ -1,4 +1,5 @@
 // Lists of tiles against every texel of the lattice.
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/lattice_tiles.h"
 
 #include <catch2/catch.hpp>

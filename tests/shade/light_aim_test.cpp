@@ -1,4 +1,5 @@
 // How the light's directions look from the slices.
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/light_aim.h"
 
 #include <catch2/catch.hpp>

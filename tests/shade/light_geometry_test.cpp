@@ -1,4 +1,5 @@
 // The lattice of the light and what lies on it, without a context.
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/light_geometry.h"
 
 #include <catch2/catch.hpp>

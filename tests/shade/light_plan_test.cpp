@@ -1,4 +1,5 @@
 // What the light's windows hold, against a sweep that keeps every path for ever.
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/light_plan.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // Emission and absorption of smooth fields against a ray march in double precision, and texel formats.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <string>
 

@@ -1,4 +1,5 @@
 // Directional occlusion: laws, closed forms, and a sweep on the CPU.
+// SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <catch2/catch.hpp>
 #include <string>

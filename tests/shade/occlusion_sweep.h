@@ -1,5 +1,6 @@
 // Directional occlusion shading in double precision on the CPU, written from the paper: what the renderer must agree
 // with. Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, Algorithms 2 and 3, Eqs. 11-15
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
 

@@ -1,5 +1,6 @@
 // How fast light by ordinates converges to the reference: with the same directions, and to the whole cone.
 // Etiene et al. 2014, doi:10.1109/TVCG.2013.90
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 
 #include "shade/grid_picture.h"

@@ -1,4 +1,5 @@
 // Light by ordinates: closed forms, laws, and a sweep on the CPU.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <functional>
 #include <numbers>

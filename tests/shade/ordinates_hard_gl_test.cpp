@@ -1,4 +1,5 @@
 // Hard cases of light by ordinates. Elsewhere: that bricks change nothing far from the origin and on faces (check).
+// SPDX-License-Identifier: Apache-2.0
 #include <limits>
 #include <numbers>
 #include <string>

@@ -1,4 +1,5 @@
 // Scenes lit by ordinates, and how far two pictures of them are apart.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 

@@ -1,4 +1,5 @@
 // Light by ordinates in double precision on the CPU, written from its equations: what the renderer must agree with.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <map>

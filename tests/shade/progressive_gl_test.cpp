@@ -1,4 +1,5 @@
 // Pictures of many passes: what they converge to, how fast, and whether they know how far off they are.
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/shade/progressive.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,5 @@
 // Random slices and directions of the light, for tests of its geometry and its plans.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/geometric.hpp>
 #include <vector>

@@ -1,4 +1,5 @@
 // Fields in bricks and pictures for tests of the renderer.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <initializer_list>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 umbrick_tests(shade bad_input_gl_test.cpp closed_forms_gl_test.cpp convergence_gl_test.cpp emission_gl_test.cpp
               footprint_test.cpp hard_buffers_gl_test.cpp hard_cameras_gl_test.cpp hard_formulas_gl_test.cpp
               hard_transforms_gl_test.cpp lattice_tiles_test.cpp light_aim_test.cpp

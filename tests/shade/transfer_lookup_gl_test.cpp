@@ -1,4 +1,5 @@
 // What can be seen through a transfer function, by the values that bricks hold.
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/transfer_lookup.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,5 @@
 // Pictures must not depend on where values lie, how far apart, how far others lie from them, and how fine slices are.
+// SPDX-License-Identifier: Apache-2.0
 #include "shade/hard_case.h"
 
 using namespace umbrick;

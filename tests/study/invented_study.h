@@ -1,4 +1,5 @@
 // A study whose numbers are invented: for what is made of numbers.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
 #include <vector>

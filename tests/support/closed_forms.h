@@ -1,4 +1,5 @@
 // Media that have closed forms, and the integrals that they need.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
 #include <functional>

@@ -1,4 +1,5 @@
 // What an action is refused with.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 

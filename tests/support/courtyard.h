@@ -1,4 +1,5 @@
 // A scene of hard edges that cast shadows on each other.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <numbers>
 

@@ -1,4 +1,5 @@
 // Bricks of a field that is given as a formula: a volume for tests that needs no grid.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
 #include <functional>

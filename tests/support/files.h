@@ -1,4 +1,5 @@
 // Small files for tests, and their bytes.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <zlib.h>
 

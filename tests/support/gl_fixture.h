@@ -1,4 +1,5 @@
 // The context that tests of OpenGL rooms share.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <iostream>
 #include <memory>

@@ -1,4 +1,5 @@
 // Voxels out of memory.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <vector>

@@ -1,5 +1,6 @@
 // How fast an error falls. Etiene et al. 2014, "Verifying Volume Rendering Using Discretization Error Analysis",
 // doi:10.1109/TVCG.2013.90
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,5 @@
 // Bytes packed in the ways that volumes are.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bzlib.h>
 #include <lzma.h>

@@ -1,4 +1,5 @@
 // Random transfer functions for properties that must hold for all of them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <random>

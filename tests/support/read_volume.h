@@ -1,4 +1,5 @@
 // All voxels of a source at once.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
 

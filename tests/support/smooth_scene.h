@@ -1,4 +1,5 @@
 // A medium that is smooth everywhere, for orders of convergence: nothing ends at a face or begins at a threshold.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 // Small grids for tests. What looks random has a seed, so that a failure repeats.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
 #include <functional>

@@ -1,4 +1,5 @@
 // Scenes, view rays and how far pictures differ: for tests of whatever makes a picture.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cmath>

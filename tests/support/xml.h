@@ -1,4 +1,5 @@
 // Is a text well-formed?
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cctype>
 #include <set>

@@ -1,4 +1,5 @@
 // A folder in which the program finds a small volume.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

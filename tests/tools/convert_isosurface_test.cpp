@@ -1,4 +1,5 @@
 // The surface of a value as a level set, as a user makes it.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

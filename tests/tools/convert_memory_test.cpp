@@ -1,4 +1,5 @@
 // A volume streams: what a conversion holds is the result and two slabs, whatever the size of the volume.
+// SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

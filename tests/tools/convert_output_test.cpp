@@ -1,4 +1,5 @@
 // What convert writes: verified before it takes its name, in few bits, from grids as from volumes, in bounded memory.
+// SPDX-License-Identifier: Apache-2.0
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>

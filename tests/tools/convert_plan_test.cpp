@@ -1,4 +1,5 @@
 // What a conversion would make, without making it.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <string>
 

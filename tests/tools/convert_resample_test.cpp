@@ -1,4 +1,5 @@
 // A volume on a lattice of other spacing, as a user makes it.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <string>

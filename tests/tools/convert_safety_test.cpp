@@ -1,4 +1,5 @@
 // What a conversion leaves behind that is killed, interrupted or out of space.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>

@@ -1,4 +1,5 @@
 // A file for each of many numbered files.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>

@@ -1,4 +1,5 @@
 // Several volumes become grids of one file.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <nlohmann/json.hpp>

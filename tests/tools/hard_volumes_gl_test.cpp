@@ -1,4 +1,5 @@
 // What the programs say of volumes with voxels that are no numbers, without voxels, and too large to be one texture.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>

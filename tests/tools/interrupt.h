@@ -1,4 +1,5 @@
 // Interrupts the umbrick program while it works, as Ctrl-C does.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <signal.h>
 

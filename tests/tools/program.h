@@ -1,4 +1,5 @@
 // Runs the umbrick program as a user would.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <sys/wait.h>
 

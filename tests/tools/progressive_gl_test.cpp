@@ -1,4 +1,5 @@
 // umbrick render, pass by pass and by quality, as a user would run it.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <string>

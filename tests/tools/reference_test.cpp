@@ -1,4 +1,5 @@
 // umbrick reference, run as a user would.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,5 @@
 // What the program does with a command that it does not carry out.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>

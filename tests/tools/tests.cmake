@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 if(UMBRICK_TOOLS)
   umbrick_tests(tools compare_test.cpp convert_info_test.cpp convert_isosurface_test.cpp convert_memory_test.cpp convert_output_test.cpp
               convert_plan_test.cpp convert_resample_test.cpp convert_safety_test.cpp convert_sequence_test.cpp convert_several_test.cpp

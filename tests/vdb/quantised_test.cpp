@@ -1,4 +1,5 @@
 // NanoVDB files of few bits a value, and every kind of file read back before it takes its name.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -1,4 +1,5 @@
 // Grids written in other formats, read back by the readers of those formats.
+// SPDX-License-Identifier: Apache-2.0
 #include "umbrick/vdb/write_volume.h"
 
 #include <nanovdb/util/IO.h>

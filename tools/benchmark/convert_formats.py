@@ -8,6 +8,7 @@ cache; times are medians of the whole command, start and written .vdb included, 
 called by pyopenvdb on 32-bit floats that are in memory already, pruned, and neither read nor written. Prints a table.
 Needs Debian's python3-numpy, python3-openvdb and python3-h5py, gzip, xz and zstd.
 """
+# SPDX-License-Identifier: Apache-2.0
 import argparse
 import pathlib
 import statistics

@@ -5,6 +5,7 @@
 //
 // Writes EDGE^3 u16 with blobs in 5 % of the volume to FOLDER, then lets the ways take turns, so that other load on the
 // machine meets all of them; times are medians. The file comes from the page cache; reading it is the floor.
+// SPDX-License-Identifier: Apache-2.0
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Dense.h>
 #include <openvdb/tools/Prune.h>

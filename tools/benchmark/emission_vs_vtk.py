@@ -12,6 +12,7 @@ VTK's pictures have 8 bits a channel, which adds about 0.001.
     emission_vs_vtk.py smoke --raw smoke.raw --transfer smoke_transfer.json --umbrick ... --work ...
 
 smoke.raw comes from make_smoke.py. Needs Debian's python3-numpy, python3-openvdb, python3-vtk9, xvfb and xauth."""
+# SPDX-License-Identifier: Apache-2.0
 import argparse
 import json
 import pathlib

@@ -1,5 +1,6 @@
 """Reads the EXR files that umbrick writes (scan lines; no, ZIPS or ZIP compression), since Debian 12 has no Python
 module for it."""
+# SPDX-License-Identifier: Apache-2.0
 import struct
 import zlib
 

@@ -4,6 +4,7 @@
 The plume is a swirling, widening column whose radius and edge are torn by fractal noise (cubic B-splines over random
 lattices, five octaves), so that it has fine wisps, smooth edges and long empty stretches between them.
 Needs Debian's python3-numpy and python3-openvdb."""
+# SPDX-License-Identifier: Apache-2.0
 import argparse
 
 import numpy as np

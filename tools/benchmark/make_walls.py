@@ -3,6 +3,7 @@
 
 Values are 0 (empty), 0.25 (translucent) and 1 (solid); walls_transfer.json goes with it.
 Needs Debian's python3-numpy and python3-openvdb."""
+# SPDX-License-Identifier: Apache-2.0
 import argparse
 
 import numpy as np

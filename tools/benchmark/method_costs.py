@@ -8,6 +8,7 @@ axis: a row of the table in N slices has slices N times closer. Errors are the R
 `umbrick reference` (made once, kept in the folder). Prints a table; writes costs.dat and, with Debian's gnuplot, costs.svg there.
 Options that it does not know go to every picture.
 """
+# SPDX-License-Identifier: Apache-2.0
 import argparse
 import json
 import os

@@ -1,4 +1,5 @@
 """Writes pictures to look at."""
+# SPDX-License-Identifier: Apache-2.0
 import struct
 import zlib
 

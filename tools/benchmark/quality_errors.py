@@ -8,6 +8,7 @@ these print, and the ratio of that to the true one. The last lines count picture
 and estimates that are off by more than a factor of two. References are made once and kept in the folder.
 Options that it does not know go to every picture.
 """
+# SPDX-License-Identifier: Apache-2.0
 import argparse
 import json
 import pathlib

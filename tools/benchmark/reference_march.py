@@ -2,6 +2,7 @@
 
 Per sample of length ds: C += T (1 - exp(-sigma_t ds)) albedo, T *= exp(-sigma_t ds), in the middle of steps of 1/16 of
 the shortest voxel edge; trilinear values, transfer function evaluated without a table. Rays stop at T < 1e-7."""
+# SPDX-License-Identifier: Apache-2.0
 import multiprocessing
 import os
 

@@ -4,6 +4,7 @@
 Makes soft balls that fill a given share of a box and runs `umbrick reference` on them and on any scene given: with and
 without skipping in turns, the median of the ratios of the times of integration. Samples are evaluations of V (quadrature)
 or tentative collisions (Monte Carlo). Needs Debian's python3-numpy and python3-openvdb."""
+# SPDX-License-Identifier: Apache-2.0
 import argparse
 import json
 import os

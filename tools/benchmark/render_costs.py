@@ -7,6 +7,7 @@ The variants take turns, so that other load on the machine meets all of them; ti
 Differences are root mean square and largest over linear premultiplied RGBA. Options that it does not know go to every render.
 Needs Debian's python3-numpy.
 """
+# SPDX-License-Identifier: Apache-2.0
 import argparse
 import json
 import pathlib

@@ -1,4 +1,5 @@
 """Volumes of the benchmark: arrays [z, y, x], voxel (x, y, z) at world (x, y, z) * spacing."""
+# SPDX-License-Identifier: Apache-2.0
 import gzip
 
 import numpy as np

@@ -3,6 +3,7 @@
 Debian's VTK 9.1 makes its contexts with GLX only, so this runs under xvfb-run, where Mesa's llvmpipe draws.
 VTK's frame buffer has 8 bits a channel, from which the picture is read: an error of 0.0011 (1 / 255 / sqrt(12)) is the
 rounding. Both mappers write premultiplied colours over a black background of alpha 0, without gamma."""
+# SPDX-License-Identifier: Apache-2.0
 import json
 import sys
 import time

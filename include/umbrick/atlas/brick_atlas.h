@@ -1,4 +1,5 @@
 // Bricks as blocks of 3D textures.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,5 @@
 // Cuts an OpenVDB grid into bricks.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
 #include <optional>

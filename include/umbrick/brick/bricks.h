@@ -1,4 +1,5 @@
 // A sparse volume cut into bricks of equal size, each with an apron of its neighbours' voxels.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,5 @@
 // What must hold for bricks to change nothing, measured on a volume of the caller's.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <functional>

@@ -1,4 +1,5 @@
 // Axis-aligned boxes: of voxels (inclusive integers) and of space.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <glm/common.hpp>

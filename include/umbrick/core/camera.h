@@ -1,4 +1,5 @@
 // The camera: where it stands, what it sees, and how image points map to rays.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

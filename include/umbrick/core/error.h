@@ -1,4 +1,5 @@
 // What the library throws. Messages name the file, the field, and the value found beside the value expected.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <stdexcept>
 

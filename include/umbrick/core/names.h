@@ -1,4 +1,5 @@
 // The names of an enum's values stand once, beside the enum, and are used to read, print, check and list it.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <string>

@@ -1,4 +1,5 @@
 // A file that appears whole or not at all: written beside its name, then renamed.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <functional>

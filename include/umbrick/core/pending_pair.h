@@ -1,4 +1,5 @@
 // A header and the data file that it names, which change together.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <functional>

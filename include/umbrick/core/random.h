@@ -1,4 +1,5 @@
 // Seeded random numbers that do not depend on who draws first.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <glm/vec2.hpp>

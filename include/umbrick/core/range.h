@@ -1,4 +1,5 @@
 // A closed interval of values, empty until something is included.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <limits>

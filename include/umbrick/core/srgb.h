@@ -1,4 +1,5 @@
 // The sRGB transfer curve, IEC 61966-2-1: encoded display value in [0, 1] <-> linear light in [0, 1].
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
 

@@ -1,4 +1,5 @@
 // Wall-clock time of a stage.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <chrono>
 #include <cstddef>

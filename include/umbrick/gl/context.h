@@ -1,4 +1,5 @@
 // An OpenGL 4.5 core context without a window.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
 #include <string>

@@ -1,4 +1,5 @@
 // The OpenGL functions that Umbrick calls, loaded from whichever library made the context.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <GL/glcorearb.h>
 

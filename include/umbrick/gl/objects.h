@@ -1,4 +1,5 @@
 // Owners of OpenGL objects: made in the constructor, deleted in the destructor, moved but never copied.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <initializer_list>

@@ -1,4 +1,5 @@
 // A shader program from the embedded shaders, specialised by constants.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

@@ -1,4 +1,5 @@
 // Matrices as glm and as OpenVDB have them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <openvdb/math/Transform.h>
 

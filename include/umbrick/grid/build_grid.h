@@ -1,4 +1,5 @@
 // Dense volumes and dense-ish grids to sparse grids, with the error that it costs.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>

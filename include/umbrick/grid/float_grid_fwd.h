@@ -1,5 +1,6 @@
 // The names of OpenVDB's tree and grid of floats, without their definitions: those are in float_grid.h, which takes
 // several seconds to compile. A file that only hands grids on needs no more than this.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <openvdb/version.h>
 

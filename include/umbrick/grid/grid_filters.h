@@ -1,4 +1,5 @@
 // Parts of grids, by a box or a mask; and a grid as the dense volume that it would be.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <memory>

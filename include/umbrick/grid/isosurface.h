@@ -1,4 +1,5 @@
 // The surface where a volume has a value, as a level set.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 

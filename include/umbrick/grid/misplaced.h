@@ -1,4 +1,5 @@
 // Whether two grids place the same voxels at the same points of the world.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <openvdb/math/Math.h>
 

@@ -1,4 +1,5 @@
 // What a conversion would make and need, from a part of the voxels.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,4 +1,5 @@
 // Volumes on a lattice of other spacing, with the integral of their values kept.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
 

@@ -1,4 +1,5 @@
 // One scalar grid, as 32-bit float, with its name and its affine transform.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <glm/mat4x4.hpp>

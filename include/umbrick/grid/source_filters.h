@@ -1,4 +1,5 @@
 // Sources made of other sources: a part, a masked one; and the value that most of a volume's border has.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <memory>

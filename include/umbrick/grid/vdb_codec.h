@@ -1,4 +1,5 @@
 // How .vdb files are packed.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 

@@ -1,4 +1,5 @@
 // Whether a grid holds what its source holds, voxel by voxel.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <openvdb/openvdb.h>
 

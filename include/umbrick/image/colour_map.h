@@ -1,4 +1,5 @@
 // Numbers as colours: an image of one channel made visible.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/vec3.hpp>
 

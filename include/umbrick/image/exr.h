@@ -1,4 +1,5 @@
 // OpenEXR files with layers and text attributes.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <map>

@@ -1,4 +1,5 @@
 // FLIP: how much a viewer who flips between two pictures sees them differ.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/vec3.hpp>
 

@@ -1,4 +1,5 @@
 // A float image in memory.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <vector>

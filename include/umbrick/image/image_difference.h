@@ -1,4 +1,5 @@
 // How far a picture is from its reference: in numbers, per pixel, and as a signed difference.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <glm/vec2.hpp>

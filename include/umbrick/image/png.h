@@ -1,4 +1,5 @@
 // PNG files: 8-bit sRGB with straight alpha, as the format wants, from linear premultiplied colour.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <map>

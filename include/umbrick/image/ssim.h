@@ -1,4 +1,5 @@
 // SSIM: structural similarity of two pictures.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/vec3.hpp>
 

@@ -1,4 +1,5 @@
 // DICOM series: the files of a folder, or one file, as a volume.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <memory>

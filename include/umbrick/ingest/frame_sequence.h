@@ -1,4 +1,5 @@
 // Volumes in numbered files: the frames of a sequence.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -1,4 +1,5 @@
 // Datasets of HDF5 files as volumes.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <memory>

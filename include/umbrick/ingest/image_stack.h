@@ -1,4 +1,5 @@
 // Stacks of grey images: TIFF of one or many pages, and PNG.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <memory>

@@ -1,4 +1,5 @@
 // MetaImage volumes: .mha with the voxels inside, .mhd with the voxels beside.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <memory>

@@ -1,4 +1,5 @@
 // NIfTI-1, NIfTI-2 and Analyze 7.5 volumes.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <memory>

@@ -1,4 +1,5 @@
 // NumPy arrays (.npy) as volumes.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <memory>

@@ -1,4 +1,5 @@
 // NRRD volumes: attached (.nrrd) and detached (.nhdr) headers.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <memory>

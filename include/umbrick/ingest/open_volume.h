@@ -1,4 +1,5 @@
 // Volumes of any format, told by name and first bytes.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <memory>

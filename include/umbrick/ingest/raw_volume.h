@@ -1,4 +1,5 @@
 // Headerless raw volumes: the caller says what the bytes mean.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <filesystem>

@@ -1,4 +1,5 @@
 // Volumes read one after the other in a thread of their own, while those before are used.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <functional>

@@ -1,4 +1,5 @@
 // Where voxels come from: a stream of slabs with spacing and orientation.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,5 @@
 // VTK images as volumes: ImageData of XML files (.vti), and structured points of legacy files (.vtk).
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <memory>

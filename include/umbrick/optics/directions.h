@@ -1,4 +1,5 @@
 // Sets of directions that stand for a solid angle.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/vec3.hpp>
 #include <vector>

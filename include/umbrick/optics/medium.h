@@ -1,5 +1,6 @@
 // The maths of light in a medium that CPU and GPU share: the text of these functions is in shaders/optics.
 // sigma_t in 1/world unit, lengths in world units, angles in radians.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 namespace umbrick {

@@ -1,4 +1,5 @@
 // Grid value (and gradient magnitude) to a participating medium.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <glm/vec3.hpp>

@@ -1,4 +1,5 @@
 // A transfer function as one value of a larger JSON document.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "umbrick/optics/transfer_function.h"
 

@@ -1,4 +1,5 @@
 // The stretches between the control points of a transfer function, which renderers integrate over one by one.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <limits>

@@ -1,4 +1,5 @@
 // The optical model integrated on the CPU, ray by ray: what every renderer is compared with.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <functional>

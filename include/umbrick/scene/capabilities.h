@@ -1,4 +1,5 @@
 // What follows from a model and a method, as tables: code asks these and compares no names.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <span>

@@ -1,4 +1,5 @@
 // The light of a scene as distributions of directions that can be listed and sampled.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -1,4 +1,5 @@
 // The light sources of a scene, for the model `lights`.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <glm/vec3.hpp>

@@ -1,4 +1,5 @@
 // The light that a point scatters, as directions with a radiance each.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <glm/vec3.hpp>

@@ -1,4 +1,5 @@
 // What follows from a scene once its volume is known.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/mat4x4.hpp>
 #include <string>

@@ -1,4 +1,5 @@
 // Everything that a picture depends on. The same scene drives every renderer.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <filesystem>

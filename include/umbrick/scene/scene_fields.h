@@ -2,6 +2,7 @@
 //
 // A new field is two edits: a member in scene.h and a row in src/scene/scene_fields.cpp. What is no single value
 // (transfer function, light sources, clip planes) is read and written by functions of its own.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <limits>

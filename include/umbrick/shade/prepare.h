@@ -1,4 +1,5 @@
 // What the bricks of a volume must have for a scene.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/mat4x4.hpp>
 

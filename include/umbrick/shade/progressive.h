@@ -1,4 +1,5 @@
 // A picture that gets better pass by pass, and says how far off it still is.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <functional>

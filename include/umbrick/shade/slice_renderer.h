@@ -1,4 +1,5 @@
 // Renders bricks of a volume by proxy slices, nearest first.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <glm/vec2.hpp>

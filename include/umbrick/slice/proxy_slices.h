@@ -1,4 +1,5 @@
 // View-aligned proxy slices: where each slice plane cuts each brick, as polygons in the image.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,4 +1,5 @@
 // A study: what accuracy costs. Renders every case of a plan, times it, compares it, and writes a report.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>

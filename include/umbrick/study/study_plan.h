@@ -1,4 +1,5 @@
 // What a study measures: the methods, the values that are swept, and the list of cases that follows.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
 #include <optional>

@@ -1,4 +1,5 @@
 // What a .vdb file holds, told without reading voxels.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <string>

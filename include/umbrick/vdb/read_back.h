@@ -1,4 +1,5 @@
 // What a file holds in the place of a grid that was written to it.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <filesystem>

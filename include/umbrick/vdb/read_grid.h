@@ -1,4 +1,5 @@
 // One scalar grid of a .vdb or .nvdb file.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <string>

@@ -1,4 +1,5 @@
 // What is in a .vdb or .nvdb file, grid by grid: the facts that `umbrick info` prints.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <filesystem>

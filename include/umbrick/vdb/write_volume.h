@@ -1,4 +1,5 @@
 // Grids to files: .vdb, NanoVDB, and dense MetaImage and NRRD.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <filesystem>

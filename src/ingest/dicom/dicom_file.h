@@ -1,4 +1,5 @@
 // One DICOM file: what its tags say about its frames, and its pixels. GDCM is seen by the .cpp alone.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>

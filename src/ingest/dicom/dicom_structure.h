@@ -1,5 +1,6 @@
 // How the data elements of a DICOM file follow each other, checked before GDCM reads it: its Debian build ends the
 // program by an assertion when it meets an element that cannot be.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -1,4 +1,5 @@
 // Whether the entropy-coded data of a JPEG stream are whole.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <optional>

@@ -1,4 +1,5 @@
 // Bytes in order.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,5 @@
 // Stored voxels to float.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <cstddef>

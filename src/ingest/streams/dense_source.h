@@ -1,4 +1,5 @@
 // Slabs out of a stream of bytes, whatever file format they came from.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
 #include <optional>

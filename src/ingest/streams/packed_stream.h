@@ -1,4 +1,5 @@
 // Files packed by gzip, zlib, xz, zstd or bzip2, unpacked as they are read.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string_view>
 

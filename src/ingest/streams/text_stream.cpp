@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "ingest/streams/text_stream.h"
 
 #include <half.h>

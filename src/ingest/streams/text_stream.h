@@ -1,4 +1,5 @@
 // Voxels written as text, as the bytes that they stand for.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fuzz/pictures/compare_scene.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // How far a random scene's pictures are from what they should be.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <glm/vec2.hpp>

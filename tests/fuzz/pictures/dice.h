@@ -1,4 +1,5 @@
 // Random choices for scenes.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 // Many random scenes: which of their pictures are not what they should be.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

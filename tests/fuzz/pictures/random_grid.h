@@ -1,4 +1,5 @@
 // The volume of a random scene.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 

@@ -1,4 +1,5 @@
 // A hundred random scenes of emission, each against the reference and against scenes that must be the same.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <string>
 

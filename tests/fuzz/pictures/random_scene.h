@@ -1,4 +1,5 @@
 // Random volumes and scenes for pictures that must agree with the reference. The same seed makes the same scene.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,4 +1,5 @@
 // Scenes that must make the same picture as another one, by the model.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>

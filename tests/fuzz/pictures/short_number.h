@@ -1,4 +1,5 @@
 // Numbers as messages about scenes give them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdio>
 #include <string>

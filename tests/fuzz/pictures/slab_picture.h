@@ -1,5 +1,6 @@
 // What slabs must make of a scene, computed on the CPU in double precision from the voxels themselves: without bricks,
 // textures, tables, polygons or culling.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "umbrick/core/box.h"
 #include "umbrick/grid/scalar_grid.h"

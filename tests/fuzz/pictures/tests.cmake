@@ -1,4 +1,5 @@
 # Random scenes: a hundred of them as a test, and the program for as many as one likes (tests/fuzz/pictures/run).
+# SPDX-License-Identifier: Apache-2.0
 add_library(umbrick_random_pictures OBJECT
             ${CMAKE_CURRENT_LIST_DIR}/random_grid.cpp ${CMAKE_CURRENT_LIST_DIR}/random_scene.cpp
             ${CMAKE_CURRENT_LIST_DIR}/slab_picture.cpp ${CMAKE_CURRENT_LIST_DIR}/same_scene.cpp

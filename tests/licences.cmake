@@ -1,0 +1,28 @@
+# Fails on a source file of the project that does not name its licence: cmake -DTOP=<checkout> -P licences.cmake
+# The line ends the comment that the file begins with, so that the first one still says what the file is for.
+# SPDX-License-Identifier: Apache-2.0
+set(files ${TOP}/CMakeLists.txt ${TOP}/.ci/run)
+foreach(folder include src shaders tools tests)
+  file(GLOB_RECURSE found ${TOP}/${folder}/*)
+  list(APPEND files ${found})
+endforeach()
+list(FILTER files EXCLUDE REGEX "/tests/fuzz/corpus/")
+
+set(without "")
+set(looked 0)
+foreach(file ${files})
+  file(STRINGS ${file} first LIMIT_COUNT 1)
+  if(NOT file MATCHES "\\.(cpp|h|glsl|vert|frag|comp|geom|tesc|tese|js|css|cmake|cmake\\.in|py|sh)$|/CMakeLists\\.txt$" AND NOT "${first}" MATCHES "^#!")
+    continue()
+  endif()
+  math(EXPR looked "${looked} + 1")
+  file(STRINGS ${file} line REGEX "^(//|#|/\\*) SPDX-License-Identifier: Apache-2\\.0( \\*/)?$" LIMIT_COUNT 1)
+  if(NOT line)
+    file(RELATIVE_PATH name ${TOP} ${file})
+    string(APPEND without "  ${name}\n")
+  endif()
+endforeach()
+if(without)
+  message(FATAL_ERROR "no line \"SPDX-License-Identifier: Apache-2.0\" in\n${without}")
+endif()
+message(STATUS "${looked} files name their licence")
