@@ -15,7 +15,7 @@ set(may_atlas core brick gl)
 set(may_shade core image optics scene brick slice gl atlas)
 set(may_reference core image optics scene grid)
 set(may_check core image optics grid scene brick slice gl atlas shade)
-set(may_study core image optics grid scene brick slice gl shade reference)
+set(may_study core image optics grid scene brick slice gl atlas shade reference)
 set(rooms core image optics ingest grid vdb scene brick slice gl atlas shade reference check study)
 
 set(against "")

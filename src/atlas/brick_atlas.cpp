@@ -10,6 +10,8 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <set>
 #include <utility>
 
 #include "atlas/texel_format.h"
@@ -24,15 +26,6 @@ std::string mebibytes(std::uint64_t bytes) {
 }
 
 bool isUniform(const Brick& brick) { return brick.uniform() && brick.gradient.min == brick.gradient.max; }
-
-// Slots that hold all bricks: uniform ones of equal value share one.
-std::size_t slotsForAll(const std::vector<Brick>& bricks) {
-  std::map<std::tuple<float, float>, int> values;
-  std::size_t slots = 0;
-  for (const Brick& brick : bricks)
-    if (!isUniform(brick) || values.emplace(std::tuple(brick.value.min, brick.gradient.min), 0).second) ++slots;
-  return slots;
-}
 
 // Whole numbers are stored as they are when they fit; otherwise the range is spread over the codes.
 TexelScale unormScale(const Bricks& volume, VoxelFormat format) {
@@ -100,48 +93,68 @@ double gradientTexelOf(float gradient, VoxelFormat format) {
   return static_cast<float>(halfOf(gradient));
 }
 
-BrickAtlas::BrickAtlas(const GlContext& context, const Bricks& volume, std::vector<Brick> bricks,
-                       const AtlasOptions& options)
-    : gl_(context.gl()), volume_(volume), bricks_(std::move(bricks)), format_(options.format) {
+BrickAtlas::BrickAtlas(const GlContext& context, const Bricks& volume, const AtlasOptions& options)
+    : gl_(context.gl()), volume_(volume), format_(options.format), options_(options) {
   valueScale_ = texelScale(volume, format_);
-  const int edge = options.maxTextureEdge > 0 ? std::min(options.maxTextureEdge, context.maxTextureEdge3d())
-                                              : context.maxTextureEdge3d();
-  planTextures(options, edge);
-  const TexelFormat texel = texelFormat(format_, volume.hasGradients);
-  const std::size_t perTexture = static_cast<std::size_t>(slotGrid_.x) * static_cast<std::size_t>(slotGrid_.y) *
-                                 static_cast<std::size_t>(slotGrid_.z);
-  for (std::size_t held = 0; held < slots_; held += perTexture)
-    textures_.push_back(makeTexture3d(gl_, texel.internal, size_.x, size_.y, size_.z));
-  slotOf_.assign(bricks_.size(), -1);
-  users_.assign(slots_, 0);
-  for (std::size_t slot = slots_; slot-- > 0;) free_.push_back(static_cast<std::int32_t>(slot));
+  maxEdge_ = options.maxTextureEdge > 0 ? std::min(options.maxTextureEdge, context.maxTextureEdge3d())
+                                        : context.maxTextureEdge3d();
+  checkLimits(maxEdge_);
+  affordable_ = static_cast<std::size_t>(options.budgetBytes / slotBytes());
 }
 
-void BrickAtlas::planTextures(const AtlasOptions& options, int maxEdge) {
+BrickAtlas::BrickAtlas(const GlContext& context, const Bricks& volume, std::vector<Brick> bricks,
+                       const AtlasOptions& options)
+    : BrickAtlas(context, volume, options) {
+  append(bricks);
+  reserve(slotsForAll_);
+}
+
+std::uint64_t BrickAtlas::slotBytes() const {
+  return volume_.layout.voxels() * texelFormat(format_, volume_.hasGradients).bytes;
+}
+
+void BrickAtlas::checkLimits(int maxEdge) {
   const glm::ivec3 edge = volume_.layout.edge();
-  const std::uint64_t slotBytes = volume_.layout.voxels() * texelFormat(format_, volume_.hasGradients).bytes;
   if (std::max({edge.x, edge.y, edge.z}) > maxEdge)
     throw InvalidArgument("bricks: one of " + std::to_string(edge.x) + " x " + std::to_string(edge.y) + " x " +
                           std::to_string(edge.z) + " voxels does not fit a 3D texture, whose edge is at most " +
                           std::to_string(maxEdge) + " texels");
-  const std::size_t wanted = std::max<std::size_t>(1, slotsForAll(bricks_));
-  const std::size_t affordable = static_cast<std::size_t>(options.budgetBytes / slotBytes);
-  if (affordable == 0)
-    throw InvalidArgument("bricks: one takes " + mebibytes(slotBytes) + ", the memory budget is " +
-                          mebibytes(options.budgetBytes));
-  slots_ = std::min(wanted, affordable);
-  holdsAll_ = slots_ == wanted;
+  if (options_.budgetBytes < slotBytes())
+    throw InvalidArgument("bricks: one takes " + mebibytes(slotBytes()) + ", the memory budget is " +
+                          mebibytes(options_.budgetBytes));
+}
 
+std::size_t BrickAtlas::slotsFor(std::span<const std::int32_t> bricks) const {
+  std::set<UniformKey> values;
+  std::size_t slots = 0;
+  for (const std::int32_t index : bricks) {
+    const Brick& brick = bricks_[static_cast<std::size_t>(index)];
+    if (!isUniform(brick) || values.emplace(brick.value.min, brick.gradient.min).second) ++slots;
+  }
+  return slots;
+}
+
+void BrickAtlas::append(const std::vector<Brick>& bricks) {
+  bricks_.insert(bricks_.end(), bricks.begin(), bricks.end());
+  slotOf_.resize(bricks_.size(), -1);
+  std::vector<std::int32_t> all(bricks_.size());
+  std::iota(all.begin(), all.end(), 0);
+  slotsForAll_ = std::max<std::size_t>(1, slotsFor(all));
+}
+
+// How slots are arranged in textures, which are of one size.
+void BrickAtlas::planTextures(std::size_t slots) {
   // Slots are stacked along z first, then y, then x: a driver that stores texels row by row (all software ones) then
   // keeps a brick in few pages of memory.
-  const glm::ivec3 most = maxEdge / edge;
+  const glm::ivec3 edge = volume_.layout.edge();
+  const glm::ivec3 most = maxEdge_ / edge;
   std::uint64_t perTexture = std::uint64_t(most.x) * std::uint64_t(most.y) * std::uint64_t(most.z);
-  perTexture = std::max<std::uint64_t>(1, std::min(perTexture, options.maxTextureBytes / slotBytes));
-  // Textures of one size share all uniforms: spread the slots evenly.
-  const std::uint64_t textures = (slots_ + perTexture - 1) / perTexture;
-  auto rest = static_cast<int>((slots_ + textures - 1) / textures);
+  perTexture = std::max<std::uint64_t>(1, std::min(perTexture, options_.maxTextureBytes / slotBytes()));
+  // Textures of one size share all uniforms: the slots are spread evenly.
+  const std::uint64_t textures = (slots + perTexture - 1) / perTexture;
+  const auto rest = static_cast<int>((slots + textures - 1) / textures);
   const auto divideUp = [](int a, int b) { return (a + b - 1) / b; };
-  // Divide what is left evenly over each axis, so that no axis is filled up by slots nobody needs.
+  // What is left is divided evenly over each axis, so that no axis is filled up by slots nobody needs.
   const int columns = divideUp(rest, most.z);
   slotGrid_.x = divideUp(columns, most.y);
   slotGrid_.y = divideUp(columns, slotGrid_.x);
@@ -149,12 +162,52 @@ void BrickAtlas::planTextures(const AtlasOptions& options, int maxEdge) {
   size_ = slotGrid_ * edge;
 }
 
-BrickAtlas::Slot BrickAtlas::slot(std::int32_t brick) const {
-  const int slot = slotOf_[static_cast<std::size_t>(brick)];
-  const int perTexture = slotGrid_.x * slotGrid_.y * slotGrid_.z;
-  const int place = slot % perTexture;
-  const glm::ivec3 cell(place / (slotGrid_.z * slotGrid_.y), place / slotGrid_.z % slotGrid_.y, place % slotGrid_.z);
+void BrickAtlas::reserve(std::size_t wanted) {
+  wanted = std::min(std::max<std::size_t>(1, wanted), affordable_);
+  if (wanted <= slots_) return;
+  const std::size_t before = slots_;
+  const glm::ivec3 gridBefore = slotGrid_;
+  // A pool that has to grow may have to grow again: by half at least, so that this does not happen often.
+  slots_ = before == 0 ? wanted : std::min(affordable_, std::max(wanted, before + before / 2));
+  planTextures(slots_);
+  std::vector<GlTexture> old = std::move(textures_);
+  textures_.clear();
+  if (static_cast<std::uint64_t>(before + slots_) * slotBytes() > options_.budgetBytes) {
+    for (std::size_t brick = 0; brick < bricks_.size(); ++brick) release(static_cast<std::int32_t>(brick));
+    old.clear();
+  }
+  const TexelFormat texel = texelFormat(format_, volume_.hasGradients);
+  const std::size_t perTexture = static_cast<std::size_t>(slotGrid_.x) * static_cast<std::size_t>(slotGrid_.y) *
+                                 static_cast<std::size_t>(slotGrid_.z);
+  for (std::size_t held = 0; held < slots_; held += perTexture)
+    textures_.push_back(makeTexture3d(gl_, texel.internal, size_.x, size_.y, size_.z));
+  const glm::ivec3 edge = volume_.layout.edge();
+  for (std::size_t slot = 0; slot < before && !old.empty(); ++slot) {
+    if (users_[slot] == 0) continue;
+    const Slot from = place(static_cast<std::int32_t>(slot), gridBefore);
+    const Slot to = place(static_cast<std::int32_t>(slot), slotGrid_);
+    gl_.CopyImageSubData(old[static_cast<std::size_t>(from.texture)].name(), GL_TEXTURE_3D, 0, from.origin.x,
+                         from.origin.y, from.origin.z, textures_[static_cast<std::size_t>(to.texture)].name(),
+                         GL_TEXTURE_3D, 0, to.origin.x, to.origin.y, to.origin.z, edge.x, edge.y, edge.z);
+  }
+  checkGl(gl_, "growth of the pool of bricks");
+  users_.resize(slots_, 0);
+  requiredAt_.resize(slots_, 0);
+  // The last one is taken first: slots are filled from 0 on.
+  std::vector<std::int32_t> added(slots_ - before);
+  std::iota(added.rbegin(), added.rend(), static_cast<std::int32_t>(before));
+  free_.insert(free_.begin(), added.begin(), added.end());
+}
+
+BrickAtlas::Slot BrickAtlas::place(std::int32_t slot, const glm::ivec3& slotGrid) const {
+  const int perTexture = slotGrid.x * slotGrid.y * slotGrid.z;
+  const int within = slot % perTexture;
+  const glm::ivec3 cell(within / (slotGrid.z * slotGrid.y), within / slotGrid.z % slotGrid.y, within % slotGrid.z);
   return {slot / perTexture, cell * volume_.layout.edge()};
+}
+
+BrickAtlas::Slot BrickAtlas::slot(std::int32_t brick) const {
+  return place(slotOf_[static_cast<std::size_t>(brick)], slotGrid_);
 }
 
 std::uint64_t BrickAtlas::textureBytes() const {
@@ -163,31 +216,61 @@ std::uint64_t BrickAtlas::textureBytes() const {
 }
 
 void BrickAtlas::require(std::span<const std::int32_t> bricks) {
-  std::vector<std::pair<std::int32_t, std::int32_t>> uploads;
+  ++requests_;
+  std::vector<std::int32_t> missing;
+  std::set<UniformKey> missingValues;
+  std::size_t wanted = 0;
   for (const std::int32_t brick : bricks) {
-    if (isResident(brick)) continue;
-    const Brick& wanted = bricks_[static_cast<std::size_t>(brick)];
-    const UniformKey key{wanted.value.min, wanted.gradient.min};
-    const auto shared = isUniform(wanted) ? uniform_.find(key) : uniform_.end();
+    const Brick& one = bricks_[static_cast<std::size_t>(brick)];
+    const UniformKey key{one.value.min, one.gradient.min};
+    const auto shared = isUniform(one) ? uniform_.find(key) : uniform_.end();
+    if (isResident(brick) || shared != uniform_.end()) {
+      const std::int32_t slot = isResident(brick) ? slotOf_[static_cast<std::size_t>(brick)] : shared->second;
+      requiredAt_[static_cast<std::size_t>(slot)] = requests_;
+    } else if (!isUniform(one) || missingValues.insert(key).second) {
+      ++wanted;
+    }
+    if (!isResident(brick)) missing.push_back(brick);
+  }
+  if (wanted > free_.size()) evict(wanted - free_.size());
+  std::vector<std::pair<std::int32_t, std::int32_t>> uploads;
+  for (const std::int32_t brick : missing) {
+    if (isResident(brick)) continue;  // listed twice
+    const Brick& one = bricks_[static_cast<std::size_t>(brick)];
+    const UniformKey key{one.value.min, one.gradient.min};
+    const auto shared = isUniform(one) ? uniform_.find(key) : uniform_.end();
     std::int32_t slot;
     if (shared != uniform_.end()) {
       slot = shared->second;
     } else {
-      if (free_.empty()) {
-        upload(uploads);  // what has a slot by now counts as resident
-        const std::uint64_t slotBytes = volume_.layout.voxels() * texelFormat(format_, volume_.hasGradients).bytes;
-        throw InvalidArgument("bricks: one slice needs more than the " + std::to_string(slots_) + " bricks (" +
-                              mebibytes(slots_ * slotBytes) + ") that the memory budget holds");
-      }
       slot = free_.back();
       free_.pop_back();
-      if (isUniform(wanted)) uniform_[key] = slot;
+      if (isUniform(one)) uniform_[key] = slot;
       uploads.emplace_back(brick, slot);
     }
     slotOf_[static_cast<std::size_t>(brick)] = slot;
+    requiredAt_[static_cast<std::size_t>(slot)] = requests_;
     ++users_[static_cast<std::size_t>(slot)];
   }
   upload(uploads);
+}
+
+// Frees slots that the present call of require() does not ask for, those first that were asked for longest ago.
+void BrickAtlas::evict(std::size_t slots) {
+  std::vector<std::int32_t> idle;
+  for (std::size_t slot = 0; slot < slots_; ++slot)
+    if (users_[slot] > 0 && requiredAt_[slot] < requests_) idle.push_back(static_cast<std::int32_t>(slot));
+  if (idle.size() < slots)
+    throw InvalidArgument("bricks: one slice needs more than the " + std::to_string(slots_) + " bricks (" +
+                          mebibytes(slots_ * slotBytes()) + ") that the memory budget holds");
+  std::stable_sort(idle.begin(), idle.end(), [&](std::int32_t a, std::int32_t b) {
+    return requiredAt_[static_cast<std::size_t>(a)] < requiredAt_[static_cast<std::size_t>(b)];
+  });
+  std::vector<bool> leaves(slots_, false);
+  for (std::size_t i = 0; i < slots; ++i) leaves[static_cast<std::size_t>(idle[i])] = true;
+  for (std::size_t brick = 0; brick < bricks_.size(); ++brick)
+    if (slotOf_[brick] >= 0 && leaves[static_cast<std::size_t>(slotOf_[brick])])
+      release(static_cast<std::int32_t>(brick));
 }
 
 void BrickAtlas::release(std::int32_t brick) {

@@ -68,6 +68,7 @@ class Checker {
         scene_(scene),
         options_(options),
         toWorld_(grid.indexToWorld()),
+        resident_(context, scene.bricks.budgetMiB << 20),
         emission_(Model::emission, scene.method),
         cone_(Model::cone, scene.method) {
     scene_.background.reset();  // the same light behind both pictures
@@ -158,12 +159,12 @@ class Checker {
     for (const auto& [edge, bricks] : bricks_) {
       step(view.name + ": slices through bricks of " + std::to_string(edge));
       options.complete = false;
-      checkSlices(context_, grid_, *bricks, scene, view.name, options, {&gaps_, &doubleHits_, &values_});
+      const auto resident = resident_.get(*bricks, atlasOptions(scene, *bricks));
+      checkSlices(*resident, grid_, scene, view.name, options, {&gaps_, &doubleHits_, &values_});
       const glm::dvec3 cells = glm::dvec3(bricks->domain.extent()) / static_cast<double>(edge) + 1.0;
       if (cells.x * cells.y * cells.z > kCompleteCells) continue;
       options.complete = true;
-      checkSlices(context_, grid_, *bricks, scene, view.name + ", full lattice", options,
-                  {&gaps_, &doubleHits_, nullptr});
+      checkSlices(*resident, grid_, scene, view.name + ", full lattice", options, {&gaps_, &doubleHits_, nullptr});
     }
   }
 
@@ -172,11 +173,31 @@ class Checker {
     double farthest = 0;
   };
 
-  Drawn draw(const Bricks& bricks, const ResolvedScene& scene, RenderOptions options = {}) {
-    step(drawing_);
+  static RenderOptions layers() {
+    RenderOptions options;
     options.visibilityAndDepth = true;
     options.countFragments = false;
-    SliceRenderer renderer(context_, bricks, scene, options);
+    return options;
+  }
+
+  // From bricks that stay resident from one picture to the next.
+  Drawn draw(const Bricks& bricks, const ResolvedScene& scene, bool reverseBricks = false) {
+    step(drawing_);
+    RenderOptions options = layers();
+    options.reverseBricks = reverseBricks;
+    const auto resident = resident_.get(bricks, atlasOptions(scene, bricks));
+    SliceRenderer renderer(*resident, scene, options);
+    return drawnBy(renderer);
+  }
+
+  // With an atlas of its own, within other limits.
+  Drawn draw(const Bricks& bricks, const ResolvedScene& scene, const AtlasLimits& limits) {
+    step(drawing_);
+    SliceRenderer renderer(context_, bricks, scene, layers(), limits);
+    return drawnBy(renderer);
+  }
+
+  static Drawn drawnBy(SliceRenderer& renderer) {
     Drawn drawn;
     drawn.picture = renderer.render();
     const std::vector<double> depths = renderer.sliceDepths();
@@ -199,7 +220,7 @@ class Checker {
         reference_ = edge == 0 ? unbrickedGrid(grid_, options) : brickGrid(grid_, options);
         drawing_ = "the volume as one texture";
         // Software drivers refuse textures of more than 1 GiB.
-        RenderOptions limits;
+        AtlasLimits limits;
         limits.budgetBytes = edge == 0 ? std::uint64_t{1} << 30 : 0;
         draw(*reference_, scene, limits);
         if (edge > 0) referenceNote_ = "compared with bricks of " + std::to_string(edge) + ", since " + why;
@@ -297,10 +318,8 @@ class Checker {
     scene.bricks.culling = false;
     compare(culled, draw(bricks, scene), reference, scene, extra, where, results.saturated, nullptr);
     scene.bricks.culling = true;
-    RenderOptions reverse;
-    reverse.reverseBricks = true;
-    const PictureDifference order =
-        difference(culled.picture, draw(bricks, scene, reverse).picture, scene, reference.drawn.farthest);
+    const PictureDifference order = difference(culled.picture, draw(bricks, scene, /*reverseBricks=*/true).picture,
+                                               scene, reference.drawn.farthest);
     addMeasurement(results.order, std::max({order.colour, order.visibility, order.depth}), 0,
                    culled.picture.visibility.pixels.size(), where);
   }
@@ -313,32 +332,32 @@ class Checker {
     const std::string where = view.name + ", bricks of " + std::to_string(pooledEdge_);
     // The smallest pool that holds what one slice needs, by a few trials.
     for (double share = 1.0 / 8; share < 1; share *= 1.7) {
-      RenderOptions options;
+      AtlasLimits options;
       options.budgetBytes = static_cast<std::uint64_t>(share * static_cast<double>(stats.textureBytes));
       try {
         const Drawn drawn = draw(bricks, scene, options);
         compare(drawn, reference.drawn, reference, scene, 0,
                 where + ", " + mebibytes(options.budgetBytes) + " of " + mebibytes(stats.textureBytes) + ", " +
                     std::to_string(drawn.picture.stats.uploadedBricks) + " uploads of " +
-                    std::to_string(stats.uploadedBricks) + " bricks",
+                    std::to_string(stats.brickSlots) + " bricks",
                 results.pool, nullptr);
         break;
       } catch (const InvalidArgument&) {
         // A slice needs more than this.
       }
     }
-    if (stats.uploadedBricks < 4) return;
-    const auto compareTextures = [&](const RenderOptions& options) {
+    if (stats.brickSlots < 4) return;
+    const auto compareTextures = [&](const AtlasLimits& options) {
       const Drawn drawn = draw(bricks, scene, options);
       compare(drawn, reference.drawn, reference, scene, 0,
               where + ", " + std::to_string(drawn.picture.stats.textures) + " textures", results.textures, nullptr);
     };
-    RenderOptions bytes, edge;
+    AtlasLimits bytes, edge;
     bytes.maxTextureBytes = stats.textureBytes / 3;
     compareTextures(bytes);
     // Half as many bricks along an edge as one texture of all would have.
     const int brickEdge = bricks.layout.edge().x;
-    const int along = static_cast<int>(std::cbrt(static_cast<double>(stats.uploadedBricks)) / 2);
+    const int along = static_cast<int>(std::cbrt(static_cast<double>(stats.brickSlots)) / 2);
     edge.maxTextureEdge = brickEdge * std::max(1, along);
     compareTextures(edge);
   }
@@ -398,6 +417,7 @@ class Checker {
   std::vector<CheckView> views_;
   std::map<int, std::unique_ptr<Bricks>> bricks_;  // by edge
   std::unique_ptr<Bricks> reference_;
+  ResidentVolumes resident_;
   std::string referenceNote_;
   int apron_ = 1, sceneEdge_ = 0, pooledEdge_ = 0;
   double precision_ = 0;  // of the sampler, voxels

@@ -207,8 +207,9 @@ std::string printPixel(const glm::ivec2& pixel) {
 
 }  // namespace
 
-void checkSlices(const GlContext& context, const ScalarGrid& grid, const Bricks& bricks, const ResolvedScene& scene,
-                 const std::string& view, const SliceCheckOptions& options, const SliceResults& results) {
+void checkSlices(ResidentVolume& resident, const ScalarGrid& grid, const ResolvedScene& scene, const std::string& view,
+                 const SliceCheckOptions& options, const SliceResults& results) {
+  const Bricks& bricks = resident.volume();
   ResolvedScene drawn = scene;
   drawn.transfer = constantMedium(options.complete ? 1e-9 : 0, scene.transfer.is2d());
   drawn.model = Model::emission;
@@ -218,7 +219,7 @@ void checkSlices(const GlContext& context, const ScalarGrid& grid, const Bricks&
   drawn.clipBox.reset();
   drawn.camera.nearDistance = 0;
   const DrawnCells cells(bricks, options.complete);
-  SliceRenderer renderer(context, bricks, drawn);
+  SliceRenderer renderer(resident, drawn);
   const RenderStats stats = renderer.render().stats;
   const std::vector<double> depths = renderer.sliceDepths();
   const auto count = static_cast<std::int64_t>(depths.size());

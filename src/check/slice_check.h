@@ -1,6 +1,7 @@
 // Invariants of single slices, by what each pixel samples.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "umbrick/atlas/resident_volume.h"
 #include "umbrick/check/invariants.h"
 
 namespace umbrick {
@@ -19,7 +20,7 @@ struct SliceResults {
 /// Draws slices of a view without culling and compares, pixel by pixel, the number of bricks that shade it with the
 /// lattice cell that its sample lies in, and the value with OpenVDB's BoxSampler at the same world point.
 /// @param scene  its medium, clipping and near distance are of no account
-void checkSlices(const GlContext& context, const ScalarGrid& grid, const Bricks& bricks, const ResolvedScene& scene,
-                 const std::string& view, const SliceCheckOptions& options, const SliceResults& results);
+void checkSlices(ResidentVolume& resident, const ScalarGrid& grid, const ResolvedScene& scene, const std::string& view,
+                 const SliceCheckOptions& options, const SliceResults& results);
 
 }  // namespace umbrick

@@ -55,7 +55,7 @@ void setSlabUniforms(GlProgram& program, const Frame& frame, const IndexView& vi
 }
 
 void SlicePass::fill(Frame& frame, std::int64_t first, std::int64_t last) {
-  frame.polygons.fill(frame.slices, first, last, frame.view, frame.atlas, frame.reverseBricks);
+  frame.polygons.fill(frame.slices, first, last, frame.view, frame.bricks, frame.reverseBricks);
 }
 
 void bindVolume(const Frame& frame, int texture) {

@@ -60,6 +60,7 @@ struct Frame {
   std::vector<glm::dvec4> planes;  // that cut slabs, in view coordinates
   std::vector<glm::dvec4> bounds;  // beyond which there is nothing to draw: those planes and the box of the medium
   ProxySlices slices;
+  const BrickSelection& bricks;  // polygons name bricks by their position in it
   const BrickAtlas& atlas;
   const TransferLookup& transfer;
   const RenderTargets& targets;

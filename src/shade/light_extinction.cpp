@@ -23,7 +23,7 @@ void LightExtinction::makeTexture(const GlFunctions& gl, const glm::ivec2& size,
 
 void LightExtinction::fill(const Frame& frame, const LightPlan& plan, std::int64_t first, std::int64_t last,
                            std::span<const int> layers) {
-  polygons_->fill(plan.geometry.slices, first, last, plan.geometry.view, frame.atlas, frame.reverseBricks, layers);
+  polygons_->fill(plan.geometry.slices, first, last, plan.geometry.view, frame.bricks, frame.reverseBricks, layers);
 }
 
 void LightExtinction::clearTexture(const GlFunctions& gl) const {

@@ -31,8 +31,6 @@ class OrdinatesPass : public SlicePass {
     aim(frame);
     LightWindows::checkCount(frame.gl, light_.aimed.paths);
     light_.roundings = shiftRoundings(light_.aimed.paths.lights.size(), frame.sample.rounding);
-    origins_.clear();
-    for (const Brick& brick : frame.atlas.bricks()) origins_.push_back(brick.origin);
     const double texel =
         latticeTexel(frame.scene.occlusion.ordinates.scale, frame.slices.spacing, frame.voxelEdge, frame.diagonal);
     GLint mostTexels = 0;
@@ -63,7 +61,7 @@ class OrdinatesPass : public SlicePass {
         const bool occludes = !light_.geometry.extents.occluding[static_cast<std::size_t>(run.slices[m])].empty();
         if (occludes) light[at] = static_cast<int>(m);
       }
-    frame.polygons.fill(frame.slices, first, last, frame.view, frame.atlas, frame.reverseBricks, eye);
+    frame.polygons.fill(frame.slices, first, last, frame.view, frame.bricks, frame.reverseBricks, eye);
     extinction_.fill(frame, light_, first, last, light);
   }
 
@@ -94,23 +92,36 @@ class OrdinatesPass : public SlicePass {
 
  private:
   LitVolume volumeOf(const Frame& frame) const {
-    return {frame.view, frame.slices, origins_, frame.atlas.layout().interior, frame.planes, frame.bounds};
+    return {frame.view,   frame.slices, frame.bricks.origins(), frame.atlas.layout().interior,
+            frame.planes, frame.bounds};
   }
 
-  // Directions of the sample, or of the scene: these are kept for the next picture from the same camera, since an
+  // What directions of a scene depend on.
+  struct Aimed {
+    Camera camera;
+    Model model;
+    OcclusionOptions occlusion;
+    std::vector<LightSource> lights;
+    int bits;
+    bool isOf(const ResolvedScene& scene) const {
+      return camera == scene.camera && model == scene.model && occlusion == scene.occlusion && lights == scene.lights &&
+             bits == scene.sampling.bits;
+    }
+  };
+
+  // Directions of the sample, or of the scene: these are kept for the next picture of the same light, since an
   // environment map takes long to walk.
   void aim(const Frame& frame) {
     const bool ofScene = frame.sample.lights.empty();
-    if (ofScene && aimedFrom_ == frame.camera) return;
-    ResolvedScene scene = frame.scene;
-    scene.camera = frame.camera;
+    const ResolvedScene& scene = frame.scene;
+    if (ofScene && aimed_ && aimed_->isOf(scene)) return;
     light_.aimed =
         aimLight(ofScene ? lightDirections(scene, scene.occlusion.ordinates.directions) : frame.sample.lights,
                  cameraFrame(frame.camera));
     const glm::dvec3 whole = light_.aimed.whole;
     brightest_ = scene.sampling.bits == 16 ? std::max({1.0, whole.r, whole.g, whole.b}) : 1;
-    aimedFrom_.reset();
-    if (ofScene) aimedFrom_ = frame.camera;
+    aimed_.reset();
+    if (ofScene) aimed_ = {scene.camera, scene.model, scene.occlusion, scene.lights, scene.sampling.bits};
   }
 
   void setEyeProgram(const Frame& frame) {
@@ -127,9 +138,8 @@ class OrdinatesPass : public SlicePass {
   }
 
   LightPlan light_;
-  std::optional<Camera> aimedFrom_;  // whose directions of the scene these are
-  double brightest_ = 1;             // see SlicePass
-  std::vector<glm::ivec3> origins_;  // of the bricks
+  std::optional<Aimed> aimed_;  // for the scene, not for a sample
+  double brightest_ = 1;        // see SlicePass
   LightExtinction extinction_;
   LightWindows windows_;
   SpecialisedProgram eye_{"shade/ordinates.vert", "shade/ordinates.frag"};

@@ -24,7 +24,8 @@ PolygonBuffer::PolygonBuffer(const GlFunctions& gl) : gl_(gl), array_(gl), verti
 }
 
 void PolygonBuffer::fill(const ProxySlices& slices, std::int64_t first, std::int64_t last, const IndexView& view,
-                         const BrickAtlas& atlas, bool reverseBricks, std::span<const int> layers) {
+                         const BrickSelection& bricks, bool reverseBricks, std::span<const int> layers) {
+  const BrickAtlas& atlas = bricks.atlas();
   vertexData_.clear();
   indexData_.clear();
   draws_.clear();
@@ -44,9 +45,9 @@ void PolygonBuffer::fill(const ProxySlices& slices, std::int64_t first, std::int
     for (int texture = 0; texture < atlas.textureCount(); ++texture) {
       SliceDraw draw{i, texture, static_cast<std::int32_t>(indexData_.size()), 0};
       for (const ProxyPolygon* polygon : order) {
-        const BrickAtlas::Slot slot = atlas.slot(polygon->brick);
+        const BrickAtlas::Slot slot = bricks.slot(polygon->brick);
         if (slot.texture != texture) continue;
-        const glm::dvec3 origin(atlas.bricks()[static_cast<std::size_t>(polygon->brick)].origin);
+        const glm::dvec3 origin(bricks.origins()[static_cast<std::size_t>(polygon->brick)]);
         const glm::vec3 uvw((glm::dvec3(slot.origin) + (centre - origin) + (apron + 0.5)) / size);
         const auto base = static_cast<std::uint32_t>(vertexData_.size());
         for (int v = 0; v < polygon->vertices; ++v) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "shade/screen_region.h"
-#include "umbrick/atlas/brick_atlas.h"
+#include "umbrick/atlas/resident_volume.h"
 #include "umbrick/gl/objects.h"
 #include "umbrick/slice/proxy_slices.h"
 
@@ -28,7 +28,7 @@ class PolygonBuffer {
   /// @param layers  by slice from `first`: a number that goes with its vertices; negative: leave the slice out. Empty:
   /// 0
   void fill(const ProxySlices& slices, std::int64_t first, std::int64_t last, const IndexView& view,
-            const BrickAtlas& atlas, bool reverseBricks, std::span<const int> layers = {});
+            const BrickSelection& bricks, bool reverseBricks, std::span<const int> layers = {});
   /// In order of slices.
   const std::vector<SliceDraw>& draws() const { return draws_; }
   /// Those of slices [first, last).

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <string>
 
 #include "umbrick/core/error.h"
@@ -11,6 +13,38 @@
 #include "umbrick/slice/proxy_slices.h"
 
 namespace umbrick {
+namespace {
+
+// As requiredApron, over all views with the scene's angle of view and slabs.
+double apronOfAnyView(const ResolvedScene& scene, const glm::dmat4& indexToWorld) {
+  const glm::dmat3 toIndex = glm::transpose(glm::inverse(glm::dmat3(indexToWorld)));  // its columns are the axes' rows
+  const glm::dvec2 corner =
+      scene.camera.projection == Projection::perspective ? screenPlane(scene.camera).halfExtent : glm::dvec2(0);
+  const double ray = std::sqrt(1 + glm::dot(corner, corner));  // the longest view ray, by depth
+  const double voxels = std::max({glm::length(toIndex[0]), glm::length(toIndex[1]), glm::length(toIndex[2])});
+  return std::ceil(0.5 + 0.5 * scene.sampling.spacing * ray * voxels - 1e-9);
+}
+
+}  // namespace
+
+AtlasOptions atlasOptions(const ResolvedScene& scene, const Bricks& volume, const AtlasLimits& limits) {
+  AtlasOptions options;
+  options.format = parseVoxelFormat(scene.bricks.format, volume);
+  options.budgetBytes = limits.budgetBytes > 0 ? limits.budgetBytes : scene.bricks.budgetMiB << 20;
+  options.maxTextureBytes = limits.maxTextureBytes;
+  options.maxTextureEdge = limits.maxTextureEdge;
+  return options;
+}
+
+BrickOptions requiredBricks(const ResolvedScene& scene, const glm::dmat4& indexToWorld, const Box& worldBounds) {
+  BrickOptions options;
+  options.interior = brickInterior(scene, indexToWorld, worldBounds);
+  options.apron = requiredApron(scene, indexToWorld);
+  const double any = apronOfAnyView(scene, indexToWorld);
+  if (any <= options.interior) options.apron = std::max(options.apron, static_cast<int>(any));
+  options.gradients = scene.transfer.is2d();
+  return options;
+}
 
 int requiredApron(const ResolvedScene& resolved, const glm::dmat4& indexToWorld) {
   const IndexView view = indexView(resolved.camera, indexToWorld);
@@ -38,7 +72,7 @@ int brickInterior(const ResolvedScene& resolved, const glm::dmat4& indexToWorld,
     pixel *= std::max(0.0, glm::dot(middle - camera.eye, cameraFrame(camera).forward));
   }
   const double pixelVoxels = pixel / shortestVoxelEdge(indexToWorld);
-  const double wanted = std::max({24.0, std::min(48.0, 7 * pixelVoxels), 3.0 * apron});
+  const double wanted = std::max({static_cast<double>(kDefaultInterior), std::min(48.0, 7 * pixelVoxels), 3.0 * apron});
   return std::min(kMostInterior, 8 * static_cast<int>(std::ceil(wanted / 8)));
 }
 

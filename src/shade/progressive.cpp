@@ -169,9 +169,8 @@ double errorOverDifference(double ratio, double texelVoxels) {
 // Passes over one scene.
 class PassSeries {
  public:
-  PassSeries(const GlContext& context, const Bricks& volume, const ResolvedScene& scene, std::uint64_t seed,
-             const RenderOptions& render)
-      : context_(context), volume_(volume), scene_(scene), render_(render), fine_(context, volume, scene, render) {
+  PassSeries(ResidentVolume& resident, const ResolvedScene& scene, std::uint64_t seed, const RenderOptions& render)
+      : resident_(resident), scene_(scene), render_(render), fine_(resident, scene, render) {
     for (int i = 0; i < kStreams; ++i) streams_.emplace_back(seed, static_cast<std::uint64_t>(i));
   }
 
@@ -181,20 +180,20 @@ class PassSeries {
   void pass(Picture& picture, ErrorEstimate& error) {
     const auto stream = static_cast<std::size_t>(passes_ % kStreams);
     const RenderSample sample = streams_[stream].sample(scene_, passes_ / kStreams);
-    picture = fine_.render(scene_.camera, sample);
+    picture = fine_.render(sample);
     means_[stream].add(picture);
     all_.add(picture);
     if (passes_ == 0) {
       // An automatic texel is that of the first picture from now on, so that twice and half of it are what they say.
-      scene_.occlusion.ordinates.scale = shortestVoxelEdge(volume_.indexToWorld) / picture.stats.windowTexel;
+      scene_.occlusion.ordinates.scale = shortestVoxelEdge(resident_.volume().indexToWorld) / picture.stats.windowTexel;
       // Coarser pictures cost an eighth, finer ones eight times as much, but fit bricks of any apron.
       const ResolvedScene coarse = coarserScene(scene_);
-      const bool fit = fits(volume_, coarse);
+      const bool fit = fits(resident_.volume(), coarse);
       ratio_ = fit ? 2 : 0.5;
-      other_.emplace(context_, volume_, fit ? coarse : finerScene(scene_), render_);
+      other_.emplace(resident_, fit ? coarse : finerScene(scene_), render_);
     }
     // The same light: what differs are slabs and texels.
-    if (other_) otherMeans_[stream].add(other_->render(scene_.camera, sample));
+    if (other_) otherMeans_[stream].add(other_->render(sample));
     if (++passes_ >= kStreams) error.statistical = standardError();
     if (passes_ == kStreams) {
       // What the difference has by chance, by the streams' spread, does not count.
@@ -216,8 +215,7 @@ class PassSeries {
     });
   }
 
-  const GlContext& context_;
-  const Bricks& volume_;
+  ResidentVolume& resident_;
   ResolvedScene scene_;
   RenderOptions render_;
   SliceRenderer fine_;
@@ -234,10 +232,17 @@ class PassSeries {
 ProgressivePicture renderProgressive(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
                                      const ProgressiveOptions& options, const RenderOptions& render,
                                      const std::function<bool(const ProgressivePicture&)>& onPass) {
+  ResidentVolume resident(context, volume, atlasOptions(scene, volume));
+  return renderProgressive(resident, scene, options, render, onPass);
+}
+
+ProgressivePicture renderProgressive(ResidentVolume& resident, const ResolvedScene& scene,
+                                     const ProgressiveOptions& options, const RenderOptions& render,
+                                     const std::function<bool(const ProgressivePicture&)>& onPass) {
   check(scene, options);
   const Stopwatch watch;
-  const double finest = shortestVoxelEdge(volume.indexToWorld) / 8;
-  auto series = std::make_unique<PassSeries>(context, volume, scene, options.seed, render);
+  const double finest = shortestVoxelEdge(resident.volume().indexToWorld) / 8;
+  auto series = std::make_unique<PassSeries>(resident, scene, options.seed, render);
   ProgressivePicture best{.scene = scene}, current{.scene = scene};
   bool refined = false;
   double systematicBefore = kInfinity;  // of the coarser scene
@@ -262,7 +267,7 @@ ProgressivePicture renderProgressive(const GlContext& context, const Bricks& vol
     const bool canRefine =
         options.refine && current.scene.sampling.spacing / 2 >= finest && current.error.systematic <= systematicBefore;
     if (inTheWay && canRefine && pass + kStreams < options.passes) {
-      series = std::make_unique<PassSeries>(context, volume, finerScene(series->scene()), options.seed, render);
+      series = std::make_unique<PassSeries>(resident, finerScene(series->scene()), options.seed, render);
       systematicBefore = current.error.systematic;
       refined = true;
       current.passes = 0;

@@ -2,6 +2,7 @@
 #include "umbrick/shade/slice_renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -44,106 +45,150 @@ void appendIndexBoxPlanes(std::vector<ClipPlane>& planes, const IndexBox& box, c
   }
 }
 
-std::vector<Brick> visibleBricks(const Bricks& volume, const TransferLookup& transfer, const BrickSettings& settings,
-                                 bool backgroundVisible) {
-  std::vector<Brick> bricks;
-  for (const Brick& brick : volume.bricks)
-    if (!settings.culling || transfer.isVisible(brick.value, brick.gradient)) bricks.push_back(brick);
+// The atlas's numbers of the bricks to draw.
+std::vector<std::int32_t> visibleBricks(ResidentVolume& resident, const TransferLookup& transfer, bool culling,
+                                        bool backgroundVisible) {
+  const std::vector<Brick>& bricks = resident.volume().bricks;
+  std::vector<std::int32_t> visible;
+  for (std::size_t i = 0; i < bricks.size(); ++i)
+    if (!culling || transfer.isVisible(bricks[i].value, bricks[i].gradient))
+      visible.push_back(static_cast<std::int32_t>(i));
   if (backgroundVisible) {
-    const std::vector<Brick> background = backgroundBricks(volume);
-    bricks.insert(bricks.end(), background.begin(), background.end());
+    const std::span<const std::int32_t> background = resident.background();
+    visible.insert(visible.end(), background.begin(), background.end());
   }
-  return bricks;
+  return visible;
 }
 
-std::vector<glm::ivec3> originsOf(const std::vector<Brick>& bricks) {
-  std::vector<glm::ivec3> origins;
-  for (const Brick& brick : bricks) origins.push_back(brick.origin);
-  return origins;
+// What of a scene a change asks to be made anew. Camera, clip planes, lights, theta and the like ask for nothing: they
+// are looked at when a picture is drawn.
+struct Dirty {
+  bool lookup = true;     // the transfer function as shaders read it
+  bool selection = true;  // which bricks are visible
+  bool targets = true;    // buffers of the picture
+  bool pass = true;       // how light is computed
+
+  Dirty() = default;
+  Dirty(const ResolvedScene& before, const ResolvedScene& after)
+      : lookup(before.transfer != after.transfer || before.sampling.spacing != after.sampling.spacing ||
+               before.sampling.quadrature != after.sampling.quadrature),
+        selection(lookup || before.bricks.culling != after.bricks.culling),
+        targets(targetsOf(before) != targetsOf(after)),
+        pass(occlusionMethod(before) != occlusionMethod(after)) {}
+
+ private:
+  static std::array<int, 4> targetsOf(const ResolvedScene& scene) {
+    return {scene.camera.width, scene.camera.height, scene.sampling.bits, occlusionBits(scene)};
+  }
+
+ public:
+  /// Of dos's buffers; 0 for those that have none.
+  static int occlusionBits(const ResolvedScene& scene) {
+    return occlusionMethod(scene) == Method::dos ? scene.occlusion.bits : 0;
+  }
+};
+
+std::unique_ptr<SlicePass> makePass(const ResolvedScene& scene) {
+  const std::optional<Method> method = occlusionMethod(scene);
+  if (!method) return makeEmissionPass();
+  return *method == Method::dos ? makeOcclusionPass() : makeOrdinatesPass();
 }
 
 }  // namespace
 
 class SliceRenderer::Implementation {
  public:
-  Implementation(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
-                 const RenderOptions& options)
-      : gl_(context.gl()), volume_(volume), scene_(scene), options_(options) {
-    checkScene(context);
-    const SamplingOptions& sampling = scene.sampling;
-    const VoxelFormat format = parseVoxelFormat(scene.bricks.format, volume);
-    transfer_.emplace(gl_, scene.transfer, sampling, volume, format);
-    const Range background{volume.background, volume.background};
-    backgroundVisible_ = !volume.domain.empty() && transfer_->isVisible(background, {0, 0});
-    std::vector<Brick> bricks = visibleBricks(volume, *transfer_, scene.bricks, backgroundVisible_);
-    origins_ = originsOf(bricks);
-    AtlasOptions atlas;
-    atlas.format = format;
-    atlas.budgetBytes = options.budgetBytes > 0 ? options.budgetBytes : scene.bricks.budgetMiB << 20;
-    atlas.maxTextureBytes = options.maxTextureBytes;
-    atlas.maxTextureEdge = options.maxTextureEdge;
-    atlas_.emplace(context, volume, std::move(bricks), atlas);
-    TargetOptions targets;
-    targets.width = scene.camera.width;
-    targets.height = scene.camera.height;
-    targets.eyeBits = sampling.bits;
-    const std::optional<Method> method = occlusionMethod(scene);
-    const bool dos = method == Method::dos;
-    targets.occlusionBits = dos ? scene.occlusion.bits : 0;
-    targets.aux = options.visibilityAndDepth;
-    targets_.emplace(gl_, targets);
+  Implementation(ResidentVolume& resident, const RenderOptions& options)
+      : gl_(resident.context().gl()), resident_(resident), volume_(resident.volume()), options_(options) {
     polygons_.emplace(gl_);
-    pass_ = !method ? makeEmissionPass() : dos ? makeOcclusionPass() : makeOrdinatesPass();
   }
 
-  const ResolvedScene& scene() const { return scene_; }
+  /// Makes anew what is dirty; all of it or, when something throws, nothing.
+  void update(const ResolvedScene& next, const Dirty& dirty) {
+    checkScene(next);
+    std::optional<TransferLookup> lookup;
+    if (dirty.lookup) lookup.emplace(gl_, next.transfer, next.sampling, volume_, resident_.format());
+    const TransferLookup& transfer = lookup ? *lookup : *transfer_;
+    bool backgroundVisible = backgroundVisible_;
+    std::optional<BrickSelection> selection;
+    bool fits = fits_;
+    if (dirty.selection) {
+      const Range background{volume_.background, volume_.background};
+      backgroundVisible = !volume_.domain.empty() && transfer.isVisible(background, {0, 0});
+      selection.emplace(resident_.atlas(), visibleBricks(resident_, transfer, next.bricks.culling, backgroundVisible));
+      fits = selection->reserve();
+    }
+    std::optional<RenderTargets> targets;
+    if (dirty.targets) {
+      TargetOptions options;
+      options.width = next.camera.width;
+      options.height = next.camera.height;
+      options.eyeBits = next.sampling.bits;
+      options.occlusionBits = Dirty::occlusionBits(next);
+      options.aux = options_.visibilityAndDepth;
+      targets.emplace(gl_, options);
+    }
+    std::unique_ptr<SlicePass> pass = dirty.pass ? makePass(next) : nullptr;
+    frame_.reset();  // it refers to what is replaced
+    if (lookup) transfer_.emplace(std::move(*lookup));
+    if (selection) selection_.emplace(std::move(*selection));
+    if (targets) targets_.emplace(std::move(*targets));
+    if (pass) pass_ = std::move(pass);
+    backgroundVisible_ = backgroundVisible;
+    fits_ = fits;
+  }
 
-  Picture render(const Camera& camera, const RenderSample& sample) {
-    if (camera.width != scene_.camera.width || camera.height != scene_.camera.height)
-      throw InvalidArgument("render: the renderer was made for pictures of another size");
-    Picture picture;
-    RenderStats& stats = picture.stats;
-    Stopwatch geometry;
-    prepareFrame(camera, sample);
+  void draw(const ResolvedScene& scene, const RenderSample& sample) {
+    stats_ = {};
+    const Stopwatch geometry;
+    prepareFrame(scene, sample);
     Frame& frame = *frame_;
-    const std::uint64_t uploadedBefore = atlas_->uploadedBricks();
-    stats.geometryMs = geometry.elapsedMs();
+    const std::uint64_t uploadedBefore = resident_.atlas().uploadedBricks();
+    stats_.geometryMs = geometry.elapsedMs();
 
     targets_->clear(gl_);
-    gl_.Viewport(0, 0, camera.width, camera.height);
+    gl_.Viewport(0, 0, frame.camera.width, frame.camera.height);
     pass_->begin(frame, runs_);
     for (const SweepRun& run : runs_) {
       const Stopwatch upload;
-      makeResident(run);
+      selection_->require(run.bricks);
       pass_->fill(frame, run.first, run.last);
-      stats.uploadMs += upload.elapsedMs();
+      stats_.uploadMs += upload.elapsedMs();
       const Stopwatch sweep;
       frame.clock.start();
       pass_->draw(frame, run.first, run.last);
       frame.clock.lap(&PassTimes::eyeMs);
       // Only what waits for the last fragment tells the time of the sweep.
       gl_.Finish();
-      stats.sweepMs += sweep.elapsedMs();
+      stats_.sweepMs += sweep.elapsedMs();
     }
     checkGl(gl_, "render");
+    stats_.uploadedBricks = resident_.atlas().uploadedBricks() - uploadedBefore;
+  }
 
+  Picture read(const ResolvedScene& scene) {
+    if (!frame_) throw InvalidArgument("render: nothing was drawn since the scene changed");
+    const Frame& frame = *frame_;
+    Picture picture;
     const Stopwatch read;
-    readPicture(frame, picture);
+    readPicture(scene, picture);
+    RenderStats& stats = picture.stats = stats_;
     stats.readMs = read.elapsedMs();
     stats.slices = frame.slices.count();
     stats.bricks = volume_.bricks.size();
-    stats.visibleBricks = origins_.size();
+    stats.visibleBricks = selection_->size();
+    stats.brickSlots = selection_->slots();
     stats.polygons = frame.slices.polygons.size();
     stats.fragments = frame.fragments.total();
-    stats.uploadedBricks = atlas_->uploadedBricks() - uploadedBefore;
-    stats.textureBytes = atlas_->textureBytes();
-    stats.textures = atlas_->textureCount();
-    const glm::ivec3 textureSize = atlas_->textureSize();
+    const BrickAtlas& atlas = resident_.atlas();
+    stats.textureBytes = atlas.textureBytes();
+    stats.textures = atlas.textureCount();
+    const glm::ivec3 textureSize = atlas.textureSize();
     stats.textureEdge = std::max({textureSize.x, textureSize.y, textureSize.z});
     stats.bufferBytes = targets_->bytes();
     stats.passes = frame.clock.times();
     pass_->addTo(stats);
-    stats.formatError = atlas_->formatError();
+    stats.formatError = atlas.formatError();
     return picture;
   }
 
@@ -171,8 +216,8 @@ class SliceRenderer::Implementation {
     const auto end = static_cast<std::size_t>(frame.slices.start[static_cast<std::size_t>(slice) + 1]);
     std::vector<std::int32_t> needed;
     for (std::size_t p = begin; p < end; ++p) needed.push_back(frame.slices.polygons[p].brick);
-    makeResident({slice, slice + 1, needed});
-    polygons_->fill(frame.slices, slice, slice + 1, frame.view, *atlas_, options_.reverseBricks);
+    selection_->require(needed);
+    polygons_->fill(frame.slices, slice, slice + 1, frame.view, *selection_, options_.reverseBricks);
     polygons_->bind();
     for (const SliceDraw& draw : polygons_->draws()) {
       bindVolume(frame, draw.texture);
@@ -181,7 +226,7 @@ class SliceRenderer::Implementation {
     const Image read = readTexture(gl_, target, width, height);
     checkGl(gl_, "probe");
     Image image(width, height, 2);
-    const TexelScale scale = atlas_->valueScale();
+    const TexelScale scale = resident_.atlas().valueScale();
     for (std::size_t i = 0; i < read.pixels.size() / 4; ++i) {
       image.pixels[2 * i] = static_cast<float>(read.pixels[4 * i] * scale.scale + scale.offset);
       image.pixels[2 * i + 1] = read.pixels[4 * i + 1];
@@ -197,44 +242,46 @@ class SliceRenderer::Implementation {
   }
 
  private:
-  void checkScene(const GlContext& context) const {
-    if (!supports(Method::ordinates, scene_.model))
-      throw InvalidArgument("model: " + modelName(scene_.model) +
+  void checkScene(const ResolvedScene& scene) const {
+    if (!supports(Method::ordinates, scene.model))
+      throw InvalidArgument("model: " + modelName(scene.model) +
                             " is integrated by the reference alone; slices render emission, cone and lights");
-    if (!supports(scene_.method, scene_.model))
-      throw InvalidArgument("method: " + methodName(scene_.method) + " knows one cone around the view axis; " +
-                            modelName(scene_.model) + " need ordinates");
-    const int most = context.maxTextureEdge2d();
-    if (scene_.camera.width > most || scene_.camera.height > most)
-      throw InvalidArgument("size: " + std::to_string(scene_.camera.width) + " x " +
-                            std::to_string(scene_.camera.height) + " is beyond the driver's limit of " +
+    if (!supports(scene.method, scene.model))
+      throw InvalidArgument("method: " + methodName(scene.method) + " knows one cone around the view axis; " +
+                            modelName(scene.model) + " need ordinates");
+    const int most = resident_.context().maxTextureEdge2d();
+    if (scene.camera.width > most || scene.camera.height > most)
+      throw InvalidArgument("size: " + std::to_string(scene.camera.width) + " x " +
+                            std::to_string(scene.camera.height) + " is beyond the driver's limit of " +
                             std::to_string(most) + " pixels along an edge");
-    if (scene_.transfer.is2d() && !volume_.hasGradients)
+    if (scene.transfer.is2d() && !volume_.hasGradients)
       throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
   }
 
-  void checkReach(const IndexView& view) const {
-    const glm::dvec3 reach = slabReach(view, scene_.sampling.spacing);
+  void checkReach(const IndexView& view, const ResolvedScene& scene) const {
+    const glm::dvec3 reach = slabReach(view, scene.sampling.spacing);
     if (std::max({reach.x, reach.y, reach.z}) > volume_.layout.apron - 0.5 + 1e-6)
       throw InvalidArgument("render: slabs reach beyond the apron of " + std::to_string(volume_.layout.apron) +
                             " voxels");
   }
 
-  std::vector<glm::dvec4> viewPlanes(const Camera& camera) const {
-    std::vector<ClipPlane> planes = scene_.clipPlanes;
-    if (scene_.clipBox) appendBoxPlanes(planes, *scene_.clipBox);
+  std::vector<glm::dvec4> viewPlanes(const ResolvedScene& scene) const {
+    const Camera& camera = scene.camera;
+    std::vector<ClipPlane> planes = scene.clipPlanes;
+    if (scene.clipBox) appendBoxPlanes(planes, *scene.clipBox);
     if (backgroundVisible_)
-      appendIndexBoxPlanes(planes, mediumBox(scene_.transfer, volume_.domain), volume_.indexToWorld);
+      appendIndexBoxPlanes(planes, mediumBox(scene.transfer, volume_.domain), volume_.indexToWorld);
     for (ClipPlane& plane : planes) plane = planeInView(plane, camera);
     if (camera.nearDistance > 0) planes.emplace_back(0, 0, 1, -camera.nearDistance);
     return planes;
   }
 
   // The box of the medium cuts no slab where the background is invisible, but nothing lies beyond it.
-  std::vector<glm::dvec4> viewBounds(const Camera& camera, std::vector<glm::dvec4> planes) const {
+  std::vector<glm::dvec4> viewBounds(const ResolvedScene& scene, std::vector<glm::dvec4> planes) const {
+    const Camera& camera = scene.camera;
     if (backgroundVisible_ || volume_.domain.empty()) return planes;
     std::vector<ClipPlane> box;
-    appendIndexBoxPlanes(box, mediumBox(scene_.transfer, volume_.domain), volume_.indexToWorld);
+    appendIndexBoxPlanes(box, mediumBox(scene.transfer, volume_.domain), volume_.indexToWorld);
     for (const ClipPlane& plane : box) planes.push_back(planeInView(plane, camera));
     return planes;
   }
@@ -249,41 +296,33 @@ class SliceRenderer::Implementation {
     return longest;
   }
 
-  void prepareFrame(const Camera& camera, const RenderSample& sample) {
+  void prepareFrame(const ResolvedScene& scene, const RenderSample& sample) {
+    const Camera& camera = scene.camera;
     const IndexView view = indexView(camera, volume_.indexToWorld);
-    checkReach(view);
-    std::vector<glm::dvec4> planes = viewPlanes(camera);
-    std::vector<glm::dvec4> bounds = viewBounds(camera, planes);
-    const double spacing = scene_.sampling.spacing;
-    ProxySlices slices = cutSlices(view, origins_, volume_.layout.interior, bounds, spacing);
+    checkReach(view, scene);
+    std::vector<glm::dvec4> planes = viewPlanes(scene);
+    std::vector<glm::dvec4> bounds = viewBounds(scene, planes);
+    const double spacing = scene.sampling.spacing;
+    ProxySlices slices = cutSlices(view, selection_->origins(), volume_.layout.interior, bounds, spacing);
     // The first slab of another phase begins before or behind the eye: there must be nothing.
     if (sample.phase != 0.5 && slices.first > 0)
-      slices = cutSlices(view, origins_, volume_.layout.interior, bounds, spacing, sample.phase);
-    frame_.emplace(Frame{gl_, scene_, camera, view, std::move(planes), std::move(bounds), std::move(slices), *atlas_,
-                         *transfer_, *targets_, *polygons_, FragmentCounter(gl_, options_.countFragments),
-                         options_.reverseBricks, shortestVoxelEdge(volume_.indexToWorld), domainDiagonal(),
-                         PassClock(gl_, options_.timePasses), sample});
+      slices = cutSlices(view, selection_->origins(), volume_.layout.interior, bounds, spacing, sample.phase);
+    frame_.emplace(Frame{gl_, scene, camera, view, std::move(planes), std::move(bounds), std::move(slices), *selection_,
+                         selection_->atlas(), *transfer_, *targets_, *polygons_,
+                         FragmentCounter(gl_, options_.countFragments), options_.reverseBricks,
+                         shortestVoxelEdge(volume_.indexToWorld), domainDiagonal(), PassClock(gl_, options_.timePasses),
+                         sample});
     pass_->plan(*frame_);
     std::vector<const ProxySlices*> sweeps{&frame_->slices};
     if (pass_->occluders()) sweeps.push_back(pass_->occluders());
-    runs_ = planSweep(sweeps, origins_.size(),
-                      atlas_->holdsAll() ? std::numeric_limits<std::size_t>::max() : atlas_->slots());
+    runs_ = planSweep(sweeps, selection_->size(),
+                      fits_ ? std::numeric_limits<std::size_t>::max() : resident_.atlas().slots());
   }
 
-  void makeResident(const SweepRun& run) {
-    if (!atlas_->holdsAll()) {
-      std::vector<bool> needed(origins_.size(), false);
-      for (const std::int32_t brick : run.bricks) needed[static_cast<std::size_t>(brick)] = true;
-      for (std::size_t brick = 0; brick < needed.size(); ++brick)
-        if (!needed[brick]) atlas_->release(static_cast<std::int32_t>(brick));
-    }
-    atlas_->require(run.bricks);
-  }
-
-  void readPicture(const Frame& frame, Picture& picture) const {
-    const int width = frame.camera.width, height = frame.camera.height;
+  void readPicture(const ResolvedScene& scene, Picture& picture) const {
+    const int width = scene.camera.width, height = scene.camera.height;
     picture.colour = readTexture(gl_, targets_->eye, width, height);
-    const glm::vec3 ambient(scene_.ambient);
+    const glm::vec3 ambient(scene.ambient);
     const auto brightest = static_cast<float>(pass_->brightest());
     for (std::size_t i = 0; i < picture.colour.pixels.size(); i += 4) {
       float* pixel = &picture.colour.pixels[i];
@@ -291,9 +330,9 @@ class SliceRenderer::Implementation {
       const float through = 1 - pixel[3];
       for (int c = 0; c < 3; ++c) {
         pixel[c] *= brightest * ambient[c];
-        if (scene_.background) pixel[c] += through * static_cast<float>((*scene_.background)[c]);
+        if (scene.background) pixel[c] += through * static_cast<float>((*scene.background)[c]);
       }
-      if (scene_.background) pixel[3] = 1;
+      if (scene.background) pixel[3] = 1;
     }
     if (!options_.visibilityAndDepth) return;
     const Image aux = readTexture(gl_, targets_->aux, width, height);
@@ -307,30 +346,43 @@ class SliceRenderer::Implementation {
   }
 
   const GlFunctions& gl_;
+  ResidentVolume& resident_;
   const Bricks& volume_;
-  const ResolvedScene scene_;
   const RenderOptions options_;
   bool backgroundVisible_ = false;
-  std::vector<glm::ivec3> origins_;  // of the visible bricks
+  bool fits_ = false;  // all visible bricks are resident at once
   std::optional<TransferLookup> transfer_;
-  std::optional<BrickAtlas> atlas_;
+  std::optional<BrickSelection> selection_;  // the visible bricks
   std::optional<RenderTargets> targets_;
   std::optional<PolygonBuffer> polygons_;
   std::unique_ptr<SlicePass> pass_;
   SpecialisedProgram probe_{"shade/slice.vert", "shade/probe.frag"};
   std::vector<SweepRun> runs_;
   std::optional<Frame> frame_;  // of the last picture
+  RenderStats stats_;           // of drawing it
 };
 
+SliceRenderer::SliceRenderer(ResidentVolume& volume, const ResolvedScene& scene, const RenderOptions& options)
+    : implementation_(std::make_unique<Implementation>(volume, options)) {
+  setScene(scene);
+}
 SliceRenderer::SliceRenderer(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
-                             const RenderOptions& options)
-    : implementation_(std::make_unique<Implementation>(context, volume, scene, options)) {}
+                             const RenderOptions& options, const AtlasLimits& limits)
+    : own_(std::make_unique<ResidentVolume>(context, volume, atlasOptions(scene, volume, limits))),
+      implementation_(std::make_unique<Implementation>(*own_, options)) {
+  setScene(scene);
+}
 SliceRenderer::~SliceRenderer() = default;
 
-Picture SliceRenderer::render() { return render(implementation_->scene().camera); }
-Picture SliceRenderer::render(const Camera& camera, const RenderSample& sample) {
-  return implementation_->render(camera, sample);
+void SliceRenderer::update(const ResolvedScene& next) {
+  implementation_->update(next, hasScene() ? Dirty(scene(), next) : Dirty());
 }
+Picture SliceRenderer::render(const Camera& camera, const RenderSample& sample) {
+  setCamera(camera);
+  return render(sample);
+}
+void SliceRenderer::draw(const RenderSample& sample) { implementation_->draw(scene(), sample); }
+Picture SliceRenderer::read() { return implementation_->read(scene()); }
 Image SliceRenderer::probe(std::int64_t slice) { return implementation_->probe(slice); }
 std::vector<double> SliceRenderer::sliceDepths() const { return implementation_->sliceDepths(); }
 

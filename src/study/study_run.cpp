@@ -22,15 +22,11 @@ namespace umbrick {
 namespace {
 
 BrickOptions bricksOf(const ScalarGrid& grid, const ResolvedScene& scene) {
-  BrickOptions options;
-  options.interior = brickInterior(scene, grid.indexToWorld(), grid.worldBounds());
-  options.apron = requiredApron(scene, grid.indexToWorld());
-  return options;
+  return requiredBricks(scene, grid.indexToWorld(), grid.worldBounds());
 }
 
 std::unique_ptr<Bricks> cut(const ScalarGrid& grid, const ResolvedScene& scene) {
-  BrickOptions options = bricksOf(grid, scene);
-  options.gradients = scene.transfer.is2d();
+  const BrickOptions options = bricksOf(grid, scene);
   return scene.bricks.bricked ? brickGrid(grid, options) : unbrickedGrid(grid, options);
 }
 
@@ -102,6 +98,7 @@ void checkCases(const GlContext& context, const ScalarGrid& grid, const StudyRec
 
 struct StudyRun::Baseline {
   int size;
+  std::shared_ptr<ResidentVolume> volume;
   SliceRenderer renderer;
   // Frames that a reference's time is divided by.
   double medianMs(int frames) {
@@ -118,7 +115,12 @@ struct StudyRun::Baseline {
 
 StudyRun::StudyRun(const GlContext& context, const ScalarGrid& grid, StudyRecord& record, const StudyFolder& folder,
                    const StudyCallback& progress)
-    : context_(context), grid_(grid), record_(record), folder_(folder), progress_(progress) {}
+    : context_(context),
+      grid_(grid),
+      record_(record),
+      folder_(folder),
+      progress_(progress),
+      resident_(context, record.scene.bricks.budgetMiB << 20) {}
 
 StudyRun::~StudyRun() = default;
 
@@ -170,11 +172,17 @@ const Bricks& StudyRun::bricksFor(const ResolvedScene& scene) {
   return *bricks;
 }
 
+std::shared_ptr<ResidentVolume> StudyRun::residentFor(const ResolvedScene& scene) {
+  const Bricks& bricks = bricksFor(scene);
+  return resident_.get(bricks, atlasOptions(scene, bricks));
+}
+
 StudyRun::Baseline& StudyRun::baselineOf(int size) {
   if (!baseline_ || baseline_->size != size) {
     baseline_.reset();
     const ResolvedScene scene = baselineScene(record_.scene, size, record_.geometry);
-    baseline_.reset(new Baseline{size, SliceRenderer(context_, bricksFor(scene), scene, quietly())});
+    const auto volume = residentFor(scene);
+    baseline_.reset(new Baseline{size, volume, SliceRenderer(*volume, scene, quietly())});
   }
   return *baseline_;
 }
@@ -245,7 +253,8 @@ void StudyRun::measureModelError(const StudyReference& cone) {
 RenderStats StudyRun::countedPicture(const ResolvedScene& scene) {
   RenderOptions options;
   options.timePasses = true;
-  SliceRenderer renderer(context_, bricksFor(scene), scene, options);
+  const auto volume = residentFor(scene);
+  SliceRenderer renderer(*volume, scene, options);
   renderer.render();  // uploads and compiles
   return renderer.render().stats;
 }
@@ -263,7 +272,8 @@ void StudyRun::measureCase(const StudyCase& what) {
   timing.pairs = record_.plan.settings.repeats;
   PairedTimes times;
   {
-    SliceRenderer renderer(context_, bricksFor(scene), scene, quietly());
+    const auto volume = residentFor(scene);
+    SliceRenderer renderer(*volume, scene, quietly());
     times = timePairs([&] { baseline.renderer.render(); }, [&] { picture = renderer.render(); }, timing);
   }
   result.timeRatio = spreadOf(ratios(times.caseMs, times.baselineMs));

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "study/study_folder.h"
+#include "umbrick/atlas/resident_volume.h"
 #include "umbrick/brick/brick_grid.h"
 #include "umbrick/shade/slice_renderer.h"
 #include "umbrick/study/study.h"
@@ -40,6 +41,7 @@ class StudyRun {
  private:
   struct Baseline;
   const Bricks& bricksFor(const ResolvedScene& scene);
+  std::shared_ptr<ResidentVolume> residentFor(const ResolvedScene& scene);
   Baseline& baselineOf(int size);
   const Image& referenceImage(const StudyReference& what);
   bool report(const std::string& step, double share);
@@ -57,6 +59,7 @@ class StudyRun {
   const StudyFolder& folder_;
   const StudyCallback& progress_;
   std::map<std::pair<int, int>, std::unique_ptr<Bricks>> bricks_;  // by interior and apron
+  ResidentVolumes resident_;                                       // made of those
   std::unique_ptr<Baseline> baseline_;                             // of the last size
   std::map<std::string, Image> references_;                        // by id
   double work_ = 0, done_ = 0;                                     // seconds that steps may take, only for their ratio

@@ -40,7 +40,9 @@ double texelOf(float value, const TexelScale& scale, VoxelFormat format);
 double gradientTexelOf(float gradient, VoxelFormat format);
 
 /// A pool of slots, all in textures of one size, filled as bricks are required. When every brick fits, each is uploaded
-/// once; else the caller releases bricks that the sweep has left behind. Bricks of one value share a slot.
+/// once; else those that were required longest ago make room. Bricks of one value share a slot. The pool grows when
+/// more bricks are to be held; what is resident is copied on the GPU, not uploaded again, where the budget has room for
+/// both pools meanwhile.
 class BrickAtlas {
  public:
   struct Slot {
@@ -48,12 +50,25 @@ class BrickAtlas {
     glm::ivec3 origin{0};  // texels, of the first apron voxel
   };
 
+  /// A pool for all of these.
   /// @param bricks  those that may be required, by their position in the list
   /// @throw InvalidArgument  not even one brick fits the budget or a texture: says what is needed and what there is
   /// @throw GlError
   BrickAtlas(const GlContext& context, const Bricks& volume, std::vector<Brick> bricks, const AtlasOptions& options);
 
-  /// Makes bricks resident, those that are not yet.
+  /// An empty pool for bricks of the volume; reserve() makes room.
+  /// @throw InvalidArgument  as above
+  BrickAtlas(const GlContext& context, const Bricks& volume, const AtlasOptions& options);
+
+  /// Returns how many slots these bricks take.
+  std::size_t slotsFor(std::span<const std::int32_t> bricks) const;
+  /// Makes room for so many slots, or for as many as the budget allows.
+  /// @throw GlError
+  void reserve(std::size_t slots);
+  /// More bricks that may be required, behind those there are.
+  void append(const std::vector<Brick>& bricks);
+
+  /// Makes bricks resident, those that are not yet. Others stay as long as there is room.
   /// @throw InvalidArgument  more slots are needed than the budget allows: names both sizes
   void require(std::span<const std::int32_t> bricks);
   /// Gives the brick's slot back.
@@ -69,7 +84,7 @@ class BrickAtlas {
   const std::vector<Brick>& bricks() const { return bricks_; }
   const BrickLayout& layout() const { return volume_.layout; }
   std::size_t slots() const { return slots_; }
-  bool holdsAll() const { return holdsAll_; }
+  bool holdsAll() const { return slots_ >= slotsForAll_; }
   std::uint64_t textureBytes() const;
   std::uint64_t uploadedBricks() const { return uploaded_; }
   /// Largest difference between a voxel and its texel so far; 0 for an exact format.
@@ -77,7 +92,11 @@ class BrickAtlas {
 
  private:
   using UniformKey = std::tuple<float, float>;
-  void planTextures(const AtlasOptions& options, int maxEdge);
+  void checkLimits(int maxEdge);
+  void planTextures(std::size_t slots);
+  void evict(std::size_t slots);
+  std::uint64_t slotBytes() const;
+  Slot place(std::int32_t slot, const glm::ivec3& slotGrid) const;
   void upload(std::span<const std::pair<std::int32_t, std::int32_t>> brickAndSlot);
   double encode(std::span<const float> values, std::span<const float> gradients, std::byte* texels) const;
 
@@ -87,11 +106,14 @@ class BrickAtlas {
   VoxelFormat format_;
   TexelScale valueScale_;
   glm::ivec3 slotGrid_{1}, size_{0};  // slots along each axis of a texture, and its texels
-  std::size_t slots_ = 0;
-  bool holdsAll_ = false;
+  std::size_t slots_ = 0, slotsForAll_ = 0, affordable_ = 0;
+  AtlasOptions options_;
+  int maxEdge_ = 0;  // texels, of a texture
   std::vector<GlTexture> textures_;
   std::vector<std::int32_t> slotOf_;            // by brick, -1 when not resident
   std::vector<std::int32_t> users_;             // by slot
+  std::vector<std::uint64_t> requiredAt_;       // by slot: the number of the call of require() that asked for it last
+  std::uint64_t requests_ = 0;                  // calls of require()
   std::vector<std::int32_t> free_;              // slots
   std::map<UniformKey, std::int32_t> uniform_;  // slots of bricks of one value
   std::uint64_t uploaded_ = 0;

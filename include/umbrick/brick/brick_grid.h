@@ -9,12 +9,6 @@
 
 namespace umbrick {
 
-struct BrickOptions {
-  int interior = 16;       // owned voxels along each edge, 8 to 256, a multiple of 8 (whole leaves)
-  int apron = 1;           // ghost voxels; a sample may lie up to apron - 1/2 voxels outside the brick
-  bool gradients = false;  // for 2D transfer functions
-};
-
 /// Tiles, inactive voxels that differ from the background and the background itself are voxels like any other.
 /// Voxels that are not finite read as background, a background that is not finite as 0.
 /// Work is shared among all cores; memory is a block per thread: voxels stay in the grid until they are read.

@@ -21,11 +21,22 @@ enum class VoxelFormat {
   float32,
 };
 
+/// Owned voxels along a brick's edge unless something asks for others: small enough to skip most of what is empty, and
+/// large enough that aprons are no more than a quarter of it.
+inline constexpr int kDefaultInterior = 24;
+
+/// How a volume is cut.
+struct BrickOptions {
+  int interior = kDefaultInterior;  // owned voxels along each edge, 8 to 256, a multiple of 8 (whole leaves)
+  int apron = 1;                    // ghost voxels; a sample may lie up to apron - 1/2 voxels outside the brick
+  bool gradients = false;           // for 2D transfer functions
+};
+
 /// The brick at lattice cell c owns voxels [origin, origin + interior) and the space [origin - 1/2, origin + interior -
 /// 1/2) of continuous index space (voxel centres at integers), origin = c * interior.
 struct BrickLayout {
-  glm::ivec3 interior{32};  // owned voxels along each axis
-  int apron = 1;            // ghost voxels on each side
+  glm::ivec3 interior{kDefaultInterior};  // owned voxels along each axis
+  int apron = 1;                          // ghost voxels on each side
   glm::ivec3 edge() const { return interior + 2 * apron; }
   std::size_t voxels() const {
     const glm::ivec3 e = edge();

@@ -19,7 +19,7 @@ namespace umbrick {
   X(TEXTURESTORAGE1D, TextureStorage1D) X(TEXTURESTORAGE2D, TextureStorage2D) X(TEXTURESTORAGE3D, TextureStorage3D) \
   X(TEXTURESUBIMAGE1D, TextureSubImage1D) X(TEXTURESUBIMAGE2D, TextureSubImage2D) \
   X(TEXTURESUBIMAGE3D, TextureSubImage3D) X(TEXTUREPARAMETERI, TextureParameteri) \
-  X(GETTEXTUREIMAGE, GetTextureImage) \
+  X(GETTEXTUREIMAGE, GetTextureImage) X(COPYIMAGESUBDATA, CopyImageSubData) \
   X(CREATEBUFFERS, CreateBuffers) X(DELETEBUFFERS, DeleteBuffers) X(NAMEDBUFFERDATA, NamedBufferData) \
   X(NAMEDBUFFERSUBDATA, NamedBufferSubData) \
   X(CREATEVERTEXARRAYS, CreateVertexArrays) X(DELETEVERTEXARRAYS, DeleteVertexArrays) \

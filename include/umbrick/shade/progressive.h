@@ -59,10 +59,15 @@ inline constexpr int kStreams = 4;
 /// picture is linear in its light. Passes of a stream continue one sequence, so that the error falls faster than with
 /// the root of their number, and the streams' spread, which needs no more than that they are independent, is an honest
 /// standard error (replicated quasi-Monte Carlo, Owen 1997). The same seed gives the same picture.
+/// All pictures read the same resident bricks.
 /// @param volume  bricks with the apron of coarserScene(scene); with less, where slabs twice as thick reach beyond it,
 /// the systematic error comes from the difference to slabs half as thick, at eight times the cost of the first passes
 /// @param onPass  called after every pass with the picture so far; false stops
 /// @throw InvalidArgument  a model or a method without directions; an option out of range; as SliceRenderer
+ProgressivePicture renderProgressive(ResidentVolume& volume, const ResolvedScene& scene,
+                                     const ProgressiveOptions& options, const RenderOptions& render = {},
+                                     const std::function<bool(const ProgressivePicture&)>& onPass = {});
+/// The same, of a volume that is made resident for it.
 ProgressivePicture renderProgressive(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
                                      const ProgressiveOptions& options, const RenderOptions& render = {},
                                      const std::function<bool(const ProgressivePicture&)>& onPass = {});

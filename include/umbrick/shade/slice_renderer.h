@@ -2,73 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <memory>
 #include <vector>
 
+#include "umbrick/atlas/resident_volume.h"
 #include "umbrick/brick/bricks.h"
 #include "umbrick/gl/context.h"
-#include "umbrick/image/image.h"
-#include "umbrick/scene/lights.h"
-#include "umbrick/scene/resolve.h"
+#include "umbrick/shade/prepare.h"
+#include "umbrick/shade/renderer.h"
 
 namespace umbrick {
-
-struct RenderOptions {
-  bool visibilityAndDepth = false;  // also make the layers of Picture
-  bool countFragments = true;
-  bool timePasses = false;     // RenderStats::passes; waiting for each pass makes a picture slower
-  bool reverseBricks = false;  // draw the bricks of a slice in the opposite order: must change nothing
-  std::uint64_t maxTextureBytes = std::uint64_t{512} << 20;  // see AtlasOptions
-  int maxTextureEdge = 0;
-  std::uint64_t budgetBytes = 0;  // of bricks' textures; 0: the scene's budget
-};
-
-/// Where the time of a sweep goes, ms.
-struct PassTimes {
-  double extinctionMs = 0;  // ordinates: bricks to the slices' optical depth on the lattice of the light
-  double windowsMs = 0;     // ordinates: light through the slices
-  double eyeMs = 0;         // bricks to the eye; for dos, light as well
-};
-
-struct RenderStats {
-  std::int64_t slices = 0;        // planes between the nearest and the farthest visible brick
-  std::size_t bricks = 0;         // of the volume
-  std::size_t visibleBricks = 0;  // after culling
-  std::size_t polygons = 0;
-  std::uint64_t fragments = 0;       // of bricks that passed the depth test, all passes; 0 when not counted
-  std::uint64_t uploadedBricks = 0;  // in this picture
-  std::uint64_t textureBytes = 0;    // of bricks
-  int textures = 0;                  // that hold bricks
-  int textureEdge = 0;               // longest, texels
-  std::uint64_t bufferBytes = 0;     // eye, occlusion, depth and layers
-  int directions = 0;                // ordinates: of the light
-  double windowTexel = 0;            // ordinates: edge of a texel of the windows, world units
-  std::uint64_t windowBytes = 0;     // ordinates: of the windows and of what light is computed on, part of bufferBytes
-  std::uint64_t windowUpdates = 0;   // ordinates: texels of windows that slices were taken through
-  PassTimes passes;                  // when asked for
-  double formatError = 0;            // largest |voxel - texel|, grid units
-  double geometryMs = 0;             // cutting slices into polygons
-  double uploadMs = 0;               // bricks and polygons to textures and buffers
-  double sweepMs = 0;                // drawing, until the last fragment is done
-  double readMs = 0;                 // picture back to memory
-};
-
-/// Where the freedom of a picture lies: pictures of other samples have other errors, so that their mean has less. The
-/// defaults are those of a single picture.
-struct RenderSample {
-  std::vector<LightDirection> lights;  // of ordinates; empty: lightDirections() of the scene
-  double phase = 0.5;          // of the slices, see ProxySlices; 1/2 where less than a slab is between eye and volume
-  glm::dvec2 latticeShift{0};  // of ordinates: of the lattice of the light, texels
-  glm::dvec2 rounding{0.5};    // of ordinates: what is added to shifts before they are cut to whole texels, in [0, 1)
-};
-
-struct Picture {
-  Image colour;      // linear premultiplied RGBA
-  Image visibility;  // 1 channel: V weighted by opacity, so that V / A is the mean visibility along the ray
-  Image depth;  // 1 channel: mean depth along the view axis, world units, weighted by opacity; infinite where A is 0
-  RenderStats stats;
-};
 
 /// A slab is cut into segments along the view ray. Over a segment the value runs linearly, and the transfer function is
 /// integrated stretch by stretch between its control points: opacity exactly, colour with what is behind dimmed by what
@@ -89,23 +32,27 @@ struct Picture {
 /// with a = c / r for the one c that would scatter the same from a solid slab: sum_k L_k T_k / (1 + c_k) = sum_k L_k
 /// T_k / (1 + c). Between texels, sums are interpolated with the transmittance along the view axis as their weight.
 /// Sources: Max 1995, doi:10.1109/2945.468400; Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
-class SliceRenderer {
+class SliceRenderer : public Renderer {
  public:
-  /// Culls, plans the atlas and compiles what the scene needs; bricks are uploaded by the first render().
-  /// @param scene  resolved, see resolveScene; `volume` must have the apron and the gradients it needs and outlive this
+  /// Culls, makes room in the volume's atlas and compiles what the scene needs; bricks are uploaded by the first
+  /// draw().
+  /// @param volume  must have the apron and the gradients that the scene needs; outlives this
   /// @throw InvalidArgument  an image beyond the driver's limit, a volume with a too narrow apron, a budget too small
   /// @throw GlError
-  /// @pre `context` is current and outlives this
+  /// @pre the context of `volume` is current
+  SliceRenderer(ResidentVolume& volume, const ResolvedScene& scene, const RenderOptions& options = {});
+  /// With a resident volume of its own. @param context,volume  outlive this
+  /// @param limits  of the atlas; format and budget 0 are the scene's
   SliceRenderer(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
-                const RenderOptions& options = {});
-  ~SliceRenderer();
+                const RenderOptions& options = {}, const AtlasLimits& limits = {});
+  ~SliceRenderer() override;
 
-  /// One picture. Bricks that fit the budget stay for the next one.
-  /// @throw GlError, InvalidArgument
-  Picture render();
-  /// The same scene from another camera of the same image size.
-  /// @throw InvalidArgument  another size, or slabs that reach beyond the apron
+  using Renderer::render;
+  /// The same scene from another camera. @throw InvalidArgument  slabs that reach beyond the apron
   Picture render(const Camera& camera, const RenderSample& sample = {});
+
+  void draw(const RenderSample& sample = {}) override;
+  Picture read() override;
 
   /// What slice i (of those in the last picture) samples: channel 0 the interpolated value, grid units, at the middle
   /// of the slab, channel 1 how many bricks shade the pixel.
@@ -114,8 +61,12 @@ class SliceRenderer {
   /// Depths of the slices of the last picture, world units.
   std::vector<double> sliceDepths() const;
 
+ protected:
+  void update(const ResolvedScene& next) override;
+
  private:
   class Implementation;
+  std::unique_ptr<ResidentVolume> own_;  // null where it is shared
   std::unique_ptr<Implementation> implementation_;
 };
 

@@ -1,0 +1,115 @@
+// What every technique of rendering provides: a renderer that lives as long as its volume is looked at.
+//
+// A new technique is a class that derives from Renderer, in a file of its own in src/shade, and a row in the table of
+// techniques (render/techniques.h). Blending, depth and how a picture is resolved from buffers are its own business.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <vector>
+
+#include "umbrick/image/image.h"
+#include "umbrick/scene/lights.h"
+#include "umbrick/scene/resolve.h"
+
+namespace umbrick {
+
+/// What a renderer makes besides colour.
+struct RenderOptions {
+  bool visibilityAndDepth = false;  // also make the layers of Picture
+  bool countFragments = true;
+  bool timePasses = false;     // RenderStats::passes; waiting for each pass makes a picture slower
+  bool reverseBricks = false;  // draw the bricks of a slice in the opposite order: must change nothing
+};
+
+/// Where the time of a sweep goes, ms.
+struct PassTimes {
+  double extinctionMs = 0;  // ordinates: bricks to the slices' optical depth on the lattice of the light
+  double windowsMs = 0;     // ordinates: light through the slices
+  double eyeMs = 0;         // bricks to the eye; for dos, light as well
+};
+
+struct RenderStats {
+  std::int64_t slices = 0;        // planes between the nearest and the farthest visible brick
+  std::size_t bricks = 0;         // of the volume
+  std::size_t visibleBricks = 0;  // after culling
+  std::size_t polygons = 0;
+  std::uint64_t fragments = 0;       // of bricks that passed the depth test, all passes; 0 when not counted
+  std::size_t brickSlots = 0;        // that the visible bricks take; those of one value share one
+  std::uint64_t uploadedBricks = 0;  // for this picture: 0 where all were resident already
+  std::uint64_t textureBytes = 0;    // of bricks
+  int textures = 0;                  // that hold bricks
+  int textureEdge = 0;               // longest, texels
+  std::uint64_t bufferBytes = 0;     // eye, occlusion, depth and layers
+  int directions = 0;                // ordinates: of the light
+  double windowTexel = 0;            // ordinates: edge of a texel of the windows, world units
+  std::uint64_t windowBytes = 0;     // ordinates: of the windows and of what light is computed on, part of bufferBytes
+  std::uint64_t windowUpdates = 0;   // ordinates: texels of windows that slices were taken through
+  PassTimes passes;                  // when asked for
+  double formatError = 0;            // largest |voxel - texel|, grid units
+  double geometryMs = 0;             // cutting slices into polygons
+  double uploadMs = 0;               // bricks and polygons to textures and buffers
+  double sweepMs = 0;                // drawing, until the last fragment is done
+  double readMs = 0;                 // picture back to memory
+};
+
+/// Where the freedom of a picture lies: pictures of other samples have other errors, so that their mean has less. The
+/// defaults are those of a single picture.
+struct RenderSample {
+  std::vector<LightDirection> lights;  // of ordinates; empty: lightDirections() of the scene
+  double phase = 0.5;          // of the slices, see ProxySlices; 1/2 where less than a slab is between eye and volume
+  glm::dvec2 latticeShift{0};  // of ordinates: of the lattice of the light, texels
+  glm::dvec2 rounding{0.5};    // of ordinates: what is added to shifts before they are cut to whole texels, in [0, 1)
+};
+
+struct Picture {
+  Image colour;      // linear premultiplied RGBA
+  Image visibility;  // 1 channel: V weighted by opacity, so that V / A is the mean visibility along the ray
+  Image depth;  // 1 channel: mean depth along the view axis, world units, weighted by opacity; infinite where A is 0
+  RenderStats stats;
+};
+
+/// Makes pictures of one volume. Scenes change by setters, which do no more than the change asks for: camera, theta,
+/// clip planes, lights and the size of the picture upload nothing, and another transfer function uploads the bricks
+/// that became visible and are not resident.
+///
+/// The scene's texel format and memory budget are those that the volume was made resident with; others in a later scene
+/// mean nothing.
+class Renderer {
+ public:
+  virtual ~Renderer() = default;
+
+  const ResolvedScene& scene() const { return *scene_; }
+  /// Takes another scene of the same volume. When it throws, the scene before stays.
+  /// @throw InvalidArgument  what the technique cannot render: says what it can
+  /// @throw GlError
+  void setScene(const ResolvedScene& scene);
+
+  // One part of the scene. Each throws as setScene().
+  void setCamera(const Camera& camera);
+  void setTransfer(const TransferFunction& transfer);
+  void setClip(const std::vector<ClipPlane>& planes, const std::optional<Box>& box);
+  void setLight(Model model, Method method, const std::vector<LightSource>& sources);
+  void setOcclusion(const OcclusionOptions& occlusion);
+  void setSampling(const SamplingOptions& sampling);
+
+  /// Draws the scene into the renderer's own buffers.
+  /// @throw GlError, InvalidArgument
+  virtual void draw(const RenderSample& sample = {}) = 0;
+  /// Returns what was drawn last. @pre draw()
+  virtual Picture read() = 0;
+  /// Draws and reads.
+  Picture render(const RenderSample& sample = {});
+
+ protected:
+  /// Prepares for a scene; the one before is still scene(), or none is set. Whatever throws changes nothing.
+  virtual void update(const ResolvedScene& next) = 0;
+  /// Is there a scene before the one that update() is for?
+  bool hasScene() const { return scene_.has_value(); }
+
+ private:
+  std::optional<ResolvedScene> scene_;
+};
+
+}  // namespace umbrick
