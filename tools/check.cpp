@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <glm/geometric.hpp>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +16,7 @@
 #include "scene_options.h"
 #include "umbrick/check/invariants.h"
 #include "umbrick/core/error.h"
-#include "umbrick/scene/resolve.h"
-#include "umbrick/vdb/read_grid.h"
+#include "umbrick/render/volume.h"
 
 namespace umbrick::tools {
 namespace {
@@ -28,25 +27,6 @@ struct CheckCommand {
   std::string backend = "auto";
   bool json = false;
 };
-
-// Grey, denser the farther a value is from the background: both sides count, as in a level set. Near the background
-// it is transparent, so that there is something to cull; the densest voxels let light through for a twentieth of the
-// volume's diagonal.
-TransferFunction greyRamp(const ScalarGrid& grid) {
-  const std::unique_ptr<Bricks> bricks = brickGrid(grid);
-  const double low = bricks->value.min, high = bricks->value.max, background = bricks->background;
-  const double diagonal = glm::length(grid.worldBounds().extent());
-  const double most = 20 / (diagonal > 0 ? diagonal : shortestVoxelEdge(grid.indexToWorld()));
-  const double reach = std::max({high - background, background - low, 1e-30});
-  const glm::dvec3 grey(0.8);
-  const double margin = 0.1 * reach;
-  std::vector<TransferFunction::Point> points;
-  if (background - margin > low) points.push_back({low, {grey, most * (background - margin - low) / reach}});
-  points.push_back({background - margin, {grey, 0}});
-  points.push_back({background + margin, {grey, 0}});
-  if (background + margin < high) points.push_back({high, {grey, most * (high - background - margin) / reach}});
-  return TransferFunction(points);
-}
 
 // Three digits are enough to compare a value with its limit.
 std::string printNumber(double number) {
@@ -77,7 +57,7 @@ void printTable(const std::vector<InvariantResult>& results) {
   }
 }
 
-void printJson(const std::vector<InvariantResult>& results, const Scene& scene, const GlContext& context,
+void printJson(const std::vector<InvariantResult>& results, const ResolvedScene& scene, const GlContext& context,
                unsigned seed) {
   nlohmann::ordered_json json;
   json["renderer"] = context.description();
@@ -105,30 +85,28 @@ void printJson(const std::vector<InvariantResult>& results, const Scene& scene, 
 int check(const CheckCommand& command) {
   for (const int edge : command.check.edges)
     if (edge % 8 != 0) throw UsageError("--edges: " + std::to_string(edge) + " is not a multiple of 8");
-  ScalarGrid grid;
+  std::optional<Volume> volume;
   const auto load = [&](const Scene& scene) {
-    if (!grid.grid) grid = readScalarGrid(scene.volume.file, scene.volume.grid);
-    if (grid.activeBox().empty())
-      throw InvalidArgument(scene.volume.file.string() + ": grid \"" + grid.name + "\" has no active voxel");
+    if (!volume) volume.emplace(scene.volume);
   };
   Scene scene = makeScene(*command.scene, [&](const Scene& unfinished) {
     load(unfinished);
-    return greyRamp(grid);
+    return greyRamp(*volume);
   });
   load(scene);
-  if (!command.scene->size) scene.camera.width = scene.camera.height = 256;
-  scene = resolveScene(scene, grid.worldBounds(), grid.indexToWorld());
-  const auto context = createGlContext(parseBackend(command.backend));
+  if (!command.scene->has("size")) scene.camera.width = scene.camera.height = 256;
+  const ResolvedScene resolved = resolveScene(scene, volume->worldBounds(), volume->indexToWorld());
+  const auto context = createContext(command.backend);
   CheckOptions options = command.check;
   const bool terminal = isatty(STDERR_FILENO);
   if (terminal)
     options.progress = [](const std::string& step, double done) {
       std::fprintf(stderr, "\r\033[K%3.0f %%  %s", 100 * done, step.c_str());
     };
-  const std::vector<InvariantResult> results = checkInvariants(*context, grid, scene, options);
+  const std::vector<InvariantResult> results = checkInvariants(*context, volume->grid(), resolved, options);
   if (terminal) std::fputs("\r\033[K", stderr);
   if (command.json)
-    printJson(results, scene, *context, options.seed);
+    printJson(results, resolved, *context, options.seed);
   else
     printTable(results);
   return std::all_of(results.begin(), results.end(), [](const auto& result) { return result.passed; }) ? 0 : 1;

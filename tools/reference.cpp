@@ -31,14 +31,14 @@ struct ReferenceCommand {
 std::string describe(const ReferenceOptions& options) {
   nlohmann::ordered_json json;
   if (options.integrator == Integrator::quadrature) {
-    json["integrator"] = "quadrature";
+    json["integrator"] = nameOf(kIntegrators, options.integrator);
     if (options.step > 0)
       json["step_voxels"] = options.step;
     else
       json["tolerance"] = options.tolerance;
     json["directions"] = options.directions;
   } else {
-    json["integrator"] = "monte-carlo";
+    json["integrator"] = nameOf(kIntegrators, options.integrator);
     json["samples"] = options.samples;
     if (options.standardError > 0) json["standard_error"] = options.standardError;
     json["seed"] = options.seed;
@@ -46,15 +46,15 @@ std::string describe(const ReferenceOptions& options) {
   return json.dump();
 }
 
-nlohmann::ordered_json printStats(const ReferenceCommand& command, const LoadedVolume& loaded,
+nlohmann::ordered_json printStats(const ReferenceCommand& command, const ResolvedScene& scene, double loadMs,
                                   const ReferencePicture& picture) {
   const ReferenceStats& stats = picture.stats;
   nlohmann::ordered_json json;
   json["reference"] = nlohmann::ordered_json::parse(describe(command.reference));
-  json["size"] = {loaded.scene.camera.width, loaded.scene.camera.height};
+  json["size"] = {scene.camera.width, scene.camera.height};
   json["complete"] = picture.complete;
   json["share_done"] = stats.share;
-  json["time_ms"] = {{"load", loaded.loadMs}, {"field", stats.fieldMs}, {"integrate", stats.integrateMs}};
+  json["time_ms"] = {{"load", loadMs}, {"field", stats.fieldMs}, {"integrate", stats.integrateMs}};
   json["eye_rays"] = stats.eyeRays;
   json["light_rays"] = stats.lightRays;
   json["cells"] = stats.cells;
@@ -63,7 +63,7 @@ nlohmann::ordered_json printStats(const ReferenceCommand& command, const LoadedV
   json["blocks"] = stats.blocks;
   json["non_finite_voxels"] = stats.nonFiniteVoxels;
   json["peak_memory_bytes"] = peakMemoryBytes();
-  json["scene"] = nlohmann::ordered_json::parse(printScene(loaded.scene));
+  json["scene"] = nlohmann::ordered_json::parse(printScene(scene));
   return json;
 }
 
@@ -71,13 +71,11 @@ int runReference(ReferenceCommand& command) {
   PictureOutput& output = *command.output;
   checkOutputs(output);
   const StopRequest stop;
-  // A reference has directions of its own, not the few that a scene gives the slices.
-  if (command.scene->directions) command.reference.directions = *command.scene->directions;
-  command.scene->directions.reset();
   const Scene scene = makeScene(*command.scene);
-  const LoadedVolume loaded = loadVolume(scene);
+  const Volume volume(scene.volume);
+  const ResolvedScene resolved = volume.resolve(scene);
   ReferenceOptions& options = command.reference;
-  options.integrator = command.integrator == "quadrature" ? Integrator::quadrature : Integrator::monteCarlo;
+  options.integrator = parseName(kIntegrators, command.integrator, "--integrator");
   options.skipEmpty = !command.noSkipping;
   // Without a number of paths a standard error is reached however many it takes.
   if (options.standardError > 0 && command.samples == 0) options.samples = 1'000'000'000;
@@ -89,7 +87,7 @@ int runReference(ReferenceCommand& command) {
       bar.show(share);
       return !stop.requested();
     };
-    picture = renderReference(loaded.grid, loaded.scene, options);
+    picture = renderReference(volume.grid(), resolved, options);
   }
   warnOfNonFinite(scene, picture.stats.nonFiniteVoxels);
   std::vector<ImageLayer> layers{{"", picture.colour}};
@@ -99,13 +97,14 @@ int runReference(ReferenceCommand& command) {
     layers.push_back({"Z", picture.depth});
   }
   writeOutputs(output, layers,
-               {{"umbrick.scene", printScene(loaded.scene)},
+               {{"umbrick.scene", printScene(resolved)},
                 {"umbrick.renderer", "reference"},
                 {"umbrick.reference", describe(options)},
                 {"umbrick.complete", picture.complete ? "true" : "false"},
                 {"umbrick.version", UMBRICK_VERSION}});
   printOutputs(output);
-  if (!output.stats.empty()) writeTextFile(output.stats, printStats(command, loaded, picture).dump(2) + "\n");
+  if (!output.stats.empty())
+    writeTextFile(output.stats, printStats(command, resolved, volume.loadMs(), picture).dump(2) + "\n");
   if (picture.stats.unconvergedPixels > 0)
     std::cerr << "umbrick: " << picture.stats.unconvergedPixels << " pixels took all " << options.samples
               << " samples and have a standard error above " << options.standardError << '\n';
@@ -125,9 +124,15 @@ Command addReference(CLI::App& app) {
       addPictureOutput(*sub, "float", "V (visibility weighted by opacity) and Z (mean depth, world units)");
   ReferenceOptions& o = command->reference;
   const std::string group = "Integration";
+  // A reference has directions of its own, not the few that a scene gives the slices.
+  sub->remove_option(sub->get_option("--directions"));
+  sub->add_option("--directions", o.directions, "quadrature, K: about so many over the cone, the sphere or the lights")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str()
+      ->group(group);
   sub->add_option("--integrator", command->integrator,
                   "quadrature (deterministic), or monte-carlo, which adds the layer standardError to an EXR")
-      ->check(CLI::IsMember({"quadrature", "monte-carlo"}))
+      ->check(CLI::IsMember(listNames(kIntegrators)))
       ->capture_default_str()
       ->group(group);
   sub->add_option("--tolerance", o.tolerance, "quadrature: of the radiance of a stretch of the ray, in (0, 1]")

@@ -16,12 +16,13 @@
 #include "picture_output.h"
 #include "progress.h"
 #include "scene_options.h"
-#include "umbrick/atlas/brick_atlas.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/render/render.h"
+#include "umbrick/scene/capabilities.h"
+#include "umbrick/shade/prepare.h"
 #include "umbrick/shade/progressive.h"
-#include "umbrick/shade/slice_renderer.h"
 #include "validators.h"
 
 namespace umbrick::tools {
@@ -37,6 +38,23 @@ struct RenderCommand {
   std::optional<double> maxSeconds, targetError;
   std::uint64_t seed = 1;
 };
+
+// The volume of a scene, cut for it.
+struct LoadedScene {
+  ResolvedScene scene;
+  double loadMs = 0, brickMs = 0;
+  std::unique_ptr<Bricks> bricks = {};
+};
+
+LoadedScene loadScene(const Scene& scene, bool refined) {
+  const Volume volume(scene.volume);
+  LoadedScene loaded{.scene = volume.resolve(scene), .loadMs = volume.loadMs()};
+  const Stopwatch brick;
+  loaded.bricks = refined ? volume.cutForRefinement(loaded.scene) : volume.cut(loaded.scene);
+  loaded.brickMs = brick.elapsedMs();
+  warnOfNonFinite(scene, loaded.bricks->nonFiniteVoxels);
+  return loaded;
+}
 
 nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& picture,
                                   const std::vector<double>& framesMs, const GlContext& context, double writeMs,
@@ -88,8 +106,8 @@ nlohmann::ordered_json printPasses(const ProgressivePicture& picture, std::uint6
   return json;
 }
 
-void writePicture(const PictureOutput& output, const Picture& picture, const Scene& scene, const GlContext& context,
-                  const std::string& progressive = {}) {
+void writePicture(const PictureOutput& output, const Picture& picture, const ResolvedScene& scene,
+                  const GlContext& context, const std::string& progressive = {}) {
   std::vector<ImageLayer> layers{{"", picture.colour}};
   if (output.layers) {
     layers.push_back({"V", picture.visibility});
@@ -113,7 +131,7 @@ std::string describe(const ProgressivePicture& picture) {
 }
 
 // Passes until enough of them, of time or of accuracy; the picture on disk gets better meanwhile.
-ProgressivePicture renderPasses(const RenderCommand& command, const GlContext& context, const LoadedScene& loaded,
+ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& volume, const ResolvedScene& scene,
                                 const RenderOptions& options, std::vector<double>& framesMs) {
   constexpr double kWriteEveryMs = 1000;
   ProgressiveOptions progressive;
@@ -126,11 +144,11 @@ ProgressivePicture renderPasses(const RenderCommand& command, const GlContext& c
   Stopwatch pass, written;
   int told = 0;
   bool first = true;
-  const ProgressivePicture last = renderProgressive(
-      context, *loaded.bricks, loaded.scene, progressive, options, [&](const ProgressivePicture& picture) {
+  const ProgressivePicture last =
+      renderProgressive(volume, scene, progressive, options, [&](const ProgressivePicture& picture) {
         framesMs.push_back(pass.elapsedMs());
         if (first || written.elapsedMs() > kWriteEveryMs) {
-          writePicture(*command.output, picture.picture, picture.scene, context,
+          writePicture(*command.output, picture.picture, picture.scene, volume.context(),
                        printPasses(picture, command.seed).dump());
           written = Stopwatch();
           first = false;
@@ -160,11 +178,12 @@ int render(const RenderCommand& command) {
   const Scene scene = makeScene(*command.scene);
   const bool progressive = command.passes || command.maxSeconds || command.targetError;
   if (progressive && command.frames > 1) throw UsageError("--frames and --progressive exclude each other");
-  if (progressive && (scene.model == Model::emission || scene.method == Method::dos))
+  if (progressive && !(traitsOf(scene.model).occlusion && traitsOf(scene.method).directions))
     throw UsageError(
         "--progressive, --max-seconds and --target-error need the model cone or lights and the method ordinates");
   LoadedScene loaded = loadScene(scene, progressive);
-  const auto context = createGlContext(parseBackend(command.backend));
+  const auto context = createContext(command.backend);
+  ResidentVolume volume(*context, *loaded.bricks, atlasOptions(loaded.scene, *loaded.bricks));
   RenderOptions options;
   options.visibilityAndDepth = output.layers;
   options.countFragments = !output.stats.empty();
@@ -173,14 +192,14 @@ int render(const RenderCommand& command) {
   Picture picture;
   std::optional<ProgressivePicture> passes;
   if (progressive) {
-    passes = renderPasses(command, *context, loaded, options, framesMs);
+    passes = renderPasses(command, volume, loaded.scene, options, framesMs);
     picture = passes->picture;
     loaded.scene = passes->scene;
   } else {
-    SliceRenderer renderer(*context, *loaded.bricks, loaded.scene, options);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(volume, loaded.scene, options);
     for (int i = 0; i < command.frames; ++i) {
       const Stopwatch frame;
-      picture = renderer.render();
+      picture = renderer->render();
       framesMs.push_back(frame.elapsedMs());
     }
   }

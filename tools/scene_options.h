@@ -4,14 +4,15 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "umbrick/brick/bricks.h"
 #include "umbrick/gl/context.h"
-#include "umbrick/grid/scalar_grid.h"
+#include "umbrick/render/volume.h"
 #include "umbrick/scene/scene.h"
 
 namespace umbrick::tools {
@@ -19,21 +20,24 @@ namespace umbrick::tools {
 /// What the command line says of a scene; what it leaves out comes from the scene file or keeps its default.
 struct SceneOptions {
   std::filesystem::path input;
-  std::optional<std::string> grid, transfer, model, method, quality, spacingUnit, quadrature, format;
-  std::optional<std::vector<double>> window, eye, lookAt, up, ambient, background, clipBox;
+  std::optional<std::string> grid, transfer, quality;
+  std::optional<std::vector<double>> window, clipBox;
   std::vector<std::vector<double>> clipPlanes;
-  std::optional<double> occlusionScale, sigmaScale, azimuth, elevation, fov, viewHeight, nearDistance, spacing,
-      saturation, theta;
-  std::optional<std::string> size;
-  std::optional<int> eyeBits, occlusionBits, tableSize, segments, footprint, passes, algorithm, directions, interior;
-  std::optional<std::uint64_t> budgetMiB;
-  bool orthographic = false, noPerspectiveCorrection = false, unbricked = false, noCulling = false;
+  std::optional<double> sigmaScale;
+  std::optional<int> tableSize;
+  bool orthographic = false;
+  /// What was given of the table of scene fields, by the name of the option: sets the field.
+  std::map<std::string, std::function<void(Scene&)>, std::less<>> fields;
+
+  bool has(std::string_view option) const { return fields.contains(option); }
 };
 
 /// Adds the options to a sub-command.
 std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command);
 /// Adds --backend, for those that draw with OpenGL.
 void addBackendOption(CLI::App& command, std::string& backend);
+/// The context of that name.
+std::unique_ptr<GlContext> createContext(const std::string& backend);
 
 /// What stands in for a transfer function that nobody gave; none: then one must be given.
 using DefaultTransfer = std::function<TransferFunction(const Scene&)>;
@@ -41,27 +45,7 @@ using DefaultTransfer = std::function<TransferFunction(const Scene&)>;
 /// The scene of a file and the command line. @throw UsageError, IoError, InvalidArgument
 Scene makeScene(const SceneOptions& options, const DefaultTransfer& defaultTransfer = {});
 
-/// A scene with its volume in memory.
-struct LoadedVolume {
-  Scene scene;  // resolved
-  ScalarGrid grid;
-  double loadMs = 0;
-};
-/// @throw IoError, InvalidArgument
-LoadedVolume loadVolume(const Scene& scene);
 /// One line on stderr, if there are any.
 void warnOfNonFinite(const Scene& scene, std::uint64_t voxels);
-
-/// Cut into bricks as well.
-struct LoadedScene : LoadedVolume {
-  std::unique_ptr<Bricks> bricks = {};
-  double brickMs = 0;
-};
-
-/// Reads the grid and cuts it as the scene wants. @param coarserToo  with the apron of coarserScene() as well, if
-/// bricks are large enough for that. @throw IoError, InvalidArgument
-LoadedScene loadScene(const Scene& scene, bool coarserToo = false);
-/// Cuts a grid that is in memory already as the resolved scene wants.
-std::unique_ptr<Bricks> cutBricks(const ScalarGrid& grid, const Scene& resolved);
 
 }  // namespace umbrick::tools

@@ -87,8 +87,9 @@ int study(const StudyCommand& command) {
   const StudySettings settings = makeSettings(command);
   const Scene scene = makeScene(*command.scene);
   planStudy(settings, scene.occlusion.aperture);  // before a volume is loaded that may take long
-  const LoadedVolume loaded = loadVolume(scene);
-  const auto context = createGlContext(parseBackend(command.backend));
+  const Volume volume(scene.volume);
+  const ResolvedScene resolved = volume.resolve(scene);
+  const auto context = createContext(command.backend);
   const StopRequest stop;
   StudyOutcome outcome;
   {
@@ -97,7 +98,7 @@ int study(const StudyCommand& command) {
       bar.show(p.share);
       return !stop.requested();
     };
-    outcome = runStudy(*context, loaded.grid, loaded.scene, settings, command.folder, progress, command.earlier);
+    outcome = runStudy(*context, volume.grid(), resolved, settings, command.folder, progress, command.earlier);
   }
   warnOfNonFinite(scene, outcome.nonFiniteVoxels);
   for (const std::filesystem::path& path : {outcome.page, outcome.table, outcome.record})

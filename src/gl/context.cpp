@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/gl/context.h"
 
+#include <utility>
+
 #include "gl/backends.h"
 #include "umbrick/core/error.h"
 #include "umbrick/gl/functions.h"
@@ -18,13 +20,16 @@ void GlContext::initialise(Backend backend, std::unique_ptr<GlFunctions> functio
     return std::string(bytes ? reinterpret_cast<const char*>(bytes) : "unknown");
   };
   renderer_ = text(GL_RENDERER);
-  description_ =
-      std::string(backend == Backend::osmesa ? "OSMesa: " : "EGL: ") + renderer_ + ", OpenGL " + text(GL_VERSION);
+  description_ = std::string(backend == Backend::osmesa ? "OSMesa: "
+                             : backend == Backend::egl  ? "EGL: "
+                                                        : "") +
+                 renderer_ + ", OpenGL " + text(GL_VERSION);
   gl().GetIntegerv(GL_MAX_TEXTURE_SIZE, &maxTextureEdge2d_);
   gl().GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &maxTextureEdge3d_);
 }
 
 std::unique_ptr<GlContext> createGlContext(Backend backend) {
+  if (backend == Backend::foreign) throw InvalidArgument("backend: a foreign context is adopted, not created");
   std::string reasons;
   const auto attempt = [&](const char* name, auto create) -> std::unique_ptr<GlContext> {
     try {
@@ -41,11 +46,27 @@ std::unique_ptr<GlContext> createGlContext(Backend backend) {
   throw GlError("no OpenGL context: tried " + reasons);
 }
 
-Backend parseBackend(const std::string& name) {
-  if (name == "auto") return Backend::automatic;
-  if (name == "osmesa") return Backend::osmesa;
-  if (name == "egl") return Backend::egl;
-  throw InvalidArgument("backend: '" + name + "' is not one of auto, osmesa, egl");
+namespace {
+
+class ForeignContext : public GlContext {
+ public:
+  ForeignContext(const std::function<GlProcedure(const char*)>& procedure, std::function<void()> makeCurrent)
+      : makeCurrent_(std::move(makeCurrent)) {
+    initialise(Backend::foreign, std::make_unique<GlFunctions>(loadGlFunctions(procedure)));
+  }
+  void makeCurrent() override {
+    if (makeCurrent_) makeCurrent_();
+  }
+
+ private:
+  std::function<void()> makeCurrent_;
+};
+
+}  // namespace
+
+std::unique_ptr<GlContext> adoptGlContext(const std::function<GlProcedure(const char*)>& procedure,
+                                          std::function<void()> makeCurrent) {
+  return std::make_unique<ForeignContext>(procedure, std::move(makeCurrent));
 }
 
 }  // namespace umbrick

@@ -169,8 +169,8 @@ TEST_CASE("Without a driver one line says what was tried", "[gl]") {
 }
 
 TEST_CASE("Backends have names, and an unknown name is refused", "[gl]") {
-  CHECK(parseBackend("auto") == Backend::automatic);
-  CHECK(parseBackend("osmesa") == Backend::osmesa);
-  CHECK(parseBackend("egl") == Backend::egl);
-  CHECK_THROWS_WITH(parseBackend("glx"), Contains("glx") && Contains("osmesa"));
+  CHECK(parseName(kBackends, "auto", "backend") == Backend::automatic);
+  CHECK(parseName(kBackends, "osmesa", "backend") == Backend::osmesa);
+  CHECK(parseName(kBackends, "egl", "backend") == Backend::egl);
+  CHECK_THROWS_WITH(parseName(kBackends, "glx", "backend"), Contains("glx") && Contains("osmesa"));
 }

@@ -1,18 +1,26 @@
 // An OpenGL 4.5 core context without a window.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
+
+#include "umbrick/core/names.h"
 
 namespace umbrick {
 
 struct GlFunctions;
+using GlProcedure = void (*)();
 
 enum class Backend {
   automatic,  // OSMesa, or EGL where there is no OSMesa
   osmesa,     // software, in process
   egl,        // a GPU where there is one, else software; no display is needed
+  foreign,    // made by somebody else, see adoptGlContext
 };
+/// What can be asked for.
+inline constexpr Name<Backend> kBackends[]{
+    {"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}};
 
 /// Made current on the thread that creates it, and used on that thread only. Of several, the one that was made current
 /// last is used, and stays current when another one of its backend ends.
@@ -42,10 +50,17 @@ class GlContext {
   int maxTextureEdge2d_ = 0, maxTextureEdge3d_ = 0;
 };
 
+/// @throw InvalidArgument  Backend::foreign
 /// @throw GlError  no backend works: one line that says what was tried and why each failed
 std::unique_ptr<GlContext> createGlContext(Backend backend = Backend::automatic);
 
-/// "auto", "osmesa" or "egl". @throw InvalidArgument
-Backend parseBackend(const std::string& name);
+/// Uses a context that somebody else made, of a window or another library: OpenGL 4.5 core, current on this thread. It
+/// is not destroyed with what this returns. Renderers set all state that they rely on and leave it as they need it: who
+/// draws besides sets his own again.
+/// @param procedure    gives the address of a function by its full name, as glfwGetProcAddress does, or null
+/// @param makeCurrent  makes it current again; may be empty where nothing else ever is
+/// @throw GlError  names the first function that is missing
+std::unique_ptr<GlContext> adoptGlContext(const std::function<GlProcedure(const char*)>& procedure,
+                                          std::function<void()> makeCurrent = {});
 
 }  // namespace umbrick

@@ -15,6 +15,8 @@ enum class Integrator {
   quadrature,  // deterministic, double precision
   monteCarlo,  // unbiased, with an estimate of its own error
 };
+inline constexpr Name<Integrator> kIntegrators[]{{"quadrature", Integrator::quadrature},
+                                                 {"monte-carlo", Integrator::monteCarlo}};
 
 struct ReferenceOptions {
   Integrator integrator = Integrator::quadrature;
@@ -77,7 +79,7 @@ struct ReferencePicture {
 ///
 /// Sources of the model: Max 1995, doi:10.1109/2945.468400; Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
 /// @param scene  resolved, see resolveScene
-/// @throw InvalidArgument  an unresolved scene, an option out of range, a light that lightDirections refuses
+/// @throw InvalidArgument  an option out of range, a light that lightDirections refuses
 ReferencePicture renderReference(const ScalarGrid& grid, const ResolvedScene& scene,
                                  const ReferenceOptions& options = {});
 

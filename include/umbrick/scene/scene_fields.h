@@ -93,7 +93,8 @@ struct SceneField {
   std::string_view help;    // what it is, with its unit: "n: n x n samples over the cone's footprint"
   FieldPlace (*place)(Scene&);
   FieldRange range = {};
-  std::string_view otherwise = {};  // what help says of the default where it is more than the value: "0: chosen"
+  std::optional<Method> onlyOf = {};  // the method of occlusion that looks at it, where the other does not
+  std::string_view otherwise = {};    // what help says of the default where it is more than the value: "0: chosen"
 
   /// "occlusion", "footprint"; the section of a field of the scene itself is empty.
   std::string_view section() const;
