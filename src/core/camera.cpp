@@ -61,9 +61,9 @@ Camera orbitCamera(const Box& bounds, double azimuth, double elevation, Camera b
     throw InvalidArgument("camera: azimuth and elevation must be finite numbers");
   Camera camera = base;
   camera.lookAt = bounds.centre();
-  camera.eye = camera.lookAt + glm::dvec3(0, -1, 0);  // any valid place, replaced below
+  camera.eye = camera.lookAt + glm::dvec3(0, -1, 0);  // any valid place; it is replaced below
   checkNumbers(camera);
-  // A single voxel has no extent; anything positive will do as its radius.
+  // A single voxel has no extent, and any positive number will do as its radius.
   double radius = 0.5 * glm::length(bounds.extent());
   if (!(radius > 0)) radius = 1;
   const double aspect = std::min(1.0, static_cast<double>(camera.width) / camera.height);
@@ -78,7 +78,7 @@ Camera orbitCamera(const Box& bounds, double azimuth, double elevation, Camera b
   }
   const double ca = std::cos(azimuth), sa = std::sin(azimuth), ce = std::cos(elevation), se = std::sin(elevation);
   camera.eye = camera.lookAt + distance * glm::dvec3(sa * ce, -ca * ce, se);
-  camera.up = glm::dvec3(-sa * se, ca * se, ce);  // derivative of the direction to the eye by elevation
+  camera.up = glm::dvec3(-sa * se, ca * se, ce);  // derivative by elevation of the direction to the eye
   return camera;
 }
 

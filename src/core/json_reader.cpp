@@ -15,7 +15,7 @@
 namespace umbrick {
 namespace {
 
-// Letters that must be inserted, removed or replaced to turn a into b, upper and lower case alike.
+// Counts the letters that must be inserted, removed or replaced to turn a into b; upper and lower case are alike.
 std::size_t editDistance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t(0));
@@ -34,14 +34,14 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 }
 
 std::string shortened(const std::string& text) {
-  constexpr std::size_t kLongest = 60;  // bytes: enough to recognise it
+  constexpr std::size_t kLongest = 60;  // bytes: enough to recognise the text
   if (text.size() <= kLongest) return "'" + text + "'";
   std::size_t length = kLongest;
   while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;  // whole characters
   return "'" + text.substr(0, length) + "...'";
 }
 
-// nlohmann's message without its own idea of the place.
+// Returns nlohmann's message without the place that it names, which is not the one that we report.
 std::string reason(const std::string& what) {
   std::size_t begin = what.find("] ");
   begin = begin == std::string::npos ? 0 : begin + 2;
@@ -60,8 +60,8 @@ std::string joined(const std::vector<std::string_view>& names) {
 
 }  // namespace
 
-// Receives nlohmann's events. The parser does not say where a value starts, but it has checked the text up to the end
-// of that value, so walking over separators from the end of the previous one finds it.
+// Receives nlohmann's events. The parser does not say where a value starts. But it has checked the text up to the end
+// of that value, so a walk over separators from the end of the previous value finds the start.
 class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
   explicit JsonBuilder(JsonDocument& document) : document_(document) {}
@@ -81,7 +81,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
     document_.nodes_[add(JsonDocument::Kind::string)].text = value;
     return true;
   }
-  bool binary(binary_t&) override { return false; }  // not in text
+  bool binary(binary_t&) override { return false; }  // JSON as text has no binary values
   bool start_object(std::size_t) override {
     open(JsonDocument::Kind::object);
     return true;
@@ -109,7 +109,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
     std::set<std::string> keys;
   };
 
-  // Start of the next token; end_ moves behind it.
+  // Returns the start of the next token, and moves end_ behind it.
   std::size_t nextToken() {
     const std::string& text = document_.text_;
     const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n,:", end_), text.size());
@@ -152,7 +152,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
   }
 
   JsonDocument& document_;
-  std::size_t end_ = 0;  // behind the last token
+  std::size_t end_ = 0;  // place behind the last token, bytes
   std::vector<Open> open_;
   std::string key_;
 };
@@ -188,10 +188,10 @@ JsonValue JsonDocument::closest(std::string_view path) const {
 
 std::string JsonDocument::where(std::size_t offset) const {
   const std::string_view before = std::string_view(text_).substr(0, offset);
-  const std::size_t lineStart = before.rfind('\n') + 1;  // npos + 1 is 0
+  const std::size_t lineStart = before.rfind('\n') + 1;  // npos + 1 is 0, the start of the first line
   std::size_t column = 1;
   for (const char c : before.substr(lineStart))
-    if ((static_cast<unsigned char>(c) & 0xC0) != 0x80) ++column;  // characters, not bytes
+    if ((static_cast<unsigned char>(c) & 0xC0) != 0x80) ++column;  // counts characters, not bytes
   return source_ + ":" + std::to_string(std::count(before.begin(), before.end(), '\n') + 1) + ":" +
          std::to_string(column);
 }
@@ -295,7 +295,7 @@ std::string JsonValue::path() const {
       steps.push_back("[" + std::to_string(at - parent.children.begin()) + "]");
     }
   }
-  // The outermost and innermost steps are enough of a path that is nested beyond reason.
+  // Of a path that is nested beyond reason, the outermost and innermost steps are enough.
   constexpr std::size_t kSteps = 12;
   if (steps.size() > kSteps) {
     steps.erase(steps.begin() + kSteps / 2, steps.end() - kSteps / 2);

@@ -14,19 +14,19 @@
 namespace umbrick {
 class JsonValue;
 
-/// A parsed text. Values are kept in one flat list, so nesting of any depth needs no stack.
+/// A parsed text. Its values are kept in one flat list, so nesting of any depth needs no stack.
 class JsonDocument {
  public:
   /// @param source  what messages call the text, usually its file name
-  /// @throw IoError  not JSON (NaN, Infinity and comments are not), or an object with one key twice
+  /// @throw IoError  the text is not JSON (NaN, Infinity and comments are not), or an object has one key twice
   JsonDocument(std::string_view text, std::string source);
   JsonDocument(const JsonDocument&) = delete;
   JsonDocument& operator=(const JsonDocument&) = delete;
 
-  /// Lives as long as the document, as do the values below it.
+  /// Returns the outermost value. It lives as long as the document, as do the values below it.
   JsonValue root() const;
-  /// The value at a path such as `points[2].sigma_t`, or, where the text leaves it out, the closest one that contains
-  /// it.
+  /// Returns the value at a path such as `points[2].sigma_t` or, where the text leaves it out, the closest value that
+  /// contains it.
   JsonValue closest(std::string_view path) const;
 
  private:
@@ -35,22 +35,22 @@ class JsonDocument {
   enum class Kind { null, boolean, number, string, array, object };
   struct Node {
     Kind kind = Kind::null;
-    std::size_t begin = 0;  // of the value's text: bytes from the start
+    std::size_t begin = 0;  // start of the value's text, bytes
     std::size_t parent = 0;
-    std::string key;  // in the parent, if that is an object
+    std::string key;  // name in the parent, if that is an object
     double number = 0;
     bool boolean = false;
     std::string text;
     std::vector<std::size_t> children;
   };
-  std::string where(std::size_t offset) const;  // "source:line:column"
+  std::string where(std::size_t offset) const;  // returns "source:line:column"
 
   std::string text_, source_;
-  std::vector<Node> nodes_;  // the root first, parents before children
+  std::vector<Node> nodes_;  // the root first, and parents before their children
 };
 
-/// One value of a document. Each reader throws an IoError that says where the value is, what was expected and what was
-/// found.
+/// One value of a document. Each function that reads it throws an IoError that says where the value is, what was
+/// expected and what was found.
 class JsonValue {
  public:
   bool isNull() const;
@@ -59,15 +59,15 @@ class JsonValue {
   bool isObject() const;
 
   double number() const;
-  /// A number that `accept` agrees to; `expected` completes "expected ..., found ...".
+  /// Reads a number that `accept` agrees to; `expected` completes the message "expected ..., found ...".
   template <typename Accept>
   double number(Accept accept, std::string_view expected) const {
     const double value = number();
     if (!accept(value)) failExpected(expected);
     return value;
   }
-  /// An angle written in degrees, in radians. Read with more digits than a double has, so that jsonDegrees() of any
-  /// angle comes back to the last bit.
+  /// Reads an angle written in degrees and returns it in radians. It is read with more digits than a double has, so
+  /// that the text that jsonDegrees() writes for any angle comes back to the last bit.
   double degrees() const;
   int integer() const;
   std::uint64_t unsignedInteger() const;
@@ -85,7 +85,7 @@ class JsonValue {
     }
     failUnknownChoice(known);
   }
-  /// Elements of an array; of exactly `count` when that is not 0.
+  /// Returns the elements of an array, which must have exactly `count` of them when that is not 0.
   std::vector<JsonValue> items(std::size_t count = 0) const;
   std::vector<double> numbers(std::size_t count = 0) const;
 

@@ -11,7 +11,8 @@
 namespace umbrick {
 namespace {
 
-constexpr long double kDegree = 3.14159265358979323846 / 180.0L;  // pi as a double, so that 60 is what pi / 3 gives
+// Pi is a double here, so that the double pi / 3 is 60 degrees.
+constexpr long double kDegree = 3.14159265358979323846 / 180.0L;
 
 template <typename T>
 std::string shortest(T number) {
@@ -56,7 +57,8 @@ std::string jsonNumber(double number) {
 std::string jsonDegrees(double radians) {
   checkFinite(radians);
   const long double degrees = radians / kDegree;
-  // 60 rather than 59.99999999999999, which is as close: as few digits as read back right, see JsonValue::degrees().
+  // 60 is written rather than 59.99999999999999, which is as close: the fewest digits that read back right,
+  // see JsonValue::degrees().
   std::array<char, 64> text;
   for (int digits = 15; digits <= 17; ++digits) {
     const char* end =

@@ -7,17 +7,18 @@
 
 namespace umbrick {
 
-/// The shortest text that reads back as the same number. @throw InvalidArgument  not finite: JSON has no such number
+/// Returns the shortest text that reads back as the same number.
+/// @throw InvalidArgument  the number is not finite; JSON has none that is not
 std::string jsonNumber(double number);
-/// An angle in degrees; JsonValue::degrees() reads back the same radians. Has more digits than a double where one in
-/// degrees cannot say it.
+/// Returns an angle in degrees, from which JsonValue::degrees() reads back the same radians. Where a double in degrees
+/// cannot say the angle, the text has more digits than a double.
 std::string jsonDegrees(double radians);
 /// @throw InvalidArgument  not UTF-8
 std::string jsonString(const std::string& text);
 std::string jsonArray(const std::vector<std::string>& values);
 std::string jsonNumbers(const std::vector<double>& numbers);
 using JsonFields = std::vector<std::pair<std::string, std::string>>;
-/// Fields in the order given. Objects and arrays stay on one line where they fit.
+/// Writes the fields in the order given. Objects and arrays stay on one line where they fit.
 std::string jsonObject(const JsonFields& fields);
 
 }  // namespace umbrick

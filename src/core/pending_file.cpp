@@ -22,7 +22,7 @@ PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
   std::error_code ignored;
   if (target_.filename().empty() || fs::is_directory(target_, ignored))
     throw IoError(target_.string() + ": cannot write: is a directory");
-  // mkstemp wants a writable template; the extension stays last, since some writers choose the format by it.
+  // mkstemps fills in a writable template. The extension stays last, since some writers choose the format by it.
   std::string name =
       (target_.parent_path() / ("." + target_.stem().string() + ".XXXXXX" + target_.extension().string())).string();
   std::vector<char> chars(name.begin(), name.end());
@@ -30,7 +30,7 @@ PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
   const int file = mkstemps(chars.data(), static_cast<int>(target_.extension().string().size()));
   if (file < 0) throw IoError(target_.string() + ": cannot write: " + std::strerror(errno));
   temporary_ = chars.data();
-  // mkstemps makes a private file: give it the permissions that an ordinary new file would have.
+  // mkstemps makes a private file, which gets the permissions that an ordinary new file would have.
   const mode_t mask = umask(0);
   umask(mask);
   fchmod(file, 0666 & ~mask);

@@ -11,7 +11,8 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-// Names the file at `from` also `target`, in place of what stands there; where that cannot be, it loses its first name.
+// Gives the file at `from` a second name, `target`, in place of what stands there. Where a file cannot have two names,
+// it loses its first one.
 void nameAlso(const fs::path& from, const fs::path& target) {
   const fs::path second = from.parent_path() / (from.stem().string() + "-2" + from.extension().string());
   const bool linked = link(from.c_str(), second.c_str()) == 0;
@@ -36,7 +37,7 @@ void PendingPair::commit() {
   data_.flush();
   header_.flush();
   interim_.commit();
-  data_.keep();  // the header names it
+  data_.keep();  // the interim header names this file
   nameAlso(data_.path(), dataTarget_);
   header_.commit();
   unlink(data_.path().c_str());

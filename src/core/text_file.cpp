@@ -18,7 +18,7 @@ std::string readTextFile(const std::filesystem::path& path) {
   if (!in) throw IoError(path.string() + ": cannot read: " + std::strerror(errno));
   std::ostringstream text;
   text << in.rdbuf();
-  // An empty file fails to insert anything, which is no error here.
+  // Reading an empty file inserts nothing, which sets failbit but is no error here.
   if (in.bad()) throw IoError(path.string() + ": cannot read: " + std::strerror(errno));
   return std::move(text).str();
 }

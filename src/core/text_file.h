@@ -6,7 +6,7 @@
 
 namespace umbrick {
 
-/// @throw IoError  missing, a folder, or unreadable
+/// @throw IoError  the file is missing, a folder, or unreadable
 std::string readTextFile(const std::filesystem::path& path);
 
 }  // namespace umbrick

@@ -16,7 +16,8 @@ glm::dvec3 IndexView::toView(const glm::dvec3& index) const {
 IndexView indexView(const Camera& camera, const glm::dmat4& indexToWorld) {
   const CameraFrame frame = cameraFrame(camera);
   const glm::dmat3 linear(indexToWorld);
-  // Scale-free test of invertibility: the volume of a voxel over that of the box with its edges.
+  // Whether the transform can be inverted must not depend on its scale, so the volume of a voxel is compared with that
+  // of the box that has the same edges.
   const double volume = std::abs(glm::determinant(linear));
   const double box = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
   if (!(box > 0) || !std::isfinite(box) || !(volume > 1e-12 * box))
@@ -45,7 +46,7 @@ glm::dvec4 planeInView(const glm::dvec4& worldPlane, const Camera& camera) {
 
 glm::dvec3 slabReach(const IndexView& view, double spacing) {
   glm::dvec3 reach = glm::abs(view.toIndex[2]);
-  // A view ray of a perspective camera is forward + x right + y up: longest at a corner of the image.
+  // A view ray of a perspective camera is forward + x right + y up, which is longest at a corner of the image.
   if (view.projection == Projection::perspective)
     for (const double x : {-view.halfExtent.x, view.halfExtent.x})
       for (const double y : {-view.halfExtent.y, view.halfExtent.y})

@@ -4,7 +4,7 @@
 namespace umbrick {
 namespace {
 
-// Corners of each face in order around it.
+// The corners of each face, in order around it.
 constexpr std::array<std::array<std::uint8_t, 4>, 6> kFaceCorners{
     {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}}};
 
@@ -16,9 +16,10 @@ int edgeBetween(int a, int b) {
   return -1;
 }
 
-// A cut runs across each face it meets, from one crossed edge to the other: following faces walks around the polygon.
+// A cut runs across each face that it meets, from one crossed edge to the other. So a walk from face to face goes once
+// around the polygon.
 PlaneCut trace(unsigned mask) {
-  std::array<std::array<int, 2>, 12> next;  // the up to two crossed edges that share a face with an edge
+  std::array<std::array<int, 2>, 12> next;  // per edge: the crossed edges, two at most, that share a face with it
   next.fill({-1, -1});
   int start = -1;
   for (const auto& face : kFaceCorners) {
@@ -28,7 +29,7 @@ PlaneCut trace(unsigned mask) {
       if ((mask >> a & 1u) != (mask >> b & 1u)) crossed[count++] = edgeBetween(a, b);
     }
     if (count == 0) continue;
-    if (count != 2) return {};  // opposite corners of a face: no plane does this
+    if (count != 2) return {};  // opposite corners of a face are cut off, which no plane can do
     for (int i = 0; i < 2; ++i) {
       auto& links = next[static_cast<std::size_t>(crossed[i])];
       links[links[0] < 0 ? 0 : 1] = crossed[1 - i];

@@ -6,8 +6,8 @@
 
 namespace umbrick {
 
-/// Corner c of a cell stands at (c & 1, c >> 1 & 1, c >> 2 & 1). Edge e joins corners kEdgeCorners[e][0] and [1]; the
-/// first is the lower one along the edge's axis, so that all cells around an edge name its ends in the same order.
+/// Corner c of a cell stands at (c & 1, c >> 1 & 1, c >> 2 & 1). Edge e joins corners kEdgeCorners[e][0] and [1], the
+/// lower one along the edge's axis first, so that all cells around an edge name its ends in the same order.
 inline constexpr std::array<std::array<std::uint8_t, 2>, 12> kEdgeCorners{{
     {0, 1},
     {2, 3},
@@ -23,13 +23,14 @@ inline constexpr std::array<std::array<std::uint8_t, 2>, 12> kEdgeCorners{{
     {3, 7},  // along z
 }};
 
-/// Edges that the plane crosses, in order around the polygon.
+/// The edges that the plane crosses, in order around the polygon.
 struct PlaneCut {
   std::uint8_t count = 0;
   std::array<std::uint8_t, 6> edges{};
 };
 
-/// Indexed by a mask with bit c set when corner c is on the far side. Masks that no plane can make stay empty.
+/// Returns all cuts. The index is a mask whose bit c is set when corner c is on the far side; masks that no plane can
+/// make have empty cuts.
 std::array<PlaneCut, 256> planeCuts();
 
 }  // namespace umbrick

@@ -19,8 +19,9 @@ namespace {
 
 using Corners = std::array<glm::dvec3, 8>;
 
-// View coordinates of a brick's corners. A sum of one term per axis, each monotone in its index, in the same order for
-// every brick: equal corners get equal numbers, and depth is monotone along each axis also after rounding.
+// Returns the view coordinates of a brick's corners. Each is a sum of one term per axis, monotone in the index along
+// it, and every brick adds in the same order. So equal corners get equal numbers, and depth stays monotone along each
+// axis when it is rounded.
 Corners brickCorners(const IndexView& view, const glm::ivec3& origin, const glm::ivec3& interior) {
   const glm::dvec3 low = glm::dvec3(origin) - 0.5;
   const glm::dvec3 high = glm::dvec3(origin) + glm::dvec3(interior) - 0.5;
@@ -36,7 +37,7 @@ struct SliceInterval {
   std::int64_t first = 0, last = -1;  // both included
 };
 
-// Slices whose middle is in (nearest corner, farthest corner] and in front of the eye.
+// Returns the slices whose middle is in (nearest corner, farthest corner] and in front of the eye.
 SliceInterval slicesThrough(const Corners& corners, double spacing, double phase) {
   double nearest = corners[0].z, farthest = corners[0].z;
   for (const glm::dvec3& corner : corners) {
@@ -45,7 +46,7 @@ SliceInterval slicesThrough(const Corners& corners, double spacing, double phase
   }
   if (!(farthest > 0)) return {};
   const auto middle = [&](std::int64_t i) { return (static_cast<double>(i) + phase) * spacing; };
-  // The quotient may be off by rounding: step to the exact answer.
+  // Rounding may put the quotient off by one, so the loops step from outside of it to the exact answer.
   std::int64_t first = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(nearest / spacing - phase)) - 1);
   while (middle(first) <= nearest) ++first;
   std::int64_t last = static_cast<std::int64_t>(std::ceil(farthest / spacing - phase)) + 1;
@@ -55,8 +56,8 @@ SliceInterval slicesThrough(const Corners& corners, double spacing, double phase
 
 using Polygon = std::vector<glm::dvec2>;
 
-// Keeps the part with distance >= 0 (Sutherland-Hodgman). A crossing is computed from the lesser end to the greater,
-// so that two polygons that share an edge cut it at the same point.
+// Keeps the part with distance >= 0 (Sutherland-Hodgman). A crossing is computed from the lesser end of an edge to the
+// greater, so that two polygons that share an edge cut it at the same point.
 void clip(Polygon& polygon, Polygon& scratch, const glm::dvec3& line) {
   scratch.clear();
   const auto distance = [&](const glm::dvec2& p) { return line.x * p.x + line.y * p.y + line.z; };
@@ -74,24 +75,24 @@ void clip(Polygon& polygon, Polygon& scratch, const glm::dvec3& line) {
   std::swap(polygon, scratch);
 }
 
-// A plane moved out by as much as the middle of a slab may lie beyond it while the slab still reaches the kept side,
-// and by kPlaneMargin pixels, since the rasteriser moves vertices.
+// Moves a plane outwards by as much as the middle of a slab may lie beyond it while the slab still reaches the kept
+// side, and by kPlaneMargin pixels, since the rasteriser moves vertices.
 glm::dvec4 widened(glm::dvec4 plane, const IndexView& view, double spacing) {
   const glm::dvec2 across = glm::abs(glm::dvec2(plane));
   const double margin = kPlaneMargin * 2 * view.halfExtent.y / view.size.y * glm::length(across);
   if (view.projection == Projection::perspective) {
     plane.w +=
         0.5 * spacing * (std::abs(plane.z) + across.x * view.halfExtent.x + across.y * view.halfExtent.y + margin);
-    plane.z += margin;  // a pixel grows with depth
+    plane.z += margin;  // in world units, a pixel grows with depth
   } else {
     plane.w += 0.5 * spacing * std::abs(plane.z) + margin;
   }
   return plane;
 }
 
-// A vertex whose fan of triangles covers the polygon once. Moved to a grid, a vertex near the line between its
-// neighbours may dent the polygon: then a fan around another one would cover the dent twice. Products of grid
-// coordinates are exact.
+// Finds a vertex whose fan of triangles covers the polygon once. Vertices have been moved to a grid, and one that lay
+// near the line between its neighbours may now dent the polygon; a fan around another vertex would then cover the dent
+// twice. The test is exact, since products of grid coordinates are.
 std::size_t fanApex(const Polygon& vertices) {
   const std::size_t count = vertices.size();
   const auto turn = [](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
@@ -153,7 +154,7 @@ class SliceCutter {
 
   void emit(const Polygon& polygon, Polygon& vertices, const glm::dvec2& scale, std::int32_t brick,
             SlicePolygons& out) const {
-    // Vertices on the rasteriser's grid. Neighbours that fall on one point are one.
+    // Vertices are moved to the rasteriser's grid, and neighbours that fall on one point become one.
     const glm::dvec2 toGrid = 0.5 * kSubpixels * glm::dvec2(view_.size);
     vertices.clear();
     for (const glm::dvec2& point : polygon) {
@@ -183,7 +184,7 @@ class SliceCutter {
   std::array<PlaneCut, 256> cuts_;
 };
 
-// The bricks of each slice: bricks of slice i are list[start[i]] to list[start[i + 1]], in ascending order.
+// The bricks of each slice: those of slice i are list[start[i]] to list[start[i + 1] - 1], in ascending order.
 struct Buckets {
   std::vector<std::size_t> start;
   std::vector<std::int32_t> list;
@@ -248,7 +249,7 @@ ProxySlices cutSlices(const IndexView& view, std::span<const glm::ivec3> origins
     corners[i] = brickCorners(view, origins[i], interior);
     for (const glm::dvec3& corner : corners[i]) farthest = std::max(farthest, corner.z);
   }
-  // Checked on depths before slices are counted: beyond 2^53 their numbers would not be exact.
+  // The depths are checked before slices are counted, since beyond 2^53 the numbers of slices would not be exact.
   if (farthest / spacing > 9e15)
     throw InvalidArgument("slices: spacing " + std::to_string(spacing) + " is too small for a volume at depth " +
                           std::to_string(farthest));

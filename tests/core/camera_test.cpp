@@ -40,7 +40,7 @@ TEST_CASE("An orbit camera sees the bounding sphere from every side, poles inclu
           CHECK(distance > radius);
           const glm::dvec2 extent = screenPlane(camera).halfExtent;
           const double narrow = std::min(extent.x, extent.y);
-          // The sphere's silhouette, on the screen plane.
+          // The silhouette of the sphere, as a radius on the screen plane.
           const double silhouette = projection == Projection::perspective
                                         ? radius / std::sqrt(distance * distance - radius * radius)
                                         : radius;
@@ -48,7 +48,7 @@ TEST_CASE("An orbit camera sees the bounding sphere from every side, poles inclu
         }
 }
 
-TEST_CASE("Azimuth turns the eye counter-clockwise seen from above", "[core]") {
+TEST_CASE("Azimuth turns the eye counter-clockwise as seen from above", "[core]") {
   Box bounds;
   bounds.include(glm::dvec3(-1));
   bounds.include(glm::dvec3(1));
@@ -56,7 +56,7 @@ TEST_CASE("Azimuth turns the eye counter-clockwise seen from above", "[core]") {
   CHECK(orbitCamera(bounds, 1.5707963267948966, 0).eye.x > 1);
 }
 
-TEST_CASE("A camera that cannot see is refused by name", "[core]") {
+TEST_CASE("A camera that cannot see is refused with the field that is wrong", "[core]") {
   Camera same;
   same.lookAt = same.eye;
   CHECK_THROWS_AS(cameraFrame(same), InvalidArgument);

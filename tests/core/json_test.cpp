@@ -13,7 +13,7 @@ using namespace umbrick;
 using Catch::Contains;
 using Catch::Matchers::StartsWith;
 
-TEST_CASE("A wrong JSON value is found by line, column and path", "[core]") {
+TEST_CASE("A wrong JSON value is reported with line, column and path", "[core]") {
   const JsonDocument document("{\n  \"name\": \"a:,\\\"b\",\n  \"points\": [1, -2.5e3 , {\"x\": [true, null]}]\n}",
                               "f.json");
   const JsonValue points = document.root().at("points");
@@ -34,7 +34,7 @@ TEST_CASE("Columns count characters, also after a byte-order mark", "[core]") {
   CHECK_THROWS_WITH(document.root().find("\xC3\xA4\xE2\x82\xAC")->string(), StartsWith("f:1:8: "));
 }
 
-TEST_CASE("Unknown fields and names suggest what was meant", "[core]") {
+TEST_CASE("For unknown fields and names the message suggests what was meant", "[core]") {
   const JsonDocument document(R"({"theat": 1, "mode": "konus", "colour": 2})", "f");
   CHECK_THROWS_WITH(document.root().allowFields({"theta", "mode", "colour"}),
                     "f:1:11: theat: unknown field; did you mean 'theta'?");
@@ -73,7 +73,7 @@ TEST_CASE("Nesting of any depth is read without the stack", "[core]") {
   CHECK_THROWS_AS(JsonDocument(std::string(depth, '['), "f"), IoError);
 }
 
-TEST_CASE("Whole numbers are whole and in range", "[core]") {
+TEST_CASE("A number is read as a whole number only if it is one and in range", "[core]") {
   const JsonDocument document("[3, 3.0, 3.5, 3e9, -1, 18446744073709551615]", "f");
   const std::vector<JsonValue> items = document.root().items();
   CHECK(items[0].integer() == 3);
@@ -99,7 +99,7 @@ TEST_CASE("Numbers and angles come back to the last bit", "[core]") {
   CHECK_THROWS_AS(jsonNumber(std::numeric_limits<double>::quiet_NaN()), InvalidArgument);
 }
 
-TEST_CASE("Written JSON is indented where it is long and escaped where it must be", "[core]") {
+TEST_CASE("Written JSON is indented where it is long, and escaped where it must be", "[core]") {
   CHECK(jsonObject({{"a", jsonNumbers({1, 2.5})}, {"b\n", jsonString("\"x\"")}}) ==
         "{\"a\": [1, 2.5], \"b\\n\": \"\\\"x\\\"\"}");
   const std::string longText =

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Calls that change a folder, until the process ends: less than 0 for never.
+// The process ends before the call that changes a folder for which this is 0; less than 0 means that it never ends so.
 int callsLeft = -1;
 bool hardLinks = true;
 
@@ -28,7 +28,7 @@ void count() {
 
 }  // namespace
 
-// In the place of those of the C library, for all of this program.
+// These take the place of the functions of the C library, for all of this program.
 extern "C" int rename(const char* from, const char* to) noexcept {
   count();
   return renameat(AT_FDCWD, from, AT_FDCWD, to);
@@ -57,7 +57,8 @@ struct Pair {
     CHECK(readBytes(pending.headerPath()) == version + ' ' + pending.dataPath().filename().string());
     pending.commit();
   }
-  // Writes a new pair in a process of its own that ends before so many calls. @return whether it came to its end
+  // Writes a new pair in a process of its own, which ends before call number `calls`.
+  // @return whether the process came to its end
   bool writeKilled(int calls) const {
     const pid_t child = fork();
     if (child == 0) {
@@ -70,7 +71,7 @@ struct Pair {
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
   }
   std::string version() const { return readBytes(header).substr(0, 3); }
-  // Of the file that the header names.
+  // Returns the content of the file that the header names.
   std::string voxels() const { return readBytes(folder.path() / readBytes(header).substr(4)); }
 };
 
@@ -92,7 +93,8 @@ TEST_CASE("A pair that is killed at any step is the old one or the new one", "[c
       }
       if (done) CHECK(std::distance(fs::directory_iterator(pair.folder.path()), fs::directory_iterator()) == 2);
     }
-    CHECK(calls >= 5);  // header, second name, data, header, and the temporary name
+    // The calls replace the header, make a second name, rename the data, replace the header, remove the first name.
+    CHECK(calls >= 5);
   }
 }
 
@@ -111,7 +113,7 @@ TEST_CASE("Where a file cannot have two names, no header describes other data th
   hardLinks = true;
 }
 
-TEST_CASE("A pair that is not committed leaves the old one and nothing beside it", "[core]") {
+TEST_CASE("A pair that is not committed leaves the old one, and nothing beside it", "[core]") {
   const Pair pair;
   pair.write("old");
   {

@@ -29,7 +29,7 @@ struct NamedCamera {
   Camera camera;
 };
 
-// Around a lattice whose world box is `bounds`.
+// Cameras outside and inside of a lattice whose box in the world is `bounds`.
 std::vector<NamedCamera> cameras(const Box& bounds) {
   std::vector<NamedCamera> all;
   Camera orthographic;
@@ -59,8 +59,8 @@ double area(const ProxySlices& slices, const ProxyPolygon& polygon) {
 
 }  // namespace
 
-// The polygons of one slice tile the cut of the whole box: same area, and every inner edge has exactly one twin
-// with the same two vertices, to the bit.
+// The polygons of one slice tile the cut of the whole box: the areas are the same, and every inner edge has exactly one
+// twin with the same two vertices, to the bit.
 TEST_CASE("Polygons of a slice tile the cut of the volume without gap or overlap", "[slice]") {
   const int interior = 8;
   const glm::ivec3 cells(3, 4, 2);
@@ -112,7 +112,7 @@ TEST_CASE("Polygons of a slice tile the cut of the volume without gap or overlap
           if (name != "inside") worst = std::max(worst, std::abs(sum - expected));
         }
         CHECK(oddEdges == 0);
-        // Vertices are rounded to float: 6e-8 relative in coordinates of order 1, some 100 of them.
+        // Vertices are rounded to float: 6e-8 of coordinates of order 1, for some 100 vertices.
         CHECK(worst < 1e-5);
       }
     }
@@ -120,7 +120,7 @@ TEST_CASE("Polygons of a slice tile the cut of the volume without gap or overlap
 }
 
 TEST_CASE("A slice that coincides with a face belongs to one of the two bricks", "[slice]") {
-  // Orthographic along +y; faces at y = -0.5, 7.5, 15.5; a slice middle exactly at 7.5.
+  // An orthographic camera looks along +y at faces at y = -0.5, 7.5 and 15.5. One slice has its middle exactly at 7.5.
   Camera camera;
   camera.projection = Projection::orthographic;
   camera.eye = {4, -1, 4};
@@ -159,8 +159,8 @@ TEST_CASE("Planes cut polygons with half a slab to spare", "[slice]") {
     return kept;
   };
   CHECK(slicesKept({0, 1, 0, 100}) == 16);
-  CHECK(slicesKept({0, 1, 0, -3.6}) == 8);  // y >= 3.6 of [-0.5, 7.5]: the slab [3.5, 4] is cut and stays
-  CHECK(slicesKept({0, -1, 0, 3.6}) == 9);  // y <= 3.6: the slab [3.5, 4] is cut and stays
+  CHECK(slicesKept({0, 1, 0, -3.6}) == 8);  // y >= 3.6 of [-0.5, 7.5]: the plane cuts the slab [3.5, 4], which stays
+  CHECK(slicesKept({0, -1, 0, 3.6}) == 9);  // y <= 3.6: the plane cuts the slab [3.5, 4], which stays
   CHECK(slicesKept({0, 1, 0, -100}) == 0);
 }
 
@@ -172,10 +172,11 @@ TEST_CASE("Slices through a camera inside the volume start at the eye", "[slice]
   const IndexView view = indexView(camera, glm::dmat4(1));
   const ProxySlices slices = cutSlices(view, std::vector{glm::ivec3(0)}, glm::ivec3(8), {}, 0.25);
   CHECK(slices.first == 0);
-  CHECK(slices.count() == 14);  // depth 0 to 3.5
+  CHECK(slices.count() == 14);  // depths from 0 to 3.5
 }
 
-// Slabs around the slices follow each other without gap: those whose middle the volume has are all there is to draw.
+// The slabs around the slices follow each other without gap, so all that has to be drawn are those whose middle is in
+// the volume.
 TEST_CASE("A phase moves every slice by its share of the spacing and leaves none out", "[slice]") {
   const std::vector<glm::ivec3> origins{{0, 0, 0}, {0, 8, 0}};
   const Box bounds{glm::dvec3(-0.5), {7.5, 15.5, 7.5}};
@@ -197,8 +198,8 @@ TEST_CASE("A phase moves every slice by its share of the spacing and leaves none
         for (std::int64_t i = 0; i < slices.count(); ++i)
           CHECK(slices.depth(i) == Approx((static_cast<double>(slices.first + i) + phase) * d).epsilon(1e-14));
         CHECK(slices.first >= 0);
-        // In front of the first and behind the last there is no other one in the volume.
-        const double rounding = 1e-9;  // of corners' depths, some 1e-15 of 50
+        // In front of the first slice and behind the last there is no other one in the volume.
+        const double rounding = 1e-9;  // of the corners' depths: some 1e-15 of 50
         CHECK(slices.depth(0) > nearest - rounding);
         CHECK((slices.first == 0 || slices.depth(0) - d <= nearest + rounding));
         CHECK(slices.depth(slices.count() - 1) <= farthest + rounding);
@@ -207,7 +208,7 @@ TEST_CASE("A phase moves every slice by its share of the spacing and leaves none
   }
 }
 
-TEST_CASE("Slices of a phase are those of an eye that stands so much farther back", "[slice]") {
+TEST_CASE("Slices of a phase are those of an eye that stands farther back by as much", "[slice]") {
   Camera camera;
   camera.projection = Projection::orthographic;
   camera.eye = {4, -10, 4};
@@ -223,7 +224,7 @@ TEST_CASE("Slices of a phase are those of an eye that stands so much farther bac
   CHECK(moved.vertices == slices.vertices);
 }
 
-TEST_CASE("A phase that makes no sense is refused", "[slice]") {
+TEST_CASE("A phase outside (0, 1) is refused", "[slice]") {
   const IndexView view = indexView(Camera{}, glm::dmat4(1));
   const std::vector origins{glm::ivec3(-4)};
   for (const double phase : {0.0, 1.0, -0.5, 1.5, std::nan("")}) {
@@ -233,7 +234,7 @@ TEST_CASE("A phase that makes no sense is refused", "[slice]") {
   }
 }
 
-TEST_CASE("A spacing that makes no sense is refused", "[slice]") {
+TEST_CASE("A spacing that is not positive or makes too many slices is refused", "[slice]") {
   const Camera camera;
   const IndexView view = indexView(camera, glm::dmat4(1));
   const std::vector origins{glm::ivec3(-4)};

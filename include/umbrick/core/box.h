@@ -8,13 +8,13 @@
 
 namespace umbrick {
 
-/// Voxels `min` to `max`, both included; empty when some max < min.
+/// The voxels from `min` to `max`, both included; empty when max < min along some axis.
 struct IndexBox {
   glm::ivec3 min{0};
   glm::ivec3 max{-1};
 
   bool empty() const { return max.x < min.x || max.y < min.y || max.z < min.z; }
-  /// Voxels along each axis, as 64-bit numbers: boxes near the int32 limits do not overflow.
+  /// Returns the voxels along each axis, as 64-bit numbers so that boxes near the int32 limits do not overflow.
   glm::i64vec3 extent() const {
     return empty() ? glm::i64vec3(0) : glm::i64vec3(max) - glm::i64vec3(min) + std::int64_t(1);
   }

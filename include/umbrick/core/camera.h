@@ -14,44 +14,45 @@ inline constexpr Name<Projection> kProjections[]{{"perspective", Projection::per
                                                  {"orthographic", Projection::orthographic}};
 
 struct Camera {
-  glm::dvec3 eye{0, 0, 1};     // world
-  glm::dvec3 lookAt{0, 0, 0};  // world
-  glm::dvec3 up{0, 1, 0};      // any length, not along the view direction
+  glm::dvec3 eye{0, 0, 1};     // world space
+  glm::dvec3 lookAt{0, 0, 0};  // world space
+  glm::dvec3 up{0, 1, 0};      // any length, but not along the view direction
   Projection projection = Projection::perspective;
-  double fov = 0.5235987755982988;  // perspective: full vertical angle of view, rad, in (0, pi)
-  double viewHeight = 1;            // orthographic: height of the view, world units
-  double nearDistance = 0;          // nothing nearer than this depth is seen, world units
+  double fov = 0.5235987755982988;  // perspective only: full vertical angle of view, rad, in (0, pi)
+  double viewHeight = 1;            // orthographic only: height of the view, world units
+  double nearDistance = 0;          // world units along the view direction; what is nearer than this is not seen
   int width = 512;                  // pixels
   int height = 512;                 // pixels
   bool operator==(const Camera&) const = default;
 };
 
-/// Orthonormal axes of the view. Depth is measured along `forward`, from the eye.
+/// Orthonormal axes of the view in world space. Depth is measured along `forward`, from the eye.
 struct CameraFrame {
   glm::dvec3 right, up, forward;
 };
 
-/// Axes of the view; a mirrored world keeps its handedness.
-/// @throw InvalidArgument  eye equals lookAt, up is parallel to the view direction or something is not finite,
-///                         fov outside (0, pi), viewHeight <= 0, width or height < 1, nearDistance < 0
+/// Computes the axes of the view. A mirrored world keeps its handedness.
+/// @throw InvalidArgument  eye equals lookAt, up is parallel to the view direction, something is not finite,
+///                         fov outside (0, pi), viewHeight <= 0, width or height < 1, or nearDistance < 0
 CameraFrame cameraFrame(const Camera& camera);
 
-/// The image plane: the world point of screen point p at depth s is
+/// The image plane. The world point of screen point p at depth s is
 ///   perspective   eye + s (forward + p.x right + p.y up)
 ///   orthographic  eye + s forward + p.x right + p.y up
-/// Screen points are those at depth 1 (perspective) or in world units (orthographic), centre of the image at 0, y up.
+/// Screen points are measured at depth 1 (perspective) or in world units (orthographic); the centre of the image is at
+/// 0 and y points up.
 struct ScreenPlane {
   glm::dvec2 halfExtent;  // the image covers [-halfExtent, halfExtent]
-  glm::dvec2 pixelSize;   // of one pixel; square
+  glm::dvec2 pixelSize;   // size of one pixel, which is square
 };
 ScreenPlane screenPlane(const Camera& camera);
 
-/// A camera on a sphere around `bounds` that looks at its centre and sees all of it.
-/// Azimuth 0, elevation 0 looks along +y from the front (-y), z up, the usual view of a patient lying along z; azimuth
-/// turns the eye around +z (counter-clockwise from above), elevation lifts it; at the poles up is continued.
+/// Returns a camera on a sphere around `bounds` that looks at its centre and sees all of it. At azimuth 0 and elevation
+/// 0 it looks along +y from the front (-y) with z up, the usual view of a patient lying along z. Azimuth turns the eye
+/// around +z (counter-clockwise from above), and elevation lifts it; at the poles up is continued.
 /// @param azimuth,elevation  rad
 /// @param base  gives projection, fov, image size and so on; eye, lookAt, up and viewHeight are replaced
-/// @throw InvalidArgument  empty bounds, or as cameraFrame
+/// @throw InvalidArgument  empty bounds, or a camera that cameraFrame refuses
 Camera orbitCamera(const Box& bounds, double azimuth, double elevation, Camera base = {});
 
 }  // namespace umbrick

@@ -16,7 +16,7 @@ struct InvalidArgument : Error {
 struct IoError : Error {
   using Error::Error;
 };
-/// No OpenGL context, or a shader, texture or render target failed.
+/// There is no OpenGL context, or a shader, texture or render target failed.
 struct GlError : Error {
   using Error::Error;
 };

@@ -7,7 +7,7 @@
 
 namespace umbrick {
 
-/// Reserves a temporary name in the folder of `target`. Write to path(), then commit(); without a commit the
+/// Reserves a temporary name in the folder of `target`. Write to path(), then call commit(). Without a commit the
 /// destructor removes what was written, and a file that stood at `target` is untouched.
 class PendingFile {
  public:
@@ -20,12 +20,12 @@ class PendingFile {
   const std::filesystem::path& path() const { return temporary_; }
   /// Writes the whole file. @throw IoError
   void write(std::string_view text);
-  /// What was written is on the disk when this returns. @throw IoError
+  /// Returns when what was written is on the disk. @throw IoError
   void flush();
   /// Flushes the written file to the disk and renames it to the target.
   /// @throw IoError  nothing was written, or the rename failed
   void commit();
-  /// Leaves the temporary file where it is.
+  /// Makes the destructor leave the temporary file where it is.
   void keep() { kept_ = true; }
 
  private:
@@ -33,7 +33,7 @@ class PendingFile {
   bool kept_ = false;
 };
 
-/// Is given a file that is written but has not taken its name. What it throws leaves what stood there untouched.
+/// A check of a file that is written but has not taken its name. When it throws, what stood there is untouched.
 using WrittenCheck = std::function<void(const std::filesystem::path& written)>;
 
 /// Writes a whole text file through a PendingFile. @throw IoError

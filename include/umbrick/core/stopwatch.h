@@ -16,7 +16,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Highest resident memory of this process so far, bytes; 0 where the system does not tell.
+/// Returns the highest resident memory of this process so far, in bytes; 0 where the system does not tell.
 std::size_t peakMemoryBytes();
 
 }  // namespace umbrick
