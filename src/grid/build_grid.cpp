@@ -24,7 +24,8 @@ openvdb::math::Transform::Ptr makeTransform(const std::string& name, const glm::
   bool diagonal = true;
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < 3; ++i) diagonal = diagonal && (axis == i || m[axis][i] == 0);
-  // Programs that know only scale and translation can place the grid when it needs no more than that.
+  // A grid that needs no more than scale and translation gets a map of just these, so that programs which know no other
+  // map can place it.
   const Vec3d scale(m[0][0], m[1][1], m[2][2]), origin(m[3][0], m[3][1], m[3][2]);
   try {
     MapBase::Ptr base;
@@ -70,7 +71,7 @@ BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options) {
   Slab slab(source), next(source);
   built.report.conversionError = slab.read(0, atOnce);
   while (slab.slices() > 0) {
-    // The next slab is read while the leaves of this one are built.
+    // The next voxel slab is read while the leaves of this one are built.
     auto reading = std::async(std::launch::async, [&] { return next.read(slab.firstSlice() + slab.slices(), atOnce); });
     tally.add(builder.addTo(built.grid->tree(), slab));
     built.report.conversionError = std::max(built.report.conversionError, reading.get());
@@ -84,7 +85,7 @@ BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options) {
     built.grid->setSaveFloatAsHalf(stored.half);
   }
   checkTally(info.name, tally);
-  // Equal neighbours become larger tiles: no error beyond what the leaves had.
+  // Equal neighbours become larger tiles, which adds no error to that of the leaves.
   openvdb::tools::prune(built.grid->tree());
   built.report.voxels = static_cast<std::uint64_t>(sliceVoxels) * static_cast<std::uint64_t>(info.dims.z);
   describe(*built.grid, tally, stored, built.report);

@@ -8,7 +8,8 @@
 namespace umbrick {
 namespace {
 
-// Errors of one conversion after the other add up at most; both norms obey the triangle inequality.
+// The errors of conversions one after the other are bounded by their sum, since both norms obey the
+// triangle inequality.
 template <class Value>
 void addTo(openvdb::FloatGrid& grid, const char* key, Value value) {
   using Metadata = openvdb::TypedMetadata<Value>;

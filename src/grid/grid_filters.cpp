@@ -27,7 +27,7 @@ void refuseLevelSet(const FloatGrid& grid, const char* field) {
                           ": expected a fog volume, found a level set, whose surface would be cut open");
 }
 
-// Where the mask is active and not 0.
+// Returns where the mask is active and not 0.
 openvdb::MaskTree keptBy(const FloatGrid& mask) {
   openvdb::MaskTree kept(mask.tree(), false, true, openvdb::TopologyCopy());
   for (auto value = mask.cbeginValueOn(); value; ++value) {
@@ -95,7 +95,7 @@ std::uint64_t maskGrid(FloatGrid& grid, const FloatGrid& mask) {
                           vectorText(other->found));
   openvdb::MaskTree kept = keptBy(mask);
   kept.topologyIntersection(grid.tree());
-  // Made anew, since a voxel that is only switched off keeps its value.
+  // The tree is made anew, since a voxel that is only switched off would keep its value.
   const auto tree = std::make_shared<FloatTree>(kept, grid.background(), grid.background(), openvdb::TopologyCopy());
   const auto access = grid.getConstAccessor();
   openvdb::tree::LeafManager<FloatTree> leaves(*tree);

@@ -55,15 +55,17 @@ Range rangeOf(const openvdb::FloatTree& tree) {
   return range;
 }
 
-// In indices of the volume, since world coordinates of 32 bits are too coarse far from the origin.
+// Meshes the surface in index coordinates of the volume, since world coordinates of 32 bits are too coarse far
+// from the origin.
 void mesh(const FloatGrid& volume, float value, Points& points, Quads& quads) {
   const auto unplaced = FloatGrid::create(std::const_pointer_cast<openvdb::FloatTree>(volume.treePtr()));
   openvdb::tools::volumeToMesh(*unplaced, points, quads, value);
 }
 
-// Cubes, of the smallest spacing. @return index to world, for column vectors
+// Returns a transform whose voxels are cubes of the smallest spacing, as a matrix for column vectors from
+// index to world.
 glm::dmat4 cubicPlace(const glm::dmat4& place) {
-  constexpr double kRounding = 1e-6;  // of headers with few digits
+  constexpr double kRounding = 1e-6;  // headers of few digits round
   double smallest = glm::length(glm::dvec3(place[0])), largest = smallest;
   bool rightAngles = true;
   for (int axis = 0; axis < 3; ++axis) {
@@ -88,7 +90,7 @@ openvdb::math::Transform::Ptr transformOf(const FloatGrid& volume, const glm::dm
   return openvdb::math::Transform::createLinearTransform(rowMatrix(place));
 }
 
-// Distances without a sign become negative where the volume has the value or more.
+// Makes distances, which have no sign yet, negative where the volume has the value or more.
 void setSigns(FloatGrid& levelSet, const FloatGrid& volume, float value, const glm::dmat4& toVolume) {
   openvdb::tree::LeafManager<openvdb::FloatTree> leaves(levelSet.tree());
   leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {

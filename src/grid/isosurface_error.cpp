@@ -30,7 +30,8 @@ class Measure {
           const glm::dmat4& toLevelSet)
       : volume_(volume), levelSet_(levelSet), value_(value), toLevelSet_(toLevelSet) {}
 
-  // The edges from a voxel to those behind it, and to those before it where no leaf is that has them as its own.
+  // Adds the edges from a voxel to those behind it along each axis. Edges to voxels before it are added too where no
+  // leaf is that counts them as its own.
   void addEdges(const Coord& at, float here, Crossings& sum) {
     for (int axis = 0; axis < 3; ++axis)
       for (const int side : {-1, 1}) {
@@ -59,7 +60,7 @@ class Measure {
   const glm::dmat4& toLevelSet_;
 };
 
-// The faces of a tile where no leaf is beyond.
+// Adds the edges that cross a face of a tile with no leaf beyond it.
 void addTile(Measure& measure, const openvdb::CoordBBox& box, float here, Crossings& sum) {
   for (int axis = 0; axis < 3; ++axis)
     for (const int side : {-1, 1}) {

@@ -9,8 +9,8 @@
 
 namespace umbrick {
 
-/// Sets crossings, maxError and rmsError.
-/// @param toLevelSet  from indices of the volume to indices of the level set
+/// Sets crossings, maxError and rmsError of the report.
+/// @param toLevelSet  from index coordinates of the volume to those of the level set
 void measureIsosurface(const openvdb::FloatTree& volume, float value, const openvdb::FloatGrid& levelSet,
                        const glm::dmat4& toLevelSet, IsosurfaceReport& report);
 

@@ -25,12 +25,12 @@ namespace {
 using Node = openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType;  // 128^3 voxels
 using UpperNode = openvdb::FloatTree::RootNodeType::ChildNodeType;            // 4096^3 voxels
 
-constexpr std::int64_t kNodeLayers = Node::DIM / kLeafEdge;  // a layer: as many slices as a leaf is high
+constexpr std::int64_t kNodeLayers = Node::DIM / kLeafEdge;  // a layer of leaves has as many slices as a leaf is high
 constexpr std::int64_t kFewestLayers = 5;
-constexpr std::size_t kLeavesPacked = 128;  // of a layer
-constexpr double kHeadBytes = 2000;         // of a .vdb: names, metadata, transform
+constexpr std::size_t kLeavesPacked = 128;  // at most, of one layer
+constexpr double kHeadBytes = 2000;         // of a .vdb file: names, metadata and transform
 
-// Takes bytes and keeps their number.
+// Counts the bytes that are written to it, and drops them.
 class CountingBuffer : public std::streambuf {
  public:
   std::int64_t bytes = 0;
@@ -46,11 +46,11 @@ class CountingBuffer : public std::streambuf {
   }
 };
 
-// What was seen of one layer.
+// What was seen in one layer.
 struct Layer {
   std::int64_t slices = 0;
-  double activeVoxels = 0, leaves = 0, packedBytes = 0;  // packedBytes: of its leaves
-  std::vector<Leaf> kept;                                // some of them
+  double activeVoxels = 0, leaves = 0, packedBytes = 0;  // packedBytes: of all its leaves in a .vdb file
+  std::vector<Leaf> kept;                                // some of its leaves
 };
 
 // Which nodes there are above the leaves, and in how many layers each was met.
@@ -64,7 +64,8 @@ class NodeCensus {
     }
   }
   double uppers() const { return static_cast<double>(uppers_.size()); }
-  /// How often a layer of leaves misses a node that another one of the same node has met is how many may be unmet.
+  /// Estimates the number of nodes. Of the nodes in which several layers were read, some were met in only one of these.
+  /// The share of such nodes is taken as the share of nodes that no layer has met.
   Estimate nodes(bool all) const {
     double once = 0, looked = 0;
     for (const auto& [origin, layers] : nodes_) {
@@ -78,7 +79,7 @@ class NodeCensus {
   }
 
  private:
-  std::map<std::int64_t, int> layersOf_;  // layers read of each layer of nodes
+  std::map<std::int64_t, int> layersOf_;  // layers read, by layer of nodes
   std::map<openvdb::Coord, int> nodes_;
   std::set<openvdb::Coord> uppers_;
 };
@@ -104,7 +105,7 @@ Layer surveyLayer(const openvdb::FloatTree& tree, std::int64_t slices) {
   return layer;
 }
 
-// How the values are stored: with a largest error that hangs on all of them.
+// Chooses how values are stored. With a maximum error this depends on all of the values.
 BuildOptions storageOf(const std::vector<Layer>& layers, const BuildOptions& options, float background) {
   if (!options.maxError) return options;
   openvdb::FloatTree tree(background);
@@ -113,7 +114,7 @@ BuildOptions storageOf(const std::vector<Layer>& layers, const BuildOptions& opt
   return storageWithin(tree, options);
 }
 
-// Packs what was kept of a layer; leaves that become tiles on the way are none.
+// Packs the leaves that were kept of a layer. Those that become tiles in the process do not count as leaves.
 void packLayer(Layer& layer, const SparseRule& rule, bool again, std::uint32_t compression) {
   if (layer.kept.empty()) return;
   const float background = rule.background();
@@ -151,7 +152,8 @@ Estimate sum(const Estimate& a, double scaleA, const Estimate& b, double scaleB,
   return {scaleA * a.value + scaleB * b.value + more, std::hypot(scaleA * a.uncertainty, scaleB * b.uncertainty)};
 }
 
-// The slabs that the grid is built from: one at hand, one being read, and one more where values are converted.
+// Returns the memory of the voxel slabs that the grid is built from: one at hand, one being read, and a third where
+// values are converted.
 double slabBytes(const VoxelSource& source) {
   const VolumeInfo& info = source.info();
   const double voxels = double(info.dims.x * info.dims.y) * double(std::min(slabSlices(info.dims), info.dims.z));
@@ -203,18 +205,19 @@ GridPlan planGrid(VoxelSource& source, const BuildOptions& options, const PlanOp
   };
   out.storage = storageText(stored);
   out.activeVoxels = totalOfLayers(&Layer::activeVoxels, layerVoxels);
-  // The last layer may have fewer slices: voxels are of slices, leaves of layers.
+  // The last layer may have fewer slices. So active voxels are counted per slice, and leaves per layer.
   std::int64_t slices = 0;
   for (const Layer& layer : layers) slices += layer.slices;
   out.activeVoxels.value *= double(info.dims.z) / double(out.layers) * double(out.layersRead) / double(slices);
-  // Leaves may hide where nothing was met, but not where all is constant.
+  // Where no layer has a leaf, leaves may lie between the layers; but not if there are active voxels, since then
+  // all is constant.
   const double hidden = out.activeVoxels.value > 0 ? 0 : layerLeaves;
   out.leaves = totalOfLayers(&Layer::leaves, hidden);
   const auto leafBytes = static_cast<double>(Leaf().memUsage());
   const Estimate nodes = census.nodes(out.layersRead == out.layers);
   const Estimate packed = totalOfLayers(&Layer::packedBytes, hidden * leafBytes);
   out.gridBytes = sum(out.leaves, leafBytes, nodes, sizeof(Node), census.uppers() * sizeof(UpperNode));
-  // Of a node there are two masks and a byte; what tiles it has packs well.
+  // A node in a file is two masks and a byte; its tiles pack to almost nothing.
   out.fileBytes = sum(packed, 1, nodes, 2 * Node::NUM_VALUES / 8 + 1,
                       census.uppers() * (2 * UpperNode::NUM_VALUES / 8 + 1) + kHeadBytes);
   out.peakBytes.value += out.gridBytes.value;

@@ -19,14 +19,15 @@ namespace {
 
 constexpr std::int64_t kReadVoxels = std::int64_t(1) << 22;
 
-// The source within some box: what a new voxel needs to know of it, and what tells how far its mean is off.
+// The values of the source in some box: their mean, which a new voxel gets, and what tells how far the
+// voxels are from it.
 struct Moments {
   double mean = 0, variance = 0;
   float low = std::numeric_limits<float>::infinity(), high = -low;
 };
 
-// Joins boxes one after the other. Variances add up by the law of total variance, so that nothing cancels where values
-// are large and alike.
+// Joins boxes one after the other. Variances are joined by the law of total variance, so that no digits cancel where
+// values are large and nearly equal.
 class MomentSum {
  public:
   void add(const Moments& part, double weight) {
@@ -85,7 +86,8 @@ class ResampledSource : public VoxelSource {
     for (int axis = 0; axis < 3; ++axis) {
       const glm::dvec4 column = matrix[axis];
       matrix[axis] *= spacing[axis] / before[axis];
-      matrix[3] += 0.5 * (matrix[axis] - column);  // the faces stay, the centres of the first voxels do not
+      // The faces stay where they are, the centres of the first voxels do not.
+      matrix[3] += 0.5 * (matrix[axis] - column);
     }
     sourceVoxel_ = std::abs(glm::determinant(glm::dmat3(source_->info().indexToWorld)));
     *report_ = {from_, info_.dims, spacing};
@@ -122,7 +124,7 @@ class ResampledSource : public VoxelSource {
     return error;
   }
 
-  // Makes plane_ that of source slice z, which is the one at hand or lies ahead.
+  // Fills plane_ with slice z of the source, which is the one at hand or lies ahead.
   double loadSlice(std::int64_t z) {
     if (z == planeSlice_) return 0;
     double error = 0;
@@ -140,7 +142,7 @@ class ResampledSource : public VoxelSource {
     return error;
   }
 
-  // Rows along x first, then columns of what they became.
+  // Reduces the rows along x first, then the columns of the result.
   void reducePlane(const float* voxels) {
     const std::int64_t nx = info_.dims.x, ny = info_.dims.y;
     rows_.resize(static_cast<std::size_t>(nx * from_.y));
@@ -165,7 +167,7 @@ class ResampledSource : public VoxelSource {
     });
   }
 
-  // Adds up in one thread, so that the sums do not depend on how many there are.
+  // Adds up in one thread, so that the sums do not depend on the number of threads.
   void tally(std::span<const float> out) {
     const double depth = z_.edge(next_ + 1) - z_.edge(next_);
     std::size_t i = 0;
@@ -208,12 +210,12 @@ class ResampledSource : public VoxelSource {
   BoxOverlap x_, y_, z_;
   std::shared_ptr<ResampleReport> report_;
   double sourceVoxel_ = 0, volume_ = 0, squares_ = 0;
-  std::int64_t next_ = 0, position_ = 0;       // the next slice to give; slices of the source gone past
-  std::int64_t readFrom_ = 0, readCount_ = 0;  // slices of the source in read_
+  std::int64_t next_ = 0, position_ = 0;       // next slice to give; next slice of the source
+  std::int64_t readFrom_ = 0, readCount_ = 0;  // slices of the source that are in read_
   std::vector<float> read_;
   std::int64_t planeSlice_ = -1;
-  std::vector<Moments> rows_, plane_;  // a slice of the source, resampled along x, and along x and y
-  std::vector<MomentSum> sums_;        // the slice at hand
+  std::vector<Moments> rows_, plane_;  // one slice of the source, resampled along x; along x and y
+  std::vector<MomentSum> sums_;        // sums of the slice at hand
 };
 
 }  // namespace

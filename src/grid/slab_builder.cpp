@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::int64_t kSlabVoxels = std::int64_t(1) << 21;  // enough work for all cores, little enough for caches
 
-// The background as it is stored; nothing where the type cannot hold it, so that no voxel is equal to it.
+// Returns the background as it is stored, or nothing where the type cannot hold it and so no voxel can equal it.
 template <class T>
 std::optional<T> storedBackground(float background) {
   if constexpr (std::is_same_v<T, float>) {
@@ -35,8 +35,8 @@ std::optional<T> storedBackground(float background) {
   }
 }
 
-// Finds the leaves of one row of them that hold anything but background, before any voxel becomes a float: most of a
-// sparse volume ends here, so the rows of voxels are read in the order of memory and eight voxels at a time.
+// Finds which leaves in one row of leaves hold anything but background, before any voxel becomes a float. In a sparse
+// volume most leaves are decided here, so voxels are read in the order of memory, eight at a time.
 template <class T>
 class RowTest {
  public:
@@ -70,7 +70,7 @@ std::int64_t slabSlices(const glm::i64vec3& dims) {
   return std::max<std::int64_t>(kSlabVoxels / (dims.x * dims.y) / kLeafEdge, 1) * kLeafEdge;
 }
 
-// A header may promise slices of any size, and packed files cannot be held against what it promises.
+// A header may promise slices of any size, and the length of a packed file cannot tell whether that is true.
 void checkSlabFits(const VolumeInfo& info, std::int64_t slices) {
   const double wanted = 2 * double(info.dims.x) * double(info.dims.y) * double(slices) * double(sizeof(float));
   const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
@@ -170,7 +170,7 @@ SlabBuilder::Place SlabBuilder::buildLeaf(const T* slabVoxels, const Slab& slab,
   const auto nx = static_cast<int>(std::min<std::int64_t>(kLeafEdge, dims_.x - at.x()));
   const auto ny = static_cast<int>(std::min<std::int64_t>(kLeafEdge, dims_.y - at.y()));
   const auto nz = static_cast<int>(std::min<std::int64_t>(kLeafEdge, slab.firstSlice() + slab.slices() - at.z()));
-  if (nx < kLeafEdge || ny < kLeafEdge || nz < kLeafEdge) {  // voxels beyond the volume
+  if (nx < kLeafEdge || ny < kLeafEdge || nz < kLeafEdge) {  // some of the leaf lies beyond the volume
     std::fill(std::begin(voxels.value), std::end(voxels.value), rule_.background());
     for (int x = 0; x < nx; ++x)
       for (int y = 0; y < ny; ++y)

@@ -14,20 +14,21 @@
 
 namespace umbrick {
 
-/// How many slices of a volume make a slab: layers of leaves.
+/// Returns how many slices of a volume make a voxel slab: whole layers of leaves.
 std::int64_t slabSlices(const glm::i64vec3& dims);
 
-/// @throw IoError  two slabs of so many slices do not fit into the machine's memory
+/// @throw IoError  two voxel slabs of so many slices do not fit into the machine's memory
 void checkSlabFits(const VolumeInfo& info, std::int64_t slices);
 
-/// One layer or more of leaves: the slices [firstSlice, firstSlice + slices), x fastest, as the source stores them
-/// where it can tell, else as floats. Its memory is kept from one slab to the next.
+/// One or more layers of leaves: the slices [firstSlice, firstSlice + slices), x fastest. Voxels are as the source
+/// stores them where it can tell, else they are floats. The memory is kept from one slab to the next.
 class Slab {
  public:
   explicit Slab(VoxelSource& source) : source_(source), type_(source.storedType().value_or(VoxelType::f32)) {}
 
-  /// @param atMost  slices; fewer at the end of the volume, none behind it
-  /// @return the largest error of the conversion to float  @throw IoError
+  /// @param atMost  number of slices; fewer are read at the end of the volume, none behind it
+  /// @return the largest error of the conversion to float
+  /// @throw IoError  the source fails
   double read(std::int64_t firstSlice, std::int64_t atMost);
 
   /// Exchanges the voxels with another slab of the same source.
@@ -41,7 +42,7 @@ class Slab {
   std::int64_t firstSlice() const { return firstSlice_; }
   std::int64_t slices() const { return slices_; }
   VoxelType type() const { return type_; }
-  /// T is what type() says.
+  /// Returns the voxels; T must be the type that type() names.
   template <class T>
   const T* voxels() const {
     return reinterpret_cast<const T*>(bytes_.get());
@@ -63,7 +64,7 @@ class SlabBuilder {
   SparseTally addTo(openvdb::FloatTree& tree, const Slab& slab);
 
  private:
-  // What stands in the place of one leaf; neither: background.
+  // What stands in the place of one leaf; with neither it is background.
   struct Place {
     std::unique_ptr<Leaf> leaf;
     std::optional<float> tile;

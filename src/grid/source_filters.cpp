@@ -53,7 +53,7 @@ class CroppedSource : public VoxelSource {
       done += slices;
     }
     next_ += count;
-    // What lies behind is gone past too, so that a file that is too short or too long is told from a good one.
+    // The slices behind the box are skipped too, so that a file that is too short or too long is still found out.
     if (next_ == info_.dims.z) source_->skipSlices(whole.z - 1 - box_.max.z);
     return error;
   }

@@ -101,8 +101,8 @@ bool SparseRule::apply(float& value, std::uint64_t voxels, SparseTally& tally) c
   return true;
 }
 
-// The mask of what differs from the background, a word of 64 voxels at a time.
-// @return false when some voxel is not finite; nothing is changed then
+// Makes the mask of voxels that differ from the background, a word of 64 voxels at a time.
+// @return false when some voxel is not finite; then nothing is changed
 bool SparseRule::keepAll(LeafVoxels& leaf) const {
   constexpr std::uint32_t kExponent = 0x7f800000;
   std::uint32_t notFinite = 0;
@@ -140,7 +140,7 @@ std::optional<float> SparseRule::apply(LeafVoxels& leaf, SparseTally& tally) con
     if (kept.min == kept.max) {
       tile = kept.min;
     } else if (tolerance_ > 0 && merges_) {
-      // Half way between the extremes, so that the error is the smallest that one value can have.
+      // The tile is half way between the extremes, where the largest error of one value is the smallest.
       const float middle = stored(static_cast<float>(0.5 * (static_cast<double>(range.min) + range.max)));
       const double error = std::max(difference(range.min, middle), difference(range.max, middle));
       if (error <= static_cast<double>(tolerance_)) {

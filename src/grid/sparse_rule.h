@@ -16,7 +16,7 @@ namespace umbrick {
 using Leaf = openvdb::FloatTree::LeafNodeType;
 inline constexpr std::int64_t kLeafEdge = Leaf::DIM;  // 8 voxels
 
-/// Errors of some voxels.
+/// The sum of the errors of some voxels.
 struct LossSum {
   double max = 0, squares = 0;
   void add(double error, double voxels = 1) {
@@ -29,46 +29,48 @@ struct LossSum {
   }
 };
 
-/// Of so many voxels; 0 of none.
+/// Returns the root of the mean of so many squares; 0 for no voxels.
 inline double rootMean(double squares, std::uint64_t voxels) {
   return voxels > 0 ? std::sqrt(squares / static_cast<double>(voxels)) : 0.0;
 }
 
-/// The losses of some voxels; tallies add up in any order, squares up to rounding.
+/// The losses of some voxels. Tallies may be added in any order; the sums of squares are then equal up to rounding.
 struct SparseTally {
-  LossSum leftOut, merged, rounded;  // within the tolerance of the background, or of a tile; by step and half
+  // Losses of voxels close to the background; of voxels merged into a tile; by step and half.
+  LossSum leftOut, merged, rounded;
   std::uint64_t clipped = 0;
   double maxClipChange = 0;
   std::uint64_t nonFinite = 0;
-  std::optional<float> tooLarge;  // a value that half floats cannot hold
+  std::optional<float> tooLarge;  // a value that half floats cannot hold, if there is one
   void add(const SparseTally& other);
 };
 
-/// 512 voxels in the order of a leaf: z fastest.
+/// The 512 voxels of a leaf in its own order: z fastest.
 struct LeafVoxels {
   float value[Leaf::SIZE];
-  Leaf::NodeMaskType active;  // in: which to look at; out: which stay active
+  Leaf::NodeMaskType active;  // before: which voxels to look at; after: which stay active
 };
 
 class SparseRule {
  public:
-  /// With options.maxError only what lies that close to the background is left out: how the rest is stored is chosen
+  /// With options.maxError, only what lies that close to the background is left out. How the rest is stored is chosen
   /// when its values are known, see storageWithin.
   /// @param background  used when the options give none
-  /// @throw InvalidArgument
+  /// @throw InvalidArgument  options that buildGrid refuses
   SparseRule(const std::string& name, const BuildOptions& options, float background);
 
   float background() const { return background_; }
   bool half() const { return half_; }
   bool rounds() const { return half_ || step_ > 0; }
-  /// The value as it is stored where it is active.
+  /// Returns an active value as it is stored.
   float stored(float value) const;
-  /// The value as it is stored where it is not: steps are for what is active.
+  /// Returns an inactive value as it is stored; it is not rounded to steps, which are for active values.
   float storedInactive(float value) const;
-  /// @return false when the voxel becomes background; `value` becomes what is stored
-  /// @param voxels  how many it stands for
+  /// Makes `value` what is stored.
+  /// @param voxels  the number of voxels that it stands for
+  /// @return false when the voxels become background
   bool apply(float& value, std::uint64_t voxels, SparseTally& tally) const;
-  /// Applies the rule to the active voxels.
+  /// Applies the rule to the active voxels of a leaf.
   /// @return the value of a tile that may stand for the leaf, when all its voxels are active and close enough
   std::optional<float> apply(LeafVoxels& leaf, SparseTally& tally) const;
 
@@ -77,24 +79,24 @@ class SparseRule {
 
   float background_, tolerance_, clipBelow_, clipAbove_, step_;
   bool half_, merges_;
-  bool plain_;  // nothing is changed but what is not finite
+  bool plain_;  // only values that are not finite are changed
 };
 
-/// What honours options.maxError for the active values of a tree: the options with half, step and tolerance in its
-/// place.
+/// Returns the options with half, step and tolerance in place of maxError, chosen so that no active value of the tree
+/// is off by more.
 BuildOptions storageWithin(const openvdb::FloatTree& tree, const BuildOptions& options);
 
 /// Applies the rule to the active voxels and tiles of a tree.
 SparseTally sparsifyTree(openvdb::FloatTree& tree, const SparseRule& rule);
 
-/// @throw InvalidArgument  when the tally met a value too large for half floats
+/// @throw InvalidArgument  the tally met a value too large for half floats
 void checkTally(const std::string& name, const SparseTally& tally);
 
-/// "float" or "half", with ", steps of ..." behind it.
+/// Returns "float" or "half", with ", steps of ..." behind it where there are steps.
 std::string storageText(const BuildOptions& options);
 
-/// Fills in what the grid holds and what the tally lost, in the report and in the metadata of the grid.
-/// @param report  its voxels, conversionError and backgroundChange are set
+/// Writes what the grid holds and what the tally lost into the report and into the metadata of the grid.
+/// @param report  has voxels, conversionError and backgroundChange set already
 void describe(openvdb::FloatGrid& grid, const SparseTally& tally, const BuildOptions& options, BuildReport& report);
 
 }  // namespace umbrick

@@ -60,8 +60,9 @@ SparseTally sparsifyTiles(FloatTree& tree, const SparseRule& rule) {
   return tally;
 }
 
-// Rounds values as they are stored and tallies the loss: of all of them, or of the inactive ones where the rest is
-// done. The mean is over active voxels, so inactive ones count for the maximum only.
+// Rounds values to how they are stored and tallies the loss. It takes all values, or with `onlyInactive` just the
+// inactive ones, where the others have been rounded already. The mean is over active voxels, so inactive ones count for
+// the maximum only.
 SparseTally roundValues(FloatTree& tree, const SparseRule& rule, bool onlyInactive) {
   const auto round = [&](float value, bool active, double voxels, SparseTally& tally) {
     const float stored = active ? rule.stored(value) : rule.storedInactive(value);
@@ -103,7 +104,7 @@ SparseTally sparsifyTree(FloatTree& tree, const SparseRule& rule) {
 BuiltGrid sparsifyGrid(const ScalarGrid& source, const BuildOptions& asked) {
   openvdb::initialize();
   BuildOptions options = asked;
-  // A grid that is marked for half floats is going to be saved as such: what that costs belongs in the report.
+  // A grid that is marked for half floats will be saved as such, so the report must contain what that costs.
   options.half = options.half || source.grid->saveFloatAsHalf();
   const std::string name = "grid \"" + source.name + '"';
   BuiltGrid built{source.grid->deepCopy(), {}};

@@ -9,10 +9,10 @@
 namespace umbrick {
 namespace {
 
-// What decides whether half floats will do.
+// The facts that decide whether half floats will do.
 struct HalfSurvey {
-  float largest = 0;     // magnitude
-  double halfError = 0;  // infinite beyond the range
+  float largest = 0;     // largest magnitude, grid units
+  double halfError = 0;  // grid units; infinite where a value is out of range
   void include(float value) {
     if (!std::isfinite(value)) return;
     largest = std::max(largest, std::abs(value));
@@ -54,8 +54,8 @@ BuildOptions storageWithin(const openvdb::FloatTree& tree, const BuildOptions& o
   chosen.tolerance = maxError;
   chosen.maxError.reset();
   chosen.half = false;
-  // The largest power of two whose rounding error is within the limit; its multiples are exact as floats up to 2^24 of
-  // them, as half floats up to 2^11. What the step does not reach is stored as it is.
+  // The step is the largest power of two whose rounding error is within the limit. Floats hold its multiples exactly up
+  // to 2^24 of them, half floats up to 2^11. Where values are too large for that, they are stored without steps.
   constexpr int kFloatBits = 24, kHalfBits = 11;
   constexpr float kSmallestHalf = 0x1p-24f, kLargestHalf = 65504;
   const float step = maxError > 0x1p-100f ? std::ldexp(1.0f, std::ilogb(2 * std::min(maxError, 1e37f))) : 0.0f;

@@ -41,7 +41,7 @@ class Verifier {
         clipAbove_(options.clipAbove.value_or(std::numeric_limits<float>::infinity())) {}
 
   /// Compares the voxels of one leaf or of the part of it that the volume has.
-  /// @param voxels  of the slab that starts at slice `firstSlice`, x fastest
+  /// @param voxels  those of the voxel slab that starts at slice `firstSlice`, x fastest
   Seen compare(const float* voxels, const glm::i64vec3& from, const glm::i64vec3& to, const glm::i64vec3& dims,
                std::int64_t firstSlice, const openvdb::FloatGrid::ConstAccessor& access) const {
     Seen seen;
@@ -61,7 +61,7 @@ class Verifier {
     return seen;
   }
 
-  /// @param voxels  that the values stand for
+  /// @param voxels  the number of voxels that the values stand for
   void compare(float source, float stored, std::uint64_t voxels, Seen& seen) const {
     if (!std::isfinite(source) || source < clipBelow_ || source > clipAbove_)
       seen.wrongly += difference(stored, background_) <= backgroundError_ ? 0 : voxels;
@@ -121,7 +121,7 @@ VerifyReport verifyGrid(VoxelSource& source, const openvdb::FloatGrid& grid, con
 VerifyReport verifyGrid(const ScalarGrid& source, const openvdb::FloatGrid& grid, const BuildOptions& asked,
                         double backgroundError) {
   BuildOptions options = asked;
-  // Level sets are rounded only.
+  // A level set is never clipped, only rounded.
   if (source.grid->getGridClass() == openvdb::GRID_LEVEL_SET) options.clipBelow = options.clipAbove = std::nullopt;
   const Verifier verifier(grid, options, backgroundError);
   const openvdb::tree::LeafManager<const openvdb::FloatTree> leaves(source.grid->tree());
@@ -150,7 +150,7 @@ VerifyReport verifyGrid(const ScalarGrid& source, const openvdb::FloatGrid& grid
       seen.active += access.probeValue(at, stored) ? voxels : 0;
       verifier.compare(*tile, stored, voxels, seen);
     };
-    // One voxel tells of all where the other grid has a tile too, or a larger one.
+    // Where the other grid has a tile of the same size or larger there, one voxel tells of all.
     if (access.getValueDepth(tile.getCoord()) <= static_cast<int>(tile.getDepth()))
       compare(tile.getCoord(), tile.getVoxelCount());
     else

@@ -8,10 +8,10 @@
 
 namespace umbrick {
 
-/// A private mapping: what is written to it never reaches the file.
+/// A private mapping of a file: what is written to it never reaches the file.
 class MappedFile {
  public:
-  /// @throw IoError  missing, a directory, or not readable
+  /// @throw IoError  the file is missing, a directory, or not readable
   explicit MappedFile(const std::filesystem::path& path);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;
@@ -22,7 +22,7 @@ class MappedFile {
   std::span<char> bytes_;
 };
 
-/// Reads from memory; a read past the end is short, which makes a stream with exceptions throw.
+/// A stream buffer over memory. A read past the end is short, which makes a stream with exceptions throw.
 class MemoryStreamBuffer : public std::streambuf {
  public:
   explicit MemoryStreamBuffer(std::span<char> bytes) { setg(bytes.data(), bytes.data(), bytes.data() + bytes.size()); }

@@ -21,14 +21,14 @@
 namespace umbrick {
 namespace {
 
-constexpr std::uint64_t kMaxDeflate = 1032;                    // https://zlib.net/zlib_tech.html
+constexpr std::uint64_t kMaxDeflate = 1032;  // largest ratio of packing, https://zlib.net/zlib_tech.html
 constexpr std::uint64_t kBloscChunk = std::uint64_t(1) << 30;  // of one call of Blosc, before packing
 
 [[noreturn]] void fail(const std::string& field, const std::string& expected, const std::string& found) {
   throw BrokenVdb(field + ": expected " + expected + ", found " + found);
 }
 
-// The file, front to back.
+// Reads the file from front to back.
 class Cursor {
  public:
   explicit Cursor(std::span<const char> bytes) : rest_(bytes) {}
@@ -70,7 +70,7 @@ nanovdb::GridHandle<> unpack(std::span<const char> packed, std::uint64_t size, n
       fail("ZIP", std::to_string(size) + " bytes after unpacking", "corrupt data");
     return out;
   }
-  // Blosc says how large a chunk is before anything is allocated for it.
+  // Blosc says how large each chunk becomes, so this is checked before anything is allocated for it.
   std::vector<std::span<const char>> chunks;
   for (std::uint64_t left = size; left > 0;) {
     const auto bytes = cursor.take(cursor.value<std::uint64_t>("Blosc"), "Blosc");
@@ -91,7 +91,7 @@ nanovdb::GridHandle<> unpack(std::span<const char> packed, std::uint64_t size, n
   return out;
 }
 
-// Follows every pointer from the root to the leaves.
+// Follows every pointer from the root to the leaves, and checks it.
 class TreeCheck {
  public:
   explicit TreeCheck(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -147,7 +147,8 @@ template <class Build>
 openvdb::GridBase::Ptr converted(const nanovdb::GridHandle<>& handle) {
   TreeCheck({handle.data(), static_cast<std::size_t>(handle.size())}).check<Build>();
   const auto grid = nanovdb::nanoToOpenVDB(*reinterpret_cast<const nanovdb::NanoGrid<Build>*>(handle.data()));
-  // NanoVDB multiplies columns and OpenVDB rows; the conversion of 10.0.1 forgets to transpose.
+  // NanoVDB multiplies matrices with columns, and OpenVDB with rows. The conversion in OpenVDB 10.0.1 forgets to
+  // transpose, so the transform is set here.
   const nanovdb::Map& map = reinterpret_cast<const nanovdb::GridData*>(handle.data())->mMap;
   openvdb::Mat4d matrix = openvdb::Mat4d::identity();
   matrix.setMat3(openvdb::Mat3d(map.mMatD).transpose());
@@ -162,7 +163,8 @@ openvdb::GridBase::Ptr toOpenVdb(nanovdb::GridHandle<>& handle, nanovdb::GridTyp
   auto* data = reinterpret_cast<nanovdb::GridData*>(handle.data());
   if (data->mMagic != NANOVDB_MAGIC_NUMBER || data->mGridType != type)
     fail("grid", "the type that the table says", "another one");
-  // The table has the name. This one might not end, or lie elsewhere.
+  // The table of the file has the name. The name in the grid itself might not end, or lie elsewhere, so it is cut off
+  // and no pointer to it is followed.
   data->mGridName[nanovdb::GridData::MaxNameSize - 1] = '\0';
   data->setLongGridNameOn(false);
   using nanovdb::GridType;
@@ -186,7 +188,7 @@ openvdb::GridBase::Ptr toOpenVdb(nanovdb::GridHandle<>& handle, nanovdb::GridTyp
   }
 }
 
-// Nothing for what is no scalar.
+// Returns the name of a scalar type, or nothing for other types.
 std::optional<std::string> scalarName(nanovdb::GridType type) {
   using nanovdb::GridType;
   if (type == GridType::Float || (type >= GridType::Fp4 && type <= GridType::FpN)) return "float";

@@ -13,15 +13,15 @@ namespace umbrick {
 struct NanoGridEntry {
   std::string name, valueType;  // "float" also for grids of quantised floats
   std::int64_t fileBytes = 0;
-  openvdb::GridBase::Ptr grid;  // null for types that are no scalars
+  openvdb::GridBase::Ptr grid;  // null for types that are not scalar
 };
 
 bool isNanoVdb(std::span<const char> file);
 
-/// All grids of a file. A NanoVDB grid is a block of memory whose nodes point at each other, so every pointer is
+/// Reads all grids of a file. A NanoVDB grid is a block of memory whose nodes point at each other, so every pointer is
 /// checked before it is followed.
-/// @param version  becomes that of the file, "32.4"
-/// @throw BrokenVdb
+/// @param version  becomes the version of the file, as "32.4"
+/// @throw BrokenVdb  the file is not what it claims to be
 std::vector<NanoGridEntry> readNanoGrids(std::span<const char> file, std::string& version);
 
 }  // namespace umbrick

@@ -60,7 +60,8 @@ double roundingError(Value value) {
              : 0.0;
 }
 
-// Largest rounding error over all values, active or not: leaves in parallel, then tiles and the background.
+// Returns the largest rounding error over all values, active or not: of leaves in parallel, then of tiles and
+// the background.
 template <class Tree>
 double conversionErrorOf(const Tree& tree) {
   using Leaf = typename Tree::LeafNodeType;

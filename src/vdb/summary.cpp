@@ -32,7 +32,8 @@ double asNumber(const Value& value) {
     return static_cast<double>(value);
 }
 
-// Calls add(state, value, voxels) for all active values: leaves on all cores, then tiles; states are joined.
+// Calls add(state, value, voxels) for all active values: for leaves on all cores, then for tiles. The
+// states are joined.
 template <class Tree, class State, class Add>
 State overActive(const Tree& tree, const State& empty, const Add& add) {
   openvdb::tree::LeafManager<const Tree> leaves(tree);
@@ -86,7 +87,7 @@ ValueSummary summariseValues(const Tree& tree, int bins) {
     out.min = out.max = std::numeric_limits<double>::quiet_NaN();
     return out;
   }
-  // Halves, so that the extent of doubles does not overflow.
+  // All is halved, so that the extent of doubles does not overflow.
   const double start = 0.5 * out.min, extent = 0.5 * out.max - start;
   const auto binOf = [&](double value) {
     const double share = extent > 0 ? (0.5 * value - start) / extent : 0.0;

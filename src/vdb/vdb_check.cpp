@@ -39,7 +39,7 @@ class TreeWalk {
     std::sort(keys_.begin(), keys_.end());
     if (std::adjacent_find(keys_.begin(), keys_.end()) != keys_.end())
       throw BrokenVdb("corrupt: two nodes in one place");
-    // Buffers come in the order in which the root keeps its children.
+    // The buffers of the leaves come in the order in which the root keeps its children.
     std::sort(children_.begin(), children_.end(), [](const Child& a, const Child& b) { return a.key < b.key; });
     for (const Child& child : children_)
       for (const char* mask : child.leafMasks) leafBuffer(mask);
@@ -81,7 +81,7 @@ class TreeWalk {
     for (std::int64_t i = 0; i < leaves; ++i) child.leafMasks.push_back(cursor_.take(64));
   }
 
-  // @return the mask of its children
+  // Checks an inner node with so many values. @return the mask of its children
   const char* innerNode(std::int64_t values) {
     const char* childMask = cursor_.take(values / 8);
     const char* valueMask = cursor_.take(values / 8);
@@ -101,7 +101,7 @@ class TreeWalk {
     if (layout_.leaves == VdbLayout::Leaves::bools) cursor_.take(64);
   }
 
-  // openvdb::io::readCompressedValues
+  // Checks what openvdb::io::readCompressedValues reads.
   void compressedValues(std::int64_t count, const char* mask) {
     const auto kind = cursor_.number<std::int8_t>();
     using namespace openvdb::io;
@@ -117,7 +117,8 @@ class TreeWalk {
     block(count * (shortened ? layout_.halfBytes : layout_.valueBytes));
   }
 
-  // Bytes behind a length: negative when they are not packed.
+  // Checks a block of bytes. If values are packed, a length stands in front of it, which is negative for a block that
+  // is not packed.
   void block(std::int64_t bytes) {
     using namespace openvdb::io;
     if (!(compression_ & (COMPRESS_BLOSC | COMPRESS_ZIP))) {
@@ -134,7 +135,7 @@ class TreeWalk {
     }
     const char* packed = cursor_.take(length);
     if (!(compression_ & COMPRESS_BLOSC)) return;
-    // Blosc is given no length: its header must not claim more than there is.
+    // Blosc is not told the length, so its header must not claim more bytes than there are.
     std::int32_t claimed = 0;
     if (length >= 16) std::memcpy(&claimed, packed + 12, sizeof claimed);
     if (claimed < 16 || claimed > length) throw BrokenVdb("corrupt: a Blosc block of the wrong length");

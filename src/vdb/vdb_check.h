@@ -9,18 +9,18 @@
 
 namespace umbrick {
 
-/// What the file has wrong, without its name.
+/// Says what is wrong with a file, without its name.
 struct BrokenVdb : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A place in the bytes of a file that cannot leave them.
+/// A place in the bytes of a file, which cannot be moved out of them.
 class VdbCursor {
  public:
   VdbCursor(std::span<char> bytes, std::int64_t position);
   std::int64_t position() const { return position_; }
   std::int64_t left() const { return std::int64_t(bytes_.size()) - position_; }
-  /// The next `count` bytes. @throw BrokenVdb  there are not so many
+  /// Returns the next `count` bytes. @throw BrokenVdb  there are not so many
   char* take(std::int64_t count);
   template <class T>
   T number() {
@@ -28,7 +28,7 @@ class VdbCursor {
     std::memcpy(&value, take(sizeof(T)), sizeof(T));
     return value;
   }
-  /// A length and as many characters.
+  /// Reads a length and as many characters.
   std::string string();
 
  private:
@@ -36,8 +36,10 @@ class VdbCursor {
   std::int64_t position_;
 };
 
-/// Checks a map of metadata, and blinds the one kind that OpenVDB cannot read safely (it takes it for unknown then).
-/// Openvdb::initialize() has been called. @throw BrokenVdb
+/// Checks a map of metadata. One kind of entry OpenVDB cannot read safely; the name of its type is changed in memory,
+/// so that OpenVDB takes it for an unknown type.
+/// @throw BrokenVdb  the map is not what it claims to be
+/// @pre openvdb::initialize() has been called
 void checkMetadata(VdbCursor& cursor);
 
 /// How the values of a type of grid lie in a file.
@@ -45,14 +47,15 @@ struct VdbLayout {
   enum class Leaves { values, bools, masks };
   Leaves leaves = Leaves::values;
   int valueBytes = 4;
-  int halfBytes = 4;  // the same when saved as half
+  int halfBytes = 4;  // bytes of a value when saved as half floats
 };
-/// Null for types that are not read voxel by voxel, such as points.
+/// Returns null for types that are not read voxel by voxel, such as points.
 const VdbLayout* layoutOf(const std::string& valueType);
 
-/// Checks the tree of a grid, nodes 5-4-3, from its start on. OpenVDB 10 writes beyond its buffers when the length of
-/// an uncompressed block is wrong, allocates what a length says, and counts by masks that are stored twice.
-/// @throw BrokenVdb
+/// Checks the tree of a grid, nodes 5-4-3, from its start on. This is needed since OpenVDB 10 writes beyond its
+/// buffers when the length of an uncompressed block is wrong, allocates what a length says, and counts by masks that
+/// are stored twice.
+/// @throw BrokenVdb  the tree is not what it claims to be
 void checkTree(VdbCursor& cursor, const VdbLayout& layout, std::uint32_t compression, bool savedAsHalf);
 
 }  // namespace umbrick

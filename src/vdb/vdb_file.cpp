@@ -12,13 +12,13 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-// Older files (before OpenVDB 1.0.1 of 2012) lay out their nodes in other ways.
+// Files from before OpenVDB 1.0.1 of 2012 lay out their nodes in other ways, and are refused.
 constexpr std::uint32_t kOldestVersion = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
 constexpr std::string_view kHalfSuffix = "_HalfFloat";
 
 }  // namespace
 
-// Every failure inside `action` becomes one IoError that names the file.
+// Runs `action` and turns every failure inside it into one IoError that names the file.
 template <class Action>
 auto VdbFile::guarded(const std::string& what, const Action& action) {
   try {
@@ -79,7 +79,7 @@ void VdbFile::readNano() {
                         grid.grid});
 }
 
-// One row of the table; rows lie before the data of their grids.
+// Reads one row of the table of grids. Each row stands in front of the data of its grid.
 VdbFile::Entry VdbFile::readEntry() {
   VdbCursor row(file_.bytes(), stream_.tellg());
   const std::string uniqueName = row.string();
@@ -149,19 +149,19 @@ openvdb::GridBase::Ptr VdbFile::read(const Entry& entry) {
   });
 }
 
-// Reads the grid at which the stream stands.
+// Reads the grid at whose data the stream stands.
 openvdb::GridBase::Ptr VdbFile::readHere(const Entry& entry) {
   const std::string& type = entry.descriptor.gridType();
   if (!openvdb::GridBase::isRegistered(type)) return nullptr;
   const std::int64_t start = stream_.tellg();
-  // First pass: metadata and transform, and a walk over the tree behind them.
+  // At first metadata and transform are read here, and the tree behind them is checked.
   readGridCompression(stream_);
   VdbCursor cursor(file_.bytes(), stream_.tellg());
   checkMetadata(cursor);
-  cursor.string();  // the type of the transform, which is all of it that has a length
+  cursor.string();  // the type of the transform, the only part of it that has a length
   openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(type);
   grid->setSaveFloatAsHalf(entry.descriptor.saveFloatAsHalf());
-  grid->readMeta(stream_);  // has the last word on half floats
+  grid->readMeta(stream_);  // the metadata have the last word on half floats
   grid->readTransform(stream_);
   const VdbLayout* layout = layoutOf(entry.valueType);
   if (!layout) return grid;
@@ -169,7 +169,7 @@ openvdb::GridBase::Ptr VdbFile::readHere(const Entry& entry) {
     VdbCursor tree(file_.bytes(), stream_.tellg());
     checkTree(tree, *layout, openvdb::io::getDataCompression(stream_), grid->saveFloatAsHalf());
   }
-  // Second pass: OpenVDB reads the same bytes.
+  // Then OpenVDB reads the same bytes.
   stream_.seekg(start);
   grid = openvdb::GridBase::createGrid(type);
   readGrid(grid, entry.descriptor, stream_);

@@ -25,7 +25,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the headers say so");
 
-// Calls action(T()) with the type that values are stored as.
+// Calls action(T()), where T is the type as which values are stored.
 template <class Action>
 auto withType(VoxelType type, const Action& action) {
   switch (type) {
@@ -61,7 +61,8 @@ bool holdsAll(VoxelType type, const openvdb::FloatTree& tree) {
   });
 }
 
-// Columns: the world vectors of a step along x, y and z, and the place of voxel `first`.
+// The matrix of a file's header: its columns are the world vectors of a step along x, y and z, and the place of
+// voxel `first`.
 struct Place {
   openvdb::Vec3d axis[3], origin;
 };
@@ -139,7 +140,7 @@ std::string metaImageHeader(const DenseBox& box, const Place& place, const std::
          "\nElementType = " + type + "\nElementDataFile = " + voxels + '\n';
 }
 
-// One layer of leaves after the other, so that a box larger than memory can be written.
+// Writes one layer of leaves after the other, so that a box larger than memory can be written.
 void writeVoxels(std::ostream& out, const openvdb::FloatGrid& grid, const DenseBox& box) {
   constexpr std::int64_t kSlices = 8;
   const openvdb::Coord first(static_cast<int>(box.first.x), static_cast<int>(box.first.y),
@@ -158,7 +159,7 @@ void writeVoxels(std::ostream& out, const openvdb::FloatGrid& grid, const DenseB
   }
 }
 
-// @param fill  writes the file
+// Writes a file whole. @param fill  writes its content
 void writeWhole(const fs::path& path, const fs::path& pending, const std::function<void(std::ostream&)>& fill) {
   try {
     std::ofstream out;

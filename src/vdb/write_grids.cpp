@@ -13,7 +13,7 @@
 namespace umbrick {
 namespace {
 
-// openvdb::io::File does not notice a full disk: write through a stream that does.
+// openvdb::io::File does not notice a full disk, so this class writes through a stream that does.
 class Writer : public openvdb::io::Archive {
  public:
   using Archive::write;

@@ -43,7 +43,7 @@ QuantiseError errorOf(const FloatGrid& grid, const nanovdb::NanoGrid<Build>& sto
           if (!other) throw std::runtime_error("a leaf is missing");
           for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
             const double off = std::abs(double(leaf->getValue(i)) - double(other->getValue(i)));
-            // Values too far apart for a step in 32 bits come back as NaN.
+            // Values that are too far apart for a step in 32 bits come back as NaN.
             const double difference = std::isnan(off) ? std::numeric_limits<double>::infinity() : off;
             error.max = std::max(error.max, difference);
             error.squares += difference * difference;
@@ -73,9 +73,9 @@ NanoGridData quantised(const FloatGrid& grid, float tolerance = 0) {
 }
 
 NanoGridData adaptive(const FloatGrid& grid, float maxError) {
-  // NanoVDB does not look for leaves where there are none.
+  // NanoVDB's adaptive conversion reads the sizes of leaves even where there are none.
   if (grid.tree().leafCount() == 0) return quantised<nanovdb::Fp16>(grid);
-  // It finds the bits with codes that are rounded a little differently from those that it then stores.
+  // NanoVDB chooses the number of bits with codes that are rounded a little differently from those that it then stores.
   constexpr float kRounding = 0.999f;
   NanoGridData out = quantised<nanovdb::FpN>(grid, kRounding * maxError);
   if (out.error.max > static_cast<double>(maxError)) {
@@ -114,7 +114,7 @@ std::vector<QuantiseError> writeNanoVdb(const std::filesystem::path& path,
     std::ofstream out;
     out.exceptions(std::ios::failbit | std::ios::badbit);
     out.open(pending.path(), std::ios::binary | std::ios::trunc);
-    // A segment of its own for each grid, so that no more than one is in memory twice.
+    // Each grid is a segment of its own, so that no more than one is in memory twice.
     for (const auto& grid : grids) {
       const NanoGridData nano = toNano(*grid, options);
       errors.push_back(nano.error);

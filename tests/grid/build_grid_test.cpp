@@ -26,7 +26,7 @@ std::size_t indexOf(const glm::i64vec3& dims, int x, int y, int z) {
   return static_cast<std::size_t>((z * dims.y + y) * dims.x + x);
 }
 
-// Smooth blobs, plateaus and empty space, with some noise.
+// Returns a volume with smooth blobs, plateaus and empty space, with some noise.
 std::vector<float> testVolume(const glm::i64vec3& dims) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> noise(-0.02f, 0.02f);
@@ -45,7 +45,7 @@ std::vector<float> testVolume(const glm::i64vec3& dims) {
 
 }  // namespace
 
-// The report is checked against a plain loop over all voxels of source and grid.
+// A plain loop over all voxels of source and grid gives the numbers of the report.
 TEST_CASE("Active count and maximum error are exact for any tolerance, clip, background and precision", "[grid]") {
   const glm::i64vec3 dims(37, 29, 75);
   const std::vector<float> voxels = testVolume(dims);
@@ -130,7 +130,7 @@ TEST_CASE("Voxels that are not finite are stored as background and counted", "[g
   CHECK(built.grid->tree().getValue(Coord(1, 0, 0)) == 0);
 }
 
-TEST_CASE("Transforms come through: scale, mirror, shear, far away", "[grid]") {
+TEST_CASE("Transforms are kept: scale, mirror, shear, far away", "[grid]") {
   const glm::dmat4 sheared(0.5, 0.1, 0, 0, -0.2, 0.6, 0, 0, 0.05, 0, -1.5, 0, 1e7, -2e7, 3, 1);
   const glm::dmat4 scaled(0.8, 0, 0, 0, 0, -0.8, 0, 0, 0, 0, 1.5, 0, -3, 4, 5, 1);
   for (const glm::dmat4& matrix : {glm::dmat4(1), scaled, sheared}) {
@@ -171,7 +171,7 @@ TEST_CASE("A grid with tiles, a background and inactive values is made sparse wi
   openvdb::initialize();
   const auto grid = openvdb::FloatGrid::create(0.25f);
   grid->tree().addTile(2, Coord(0), 0.3f, true);       // 128^3 voxels within the tolerance of the background
-  grid->tree().addTile(1, Coord(200, 0, 0), 4, true);  // 8^3
+  grid->tree().addTile(1, Coord(200, 0, 0), 4, true);  // 8^3 voxels
   for (int i = 0; i < 512; ++i)
     grid->tree().setValue(Coord(304 + (i >> 6), i >> 3 & 7, i & 7), 2.0f + 0.0001f * float(i));
   grid->tree().setValue(Coord(-5, -6, -7), 0.1f);
@@ -218,7 +218,7 @@ TEST_CASE("A level set keeps its values, and rounds to half on request", "[grid]
       }
   CHECK(rounded.report.maxError == error);
   CHECK(error > 0);
-  // What is written as half is what the report speaks of.
+  // The report speaks of the values as they are written, in half floats.
   const TemporaryFolder folder;
   writeGrids(folder.path() / "s.vdb", {rounded.grid});
   const ScalarGrid back = readScalarGrid(folder.path() / "s.vdb");

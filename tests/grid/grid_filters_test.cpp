@@ -15,7 +15,7 @@ using openvdb::CoordBBox;
 
 namespace {
 
-// Leaves and tiles of 8^3 and 128^3 voxels, with a background.
+// A grid with leaves, with tiles of 8^3 and 128^3 voxels, and with a background.
 openvdb::FloatGrid::Ptr mixedGrid() {
   auto grid = openvdb::FloatGrid::create(0.5f);
   grid->setName("mixed");
@@ -27,7 +27,7 @@ openvdb::FloatGrid::Ptr mixedGrid() {
   return grid;
 }
 
-// Whether each voxel around is as `expected` says, value and state.
+// Checks whether each voxel in and around the grid has the value and the state that `expected` says.
 template <class Expected>
 void checkVoxels(const openvdb::FloatGrid& grid, const openvdb::FloatGrid& before, const Expected& kept) {
   std::size_t different = 0;

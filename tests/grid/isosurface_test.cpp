@@ -19,7 +19,7 @@ using Catch::Contains;
 
 namespace {
 
-// 5000 on a sphere around `centre`, 100 more for each world unit inwards.
+// A volume that is 5000 on a sphere around `centre` and grows by 100 for each world unit inwards.
 ScalarGrid ball(const glm::ivec3& dims, const glm::dmat4& place, const glm::dvec3& centre, double radius) {
   const auto value = [&](const glm::ivec3& at) {
     const glm::dvec3 point(place * glm::dvec4(at, 1));
@@ -33,7 +33,7 @@ double distanceAt(const Isosurface& surface, const glm::dvec3& point) {
                     .wsSample({point.x, point.y, point.z}));
 }
 
-// Signed distances of points in all directions, a little inside and outside too.
+// Checks the signed distances of points in all directions, on the sphere and a little inside and outside of it.
 void checkSphere(const Isosurface& surface, const glm::dvec3& centre, double radius) {
   TestRandom random(3);
   double worst = 0;
@@ -47,7 +47,7 @@ void checkSphere(const Isosurface& surface, const glm::dvec3& centre, double rad
   }
   CHECK(worst < 0.1);  // voxels
   CHECK(distanceAt(surface, centre) == -double(surface.grid->background()));
-  // A tenth of a voxel on the whole surface.
+  // The volume may be off by a tenth of a voxel on the whole surface.
   const double ballVolume = 4.0 / 3 * std::numbers::pi * radius * radius * radius;
   CHECK(openvdb::tools::levelSetVolume(*surface.grid) ==
         Approx(ballVolume).margin(0.1 * surface.report.voxelSize * 4 * std::numbers::pi * radius * radius));
@@ -55,7 +55,7 @@ void checkSphere(const Isosurface& surface, const glm::dvec3& centre, double rad
 
 }  // namespace
 
-TEST_CASE("The isosurface of a ball is its sphere to a tenth of a voxel, in cubes of any place", "[grid]") {
+TEST_CASE("The isosurface of a ball is its sphere to a tenth of a voxel, in cubes at any place", "[grid]") {
   const glm::dmat4 turned = glm::scale(
       glm::rotate(glm::translate(glm::dmat4(1), glm::dvec3(-300, 20, 7)), 0.7, glm::normalize(glm::dvec3(1, 2, 3))),
       glm::dvec3(0.5));
@@ -75,7 +75,7 @@ TEST_CASE("The isosurface of a ball is its sphere to a tenth of a voxel, in cube
   }
 }
 
-TEST_CASE("Voxels that are no cubes become cubes of the smallest spacing", "[grid]") {
+TEST_CASE("Voxels that are not cubes become cubes of the smallest spacing", "[grid]") {
   const glm::dmat4 flat = glm::scale(glm::rotate(glm::dmat4(1), 0.4, glm::dvec3(0, 0, 1)), glm::dvec3(0.8, 0.8, 1.5));
   for (const glm::dmat4& place : {flat, crookedTransform()}) {
     const glm::dvec3 centre(place * glm::dvec4(30, 30, 18, 1));
@@ -85,13 +85,13 @@ TEST_CASE("Voxels that are no cubes become cubes of the smallest spacing", "[gri
     CHECK(surface.grid->voxelSize()[0] == Approx(surface.report.voxelSize));
     CHECK(double(surface.grid->background()) == Approx(4 * surface.report.voxelSize));
     checkSphere(surface, centre, 14);
-    // Along long edges the volume itself is coarser than the cubes.
+    // Along its long edges the volume itself is coarser than the cubes.
     CHECK(surface.report.maxError < 0.3);
   }
 }
 
 TEST_CASE("Cavities are outside, and so is what lies beyond the faces of a volume", "[grid]") {
-  // A shell of radii 6 to 13 around (15, 15, 15), cut by the face x = 15.
+  // The volume is a shell of radii 6 to 13 around (15, 15, 15), cut by the face x = 15.
   const auto value = [](const glm::ivec3& at) {
     const double radius = glm::distance(glm::dvec3(at), glm::dvec3(15));
     return std::max(5 - std::abs(radius - 9.5), 0.0);
@@ -108,7 +108,7 @@ TEST_CASE("Cavities are outside, and so is what lies beyond the faces of a volum
   CHECK(distanceAt(cut, {15, 15, 24.5}) < 0);
 }
 
-// Leaves of one value become tiles, with no leaf beside them.
+// Leaves of one value become tiles, and these have no leaf beside them.
 TEST_CASE("Solid blocks have a surface where value meets background", "[grid]") {
   const auto grid = openvdb::FloatGrid::create(0);
   grid->tree().addTile(1, {0, 0, 0}, 4.0f, true);
@@ -117,11 +117,11 @@ TEST_CASE("Solid blocks have a surface where value meets background", "[grid]") 
   CHECK(block.report.crossings == 2 * (16 * 8 * 2 + 8 * 8));
   CHECK(distanceAt(block, {7.5, 3.5, 3.5}) == -3);
   for (const double z : {-0.75, 7.75}) CHECK(distanceAt(block, {7.5, 3.5, z}) == Approx(0).margin(0.01));
-  // A value that voxels have is inside.
+  // A voxel that has exactly the value is inside.
   CHECK(distanceAt(makeIsosurface(makeGrid(grid), {4.0f}), {7.5, 3.5, 3.5}) == -3);
 }
 
-TEST_CASE("What has no isosurface is refused with both values", "[grid]") {
+TEST_CASE("Where there is no isosurface, the message has the expected and the found value", "[grid]") {
   const ScalarGrid volume = ball({20, 20, 20}, glm::dmat4(1), glm::dvec3(10), 5);
   const auto refused = [](const ScalarGrid& grid, const IsosurfaceOptions& options, const char* message) {
     CHECK_THAT(complaint<InvalidArgument>([&] { makeIsosurface(grid, options); }), Contains(message));

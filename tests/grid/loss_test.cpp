@@ -18,7 +18,7 @@ using openvdb::Coord;
 
 namespace {
 
-// Noise around a wave, a flat region and empty space.
+// A volume with noise around a wave, a flat region and empty space.
 std::vector<float> noisyVolume(const glm::i64vec3& dims, float scale) {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> noise(-0.05f, 0.05f);
@@ -74,7 +74,7 @@ TEST_CASE("Maximum and RMS error of each lossy step are exact and kept in the fi
         const BuiltGrid built = buildGrid(source, options);
         const Plain plain = difference(*built.grid, dims, voxels);
         const BuildReport& report = built.report;
-        // Sums of squares in another order: 1e-12 is thousands of roundings of the last bit.
+        // The squares are added up in another order; 1e-12 is thousands of roundings of the last bit.
         const auto rms = [](double squares, std::uint64_t n) {
           return Approx(std::sqrt(squares / double(n))).epsilon(1e-12).margin(1e-300);
         };
@@ -108,7 +108,8 @@ TEST_CASE("A maximum error is honoured, by the smallest storage that can", "[gri
     float scale, maxError;
     const char* storage;
   };
-  // Values reach 2.65 times the scale: half floats hold as many steps up to 2^11 of them, floats up to 2^24.
+  // Values reach 2.65 times the scale. Half floats hold steps as long as there are at most 2^11 of them,
+  // floats up to 2^24.
   for (const Case& expected : {Case{1, 0.0f, "float"},
                                {1, 1e-5f, "float, steps of 1.52587891e-05"},
                                {1, 1e-3f, "half, steps of 0.001953125"},
@@ -127,7 +128,7 @@ TEST_CASE("A maximum error is honoured, by the smallest storage that can", "[gri
     CHECK(plain.max == built.report.maxError);
     CHECK(plain.max <= double(expected.maxError));
     CHECK(built.grid->saveFloatAsHalf() == (built.report.storage.substr(0, 4) == "half"));
-    // From a grid the same choice is made.
+    // For a grid the same choice is made.
     MemorySource exact(dims, voxels);
     const BuiltGrid second = sparsifyGrid({buildGrid(exact).grid, "g"}, options);
     CHECK(second.report.storage == built.report.storage);
@@ -160,7 +161,7 @@ TEST_CASE("Errors of conversions one after the other add up in the metadata", "[
   CHECK(plain.max <= number(*twice.grid, "error_max"));
 }
 
-TEST_CASE("A grid that is not what the source holds is found out", "[grid]") {
+TEST_CASE("Verifying finds a grid that is not what the source holds", "[grid]") {
   const glm::i64vec3 dims(20, 9, 11);
   const std::vector<float> voxels = noisyVolume(dims, 1);
   MemorySource source(dims, voxels);

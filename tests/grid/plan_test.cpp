@@ -24,7 +24,7 @@ struct Ball {
   double radius;
 };
 
-// Soft at the edge, 1 inside, with some waves so that packing has work.
+// Balls that are soft at the edge and 1 inside, with some waves so that packing has work.
 std::vector<float> balls(const glm::i64vec3& dims, const std::vector<Ball>& all) {
   std::vector<float> out(static_cast<std::size_t>(dims.x * dims.y * dims.z));
   for (const Ball& ball : all) {
@@ -50,7 +50,7 @@ std::vector<Ball> scattered(const glm::i64vec3& dims, int count, unsigned seed) 
   return out;
 }
 
-// @param uncounted  share of what was made that a plan does not know of
+// @param uncounted  share of what was made that a plan does not count
 void checkEstimate(const char* what, const Estimate& planned, double made, double uncounted) {
   INFO(what << ": " << planned.value << " +- " << planned.uncertainty << ", made " << made);
   CHECK(std::abs(planned.value - made) <= planned.uncertainty + uncounted * made);
@@ -64,7 +64,7 @@ GridPlan compare(const Open& open, const BuildOptions& options, const PlanOption
   writeGrids(folder.path() / "v.vdb", {built.grid}, {}, plan.codec);
   checkEstimate("active voxels", planned.activeVoxels, double(built.report.activeVoxels), 0);
   checkEstimate("leaves", planned.leaves, double(built.report.leaves), 0);
-  // What is not counted: the root, and tiles and text of the file.
+  // The plan does not count the root, and the tiles and text of the file.
   checkEstimate("memory", planned.gridBytes, double(built.grid->memUsage()), 0.005);
   checkEstimate("file", planned.fileBytes, double(std::filesystem::file_size(folder.path() / "v.vdb")), 0.01);
   CHECK(planned.storage == built.report.storage);
@@ -80,7 +80,7 @@ PlanOptions sampled(VdbCodec codec = VdbCodec::blosc) {
 
 }  // namespace
 
-// Seeds are fixed: a limit of 95 % confidence holds or not, always.
+// The seeds are fixed, so that a limit of 95 % confidence holds always or never.
 TEST_CASE("Plans from a tenth of the voxels are off by no more than they say: balls, scattered and alone", "[grid]") {
   const glm::i64vec3 dims(96, 80, 480);
   BuildOptions tolerant, within;
@@ -110,11 +110,11 @@ TEST_CASE("Plans of the head are off by no more than they say, and exact when al
   CHECK(compare(open, skin, sampled()).layersRead == 5);
   const GridPlan whole = compare(open, skin, {});
   CHECK(whole.voxelsRead == whole.voxels);
-  CHECK(whole.activeVoxels.value == 2299643);  // as convert has it
+  CHECK(whole.activeVoxels.value == 2299643);  // the number that convert reports
   CHECK(whole.activeVoxels.uncertainty == 0);
   CHECK(whole.leaves.uncertainty == 0);
   CHECK(whole.gridBytes.uncertainty == 0);
-  // Two slabs of 32 slices of u16.
+  // There are two voxel slabs, each of 32 slices of u16.
   CHECK(whole.peakBytes.value == Approx(whole.gridBytes.value + 2 * 256 * 256 * 32 * 2));
 }
 
@@ -123,12 +123,12 @@ TEST_CASE("A plan that met nothing says how much may lie between what it read", 
   std::vector<float> voxels(40 * 24 * 800);
   const auto plan = [&] { return planGrid(*std::make_unique<MemorySource>(dims, voxels), {}, sampled()); };
   CHECK(plan().activeVoxels.value == 0);
-  // Ten layers of a hundred were read: nine may hide between two of them.
+  // Ten layers of a hundred were read, so nine may hide between two of them.
   CHECK(plan().activeVoxels.uncertainty == Approx(9 * 40 * 24 * 8));
   CHECK(plan().leaves.uncertainty == Approx(9 * 5 * 3));
   std::fill(voxels.begin(), voxels.end(), 1.5f);
   CHECK(plan().activeVoxels.value == Approx(40 * 24 * 800));
-  CHECK(plan().leaves.value == 0);  // tiles
+  CHECK(plan().leaves.value == 0);  // all are tiles
   CHECK(plan().leaves.uncertainty == 0);
 }
 

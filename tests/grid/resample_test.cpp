@@ -18,7 +18,7 @@ namespace {
 
 const glm::dmat4 kSheared(0.5, 0.1, 0, 0, -0.2, 0.6, 0, 0, 0.05, 0.3, -1.5, 0, 10, -20, 3, 1);
 
-// From -500 to 500, so that errors of a sum are not hidden by its size.
+// Noise from -500 to 500, so that errors of a sum are not hidden by its size.
 std::vector<float> noise(const glm::i64vec3& dims) {
   std::mt19937 random(5);
   std::vector<float> voxels(static_cast<std::size_t>(dims.x * dims.y * dims.z));
@@ -79,13 +79,14 @@ TEST_CASE("Voxels twice as large have the mean of eight", "[grid]") {
         };
         double mean = 0;
         for (int i = 0; i < 8; ++i) mean += at(i) / 8;
-        CHECK(out.voxels[std::size_t((z * 3 + y) * 4 + x)] == static_cast<float>(mean));  // quarters: exact sums
+        // Values are quarters, so sums are exact.
+        CHECK(out.voxels[std::size_t((z * 3 + y) * 4 + x)] == static_cast<float>(mean));
         for (int i = 0; i < 8; ++i) {
           squares += (at(i) - mean) * (at(i) - mean);
           largest = std::max(largest, std::abs(at(i) - mean));
         }
       }
-  // 192 squares in another order.
+  // The 192 squares are added up in another order.
   CHECK(out.report.rms == Approx(std::sqrt(squares / double(voxels.size()))).epsilon(1e-12));
   CHECK(out.report.max == Approx(largest).epsilon(1e-7));  // the new value is rounded to float
 }
@@ -108,7 +109,7 @@ TEST_CASE("Each new voxel has the mean of what it covers, for any spacing", "[gr
         sum += share * double(voxels[std::size_t(j)]);
         volume += share;
       }
-      // A float's rounding of values up to 500, and one of the boxes' edges.
+      // The limit is a float's rounding of values up to 500, and one rounding of the boxes' edges.
       CHECK(std::abs(double(out.voxels[std::size_t(i)]) - sum / volume) < 5e-5);
     }
   }
@@ -147,7 +148,7 @@ TEST_CASE("Resampled volumes keep their axes and the faces where they start", "[
   CHECK(out.info.type == VoxelType::f32);
 }
 
-TEST_CASE("What is skipped changes nothing of what is read of a resampled volume", "[grid]") {
+TEST_CASE("Skipping slices of a resampled volume changes nothing of what is read", "[grid]") {
   const glm::i64vec3 dims(4, 3, 17);
   for (const double spacing : {0.4, 1.0, 2.3}) {
     const auto whole = resampled(source(dims, noise(dims)), {1, 1, spacing});
@@ -164,7 +165,7 @@ TEST_CASE("What is skipped changes nothing of what is read of a resampled volume
   }
 }
 
-TEST_CASE("What is not finite stays so where it is covered, and nowhere else", "[grid]") {
+TEST_CASE("A value that is not finite makes new voxels so where they cover it, and nowhere else", "[grid]") {
   std::vector<float> voxels{1, 2, std::numeric_limits<float>::quiet_NaN(), 4, 5, 7};
   const Resampled out = resampled(source({6, 1, 1}, voxels), {2, 1, 1});
   CHECK(out.voxels[0] == 1.5f);
@@ -184,7 +185,7 @@ TEST_CASE("Spacings that make no volume are refused", "[grid]") {
   refused({1e-9, 1, 1}, "at most 2147483647 voxels along an axis, found 1e-09");
 }
 
-// A slice of the source is in memory, whatever the result's size: here 2^48 voxels for 17 x 17.
+// A slice of the source is in memory, whatever the size of the result: here 2^48 voxels for 17 x 17.
 TEST_CASE("Slices of the source beyond the memory are refused before anything is read", "[grid]") {
   const std::int64_t wide = std::int64_t(1) << 24;
   CHECK_THROWS_WITH(resampleSource(source({wide, wide, 1}, {}), glm::dvec3(1e6)),

@@ -46,7 +46,7 @@ TEST_CASE("A cropped volume has the voxels of the box, at the places where they 
     CHECK_THROWS_WITH(cropSource(numbered(dims), box), Contains("inside (0 0 0) to (4 5 6), found ("));
 }
 
-// A file is not read where that is not needed, and still found to be too short.
+// A part of a file that is not needed is not read, and a file that is too short is still found out.
 TEST_CASE("Slices of files are skipped as if they had been read", "[grid]") {
   const TemporaryFolder folder;
   std::string bytes(64, '\0');
@@ -65,7 +65,7 @@ TEST_CASE("Slices of files are skipped as if they had been read", "[grid]") {
   CHECK(slice[1] == 37);
 }
 
-TEST_CASE("Where the mask is 0 there is background", "[grid]") {
+TEST_CASE("A masked volume has background where the mask is 0", "[grid]") {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::uint64_t leftOut = 99;
   const auto masked = maskSource(
@@ -78,7 +78,7 @@ TEST_CASE("Where the mask is 0 there is background", "[grid]") {
   CHECK(built.grid->tree().getValue({4, 0, 0}) == 5);
 }
 
-TEST_CASE("A mask of another size or place is refused with both", "[grid]") {
+TEST_CASE("A mask of another size or place is refused, and the message has both", "[grid]") {
   const glm::i64vec3 dims(4, 3, 2);
   CHECK_THROWS_WITH(maskSource(numbered(dims), numbered({4, 3, 3}), 0),
                     Contains("dims: expected 4 x 3 x 2 as in memory, found 4 x 3 x 3"));
@@ -91,7 +91,7 @@ TEST_CASE("A mask of another size or place is refused with both", "[grid]") {
   CHECK_NOTHROW(maskSource(numbered(dims), std::move(rounded), 0));
 }
 
-TEST_CASE("The border's most frequent value is that of the six faces, inside does not count", "[grid]") {
+TEST_CASE("The border's most frequent value is that of the six faces; the inside does not count", "[grid]") {
   const glm::i64vec3 dims(6, 5, 4);
   std::vector<float> voxels(120, 3);
   int faces = 0;
@@ -104,13 +104,13 @@ TEST_CASE("The border's most frequent value is that of the six faces, inside doe
   MemorySource source(dims, voxels);
   const BorderMode mode = borderMode(source);
   CHECK(mode.value == -1000);
-  CHECK(mode.border == 95);  // 120 - 4 * 3 * 2 inside - 1
-  CHECK(mode.voxels == 63);  // two of three of 96, but for the one that is no number
+  CHECK(mode.border == 95);  // 120, less 4 * 3 * 2 inside and the one that is NaN
+  CHECK(mode.voxels == 63);  // 64 (two of three of 96), less the one that is NaN
   const auto all = numbered(dims);
   CHECK_THROWS_WITH(borderMode(*all), Contains("found 96 different ones in 96 finite voxels"));
 }
 
-TEST_CASE("Only values inside the range stay", "[grid]") {
+TEST_CASE("Only values inside the clip range stay", "[grid]") {
   MemorySource source({6, 1, 1}, {0, 1, 2, 3, 4, 5});
   BuildOptions options;
   options.clipBelow = 2.0f;

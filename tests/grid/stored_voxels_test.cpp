@@ -16,9 +16,9 @@ using namespace umbrick;
 
 namespace {
 
-const glm::i64vec3 kDims(35, 19, 21);  // no multiples of 8, and more than one leaf each
+const glm::i64vec3 kDims(35, 19, 21);  // no multiples of 8, and more than one leaf along each axis
 
-// Boxes of one value and of noise in a constant background.
+// A volume with boxes of one value and of noise in a constant background.
 template <class T>
 std::vector<T> boxes(T background) {
   std::mt19937 random(11);
@@ -67,7 +67,8 @@ void checkType(VoxelType type, T fill, float background, bool reversed) {
 
 }  // namespace
 
-// Backgrounds: the one in the file, another, one between two integers, and one that no integer of 16 bits reaches.
+// The backgrounds are the one in the file, another, one between two integers, and one that no integer of
+// 16 bits reaches.
 TEST_CASE("Stored voxels of every type give the grid of their floats", "[grid]") {
   for (const bool reversed : {false, true})
     for (const float background : {0.0f, 40.0f, 0.5f, 1e6f, -1e6f}) {

@@ -80,6 +80,7 @@ TEST_CASE("Broken NanoVDB files are refused and never crash", "[grid]") {
   };
   refused(14, "\x09", "codec: expected 0 to 2 (none, ZIP or Blosc), found 9");
   refused(8, std::string(4, '\0'), "NanoVDB version: expected 32, found 0");
-  // Behind the header of 16 bytes, the table row of 176, the name of 8 and the grid of 672: the offset of the root.
+  // The offset of the root stands behind the header of 16 bytes, the table row of 176, the name of 8 and
+  // the grid of 672.
   refused(16 + 176 + 8 + 672 + 24, std::string(8, '\x7f'), "nodes: expected each within the");
 }

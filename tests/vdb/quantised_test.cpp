@@ -18,7 +18,7 @@ using openvdb::Coord;
 
 namespace {
 
-// Noise, a leaf of one value, a tile, and a background that lies between the values.
+// A grid with noise, a leaf of one value, a tile, and a background that lies between the values.
 openvdb::FloatGrid::Ptr noiseAndTile() {
   const auto grid = makeNoise(glm::ivec3(20, 19, 30), glm::ivec3(-3, 0, 5), 2).grid->deepCopy();
   grid->setName("noise");
@@ -101,7 +101,7 @@ TEST_CASE("As few bits are used as keep the error that is asked for", "[grid]") 
       writeNanoVdb(path, {grid}, options),
       Contains("v.nvdb: grid \"noise\": 16 bits a value are too few: expected a maximum error of at most 1"));
   CHECK(std::filesystem::file_size(path) == bytes);
-  // Nothing is left to quantise where there are tiles alone, or nothing.
+  // In grids with tiles alone, or with nothing, there is nothing to quantise.
   const auto empty = openvdb::FloatGrid::create(2), tiles = makeTiles().grid->deepCopy();
   for (const auto& one : {empty, tiles}) {
     CHECK(writeNanoVdb(path, {one}, options).front().max == 0);

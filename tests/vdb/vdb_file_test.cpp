@@ -21,12 +21,12 @@ namespace fs = std::filesystem;
 using Catch::Contains;
 using openvdb::Coord;
 
-// OpenVDB drops the node at hand when the packed values of one of its nodes are broken.
+// OpenVDB leaks the node at hand when the packed values of one of its nodes are broken.
 extern "C" const char* __lsan_default_suppressions() { return "leak:readTopology\n"; }
 
 namespace {
 
-// Made by OpenVDB itself, by the name of its type, so that this file need not compile each type.
+// OpenVDB makes the grid itself, by the name of its type, so that this file need not compile each type.
 template <class Grid>
 typename Grid::Ptr gridOf(const std::string& name, const typename Grid::ValueType& value) {
   openvdb::initialize();
@@ -38,7 +38,7 @@ typename Grid::Ptr gridOf(const std::string& name, const typename Grid::ValueTyp
 
 void writeAny(const fs::path& path, const openvdb::GridPtrVec& grids) { openvdb::io::File(path.string()).write(grids); }
 
-// Reads all there is; an IoError counts as told.
+// Reads all there is in a file. @return false when an IoError told that the file is broken
 bool readsOrTells(const fs::path& path) {
   try {
     for (const GridListing::Row& row : listGrids(path).grids)
@@ -74,7 +74,7 @@ TEST_CASE("Grids are selected by name, by index, or as the only scalar one", "[g
   CHECK(valueOf("") == 7);
 }
 
-TEST_CASE("Only scalar grids are read as scalars; the message names the type", "[grid]") {
+TEST_CASE("Only scalar grids are read as scalars, and the message names the type of others", "[grid]") {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "g.vdb";
   writeAny(path, {gridOf<openvdb::Vec3SGrid>("v", openvdb::Vec3s(1)), gridOf<openvdb::MaskGrid>("m", true),
@@ -120,7 +120,7 @@ TEST_CASE("Boxes reach to the ends of 32-bit indices", "[grid]") {
   CHECK(summariseFile(path).grids.at(0).activeBox == read.activeBox());
 }
 
-TEST_CASE("A frustum transform is no scene for a renderer, but can be told and copied", "[grid]") {
+TEST_CASE("A grid with a frustum transform is not for rendering, but can be summarised and copied", "[grid]") {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "g.vdb";
   const auto grid = gridOf<openvdb::FloatGrid>("f", 3);
@@ -147,7 +147,7 @@ TEST_CASE("A summary agrees with a plain count", "[grid]") {
   writeAny(path, {grid, vectors, gridOf<openvdb::MaskGrid>("m", true), openvdb::FloatGrid::create()});
   const FileSummary file = summariseFile(path, 10);
   REQUIRE(file.grids.size() == 4);
-  const GridSummary& summary = file.grids[1];  // sorted as they were written, by name
+  const GridSummary& summary = file.grids[1];  // grids are sorted by name, as they were written
   const auto find = [&](const std::string& label) {
     for (const GridSummary& each : file.grids)
       if (each.label == label) return each;
@@ -185,7 +185,7 @@ TEST_CASE("The bundled smoke has the voxels it is known for", "[grid]") {
   CHECK(readScalarGrid(UMBRICK_ASSETS "/densityAndHeat.vdb").name == "density");
 }
 
-TEST_CASE("What is not a .vdb file is told apart", "[grid]") {
+TEST_CASE("A file that is not a .vdb of a known version is refused, and the message says why", "[grid]") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH(readScalarGrid(folder.path()), Contains("found a directory"));
   CHECK_THROWS_WITH(readScalarGrid(folder.path() / "none.vdb"), Contains("no such file"));
@@ -228,7 +228,7 @@ TEST_CASE("A stream without a table of grids is read, and truncation told", "[gr
   }
 }
 
-// Some changes give another grid, the others must be told; none may crash, hang or exhaust the memory.
+// Some changes give another grid, and the others must be told. None may crash, hang or exhaust the memory.
 TEST_CASE("A .vdb with flipped bytes ends in a grid or an IoError", "[grid]") {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "c.vdb";
@@ -237,7 +237,7 @@ TEST_CASE("A .vdb with flipped bytes ends in a grid or an IoError", "[grid]") {
   int told = 0;
   for (int trial = 0; trial < 1500; ++trial) {
     std::string bytes = good;
-    // Every other trial in the first 2000 bytes: header, metadata, transform and the top of the tree.
+    // Every other trial changes the first 2000 bytes: header, metadata, transform and the top of the tree.
     const std::size_t reach = trial % 2 ? 2000 : bytes.size();
     for (int i = 0; i < 1 + trial % 4; ++i) bytes[random() % reach] = static_cast<char>(random());
     writeBytes(path, bytes);
@@ -246,7 +246,7 @@ TEST_CASE("A .vdb with flipped bytes ends in a grid or an IoError", "[grid]") {
   CHECK(told > 100);
 }
 
-TEST_CASE("Writing fails whole", "[grid]") {
+TEST_CASE("Writing that fails leaves no file", "[grid]") {
   const TemporaryFolder folder;
   CHECK_THROWS_AS(writeGrids(folder.path() / "none" / "g.vdb", {gridOf<openvdb::FloatGrid>("a", 1)}), IoError);
   CHECK_THROWS_AS(writeGrids(folder.path(), {gridOf<openvdb::FloatGrid>("a", 1)}), IoError);

@@ -24,7 +24,7 @@ namespace {
 
 enum class Values { small, negative, fractions };
 
-// Scattered voxels and a tile at negative and positive indices, turned, stretched and moved.
+// A grid with scattered voxels and a tile at negative and positive indices, which is turned, stretched and moved.
 openvdb::FloatGrid::Ptr turnedGrid(Values values, double mirror = 1) {
   auto grid = openvdb::FloatGrid::create(3);
   grid->setName("turned");
@@ -46,7 +46,7 @@ openvdb::FloatGrid::Ptr turnedGrid(Values values, double mirror = 1) {
   return grid;
 }
 
-// Voxels and their places, one by one, against the grid.
+// Compares voxels and their places, one by one, with the grid.
 void checkReadBack(const std::filesystem::path& path, const openvdb::FloatGrid& grid, const DenseBox& box) {
   const auto source = openVolume(path);
   CHECK(source->info().dims == box.dims);
@@ -76,7 +76,7 @@ TEST_CASE("A turned grid comes back from .nrrd and .mhd with its values and its 
     for (const double mirror : {1.0, -1.0})
       for (const auto& [values, asked, expected] :
            {std::tuple(Values::small, VoxelType::u8, VoxelType::u8),
-            std::tuple(Values::small, VoxelType::i8, VoxelType::f32),  // up to 199
+            std::tuple(Values::small, VoxelType::i8, VoxelType::f32),  // values up to 199
             std::tuple(Values::negative, VoxelType::i8, VoxelType::i8),
             std::tuple(Values::negative, VoxelType::u16, VoxelType::f32),
             std::tuple(Values::negative, VoxelType::i16, VoxelType::i16),

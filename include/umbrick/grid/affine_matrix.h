@@ -7,7 +7,8 @@
 
 namespace umbrick {
 
-/// Index to world, for column vectors: the images of the axes and of the origin.
+/// Returns the matrix from index space to world space, for column vectors: its columns are the images of the axes and
+/// of the origin.
 inline glm::dmat4 affineMatrix(const openvdb::math::Transform& transform) {
   const openvdb::math::MapBase& map = *transform.baseMap();
   glm::dmat4 matrix(1);
@@ -20,7 +21,7 @@ inline glm::dmat4 affineMatrix(const openvdb::math::Transform& transform) {
   return matrix;
 }
 
-/// The same matrix for OpenVDB, which multiplies rows from the left.
+/// Returns the same matrix for OpenVDB, which multiplies row vectors from the left.
 inline openvdb::Mat4d rowMatrix(const glm::dmat4& matrix) {
   openvdb::Mat4d out;
   for (int axis = 0; axis < 4; ++axis)

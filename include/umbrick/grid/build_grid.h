@@ -14,53 +14,60 @@
 namespace umbrick {
 
 struct BuildOptions {
-  std::string name = "density";          // of the grid, buildGrid only
-  std::optional<float> background = {};  // value of what is left out; else 0, or what the grid has
-  float tolerance = 0;  // grid units: voxels this close to the background are left out, and leaves whose
-                        // values lie this close to one value become a tile
-  std::optional<float> clipBelow = {};  // grid units: voxels below become background
-  std::optional<float> clipAbove = {};  // grid units: voxels above become background
-  bool half = false;  // round to 16-bit floats and save as such; so is a grid that is so marked already
-  float step = 0;     // grid units: round values to multiples of it, which pack better (best if a power of two); 0: not
-  std::optional<float> maxError = {};  // grid units: picks tolerance, step and half so that no voxel is off by more,
-                                       // in place of those three: exact half floats, half floats in steps, half
-                                       // floats, floats in steps, or floats, whichever is the first that holds it
-  std::function<void(double)> progress = {};  // called now and then with the share done, 0 to 1; may be empty
+  std::string name = "density";          // name of the grid; only buildGrid uses it
+  std::optional<float> background = {};  // grid units; by default that of the grid, or 0 for a dense volume
+  /// Grid units. Voxels this close to the background are left out, and a leaf whose values lie this close to one value
+  /// becomes a tile.
+  float tolerance = 0;
+  std::optional<float> clipBelow = {};  // grid units: voxels below this become background
+  std::optional<float> clipAbove = {};  // grid units: voxels above this become background
+  /// Rounds values to 16-bit floats and saves them as such. A grid that is marked for half floats is always so treated.
+  bool half = false;
+  /// Grid units. Values are rounded to multiples of it, which pack better, best if it is a power of two. 0: no steps.
+  float step = 0;
+  /// Grid units. Picks tolerance, step and half, in place of those given, so that no voxel is off by more. The storage
+  /// is the first that holds this: exact half floats, half floats in steps, half floats, floats in steps, floats.
+  std::optional<float> maxError = {};
+  std::function<void(double)> progress = {};  // called now and then with the share that is done, 0 to 1; may be empty
 };
 
-/// |source - stored| of the voxels looked at; voxels clipped and not finite count as 0.
+/// The errors |source - stored| of the voxels looked at. Clipped voxels and those that are not finite count as 0.
 struct Loss {
   double max = 0;  // grid units
-  double rms = 0;  // grid units, over all voxels looked at: the squares of the steps add up
+  double rms = 0;  // grid units, over all voxels looked at; the squares of several parts add up
 };
 
-/// What a grid holds after it was built, and what was lost. Exact, not sampled.
+/// What a grid holds after it was built, and what was lost. The numbers are exact, not sampled.
 struct BuildReport {
-  std::uint64_t voxels = 0;        // looked at: all of a dense volume, the active ones of a grid
-  std::uint64_t activeVoxels = 0;  // after; those in tiles included
+  std::uint64_t voxels = 0;        // voxels looked at: all of a dense volume, the active ones of a grid
+  std::uint64_t activeVoxels = 0;  // active voxels of the result, those in tiles included
   std::uint64_t activeTiles = 0, leaves = 0;
-  double maxError = 0;        // largest |source - stored| by tolerance, step and half, of voxels neither clipped nor
-                              // NaN/Inf
-  double rmsError = 0;        // root of the mean square of the same, over all voxels looked at
-  double activeRmsError = 0;  // over the voxels that are active after
-  Loss tolerance, rounding;   // parts of it: left out or merged; step and half
-  Loss quantising;            // part of it, added to the others as a bound: by a file that quantises (writeNanoVdb)
-  std::string storage = "float";  // "float" or "half", with ", steps of ..." behind it
-  double conversionError = 0;  // largest error of the step to 32-bit float, before; add both for a bound of the total
-  std::uint64_t clippedVoxels = 0;  // below clipBelow or above clipAbove, and not background already
-  double maxClipChange = 0;         // largest |source - background| among them
-  std::uint64_t nonFinite = 0;      // NaN and infinite voxels, stored as background
-  double backgroundChange = 0;      // |new - old| background of a grid: what the outside changes by
+  /// Grid units: the largest |source - stored| that tolerance, step and half cause, over voxels that are neither
+  /// clipped nor NaN or infinite.
+  double maxError = 0;
+  double rmsError = 0;            // grid units: root mean square of the same errors, over all voxels looked at
+  double activeRmsError = 0;      // grid units: the same over the active voxels of the result
+  Loss tolerance, rounding;       // parts: of voxels left out or merged into tiles; of step and half
+  Loss quantising;                // the part of a file that quantises (writeNanoVdb); a bound, added to the others
+  std::string storage = "float";  // "float" or "half"; where there are steps, with ", steps of ..." behind it
+  /// Grid units: the largest error of the conversion to 32-bit float, which comes first. Added to maxError it bounds
+  /// the total error.
+  double conversionError = 0;
+  std::uint64_t clippedVoxels = 0;  // voxels below clipBelow or above clipAbove that were not background already
+  double maxClipChange = 0;         // grid units: largest |source - background| among the clipped voxels
+  std::uint64_t nonFinite = 0;      // NaN and infinite voxels, which are stored as background
+  /// Grid units: |new - old| background of a grid, by which all that is outside changes.
+  double backgroundChange = 0;
 };
 
-/// |grid - file| of what was quantised: all values of leaves, inactive ones too, which are not exact either. Tiles and
-/// background are.
+/// The errors |grid - file| of quantised values: of all values in leaves, also inactive ones, which are not exact
+/// either. Tiles and the background are exact.
 struct QuantiseError {
   double max = 0;                         // grid units
-  double squares = 0, activeSquares = 0;  // sums: of all values in leaves, of the active ones
+  double squares = 0, activeSquares = 0;  // sums of squares over all values in leaves, and over the active ones
 };
 
-/// Adds that to what was lost before: the sums bound both errors.
+/// Adds the errors of quantising to what was lost before. The sums bound both errors together.
 /// @param activeOnly  the report is about the active voxels of a grid, not about all of a dense volume
 void addQuantising(BuildReport& report, const QuantiseError& error, bool activeOnly);
 
@@ -69,22 +76,22 @@ struct BuiltGrid {
   BuildReport report;
 };
 
-/// Reads a source to its end, slab by slab: only active leaves stay in memory. A fog volume whose transform is the
-/// source's indexToWorld; metadata is kept. Leaves are built on all cores while the next slab is read.
+/// Reads a source to its end in voxel slabs and builds a fog volume whose transform is the source's indexToWorld.
+/// Metadata is kept. Only active leaves stay in memory; they are built on all cores while the next voxel slab is read.
 ///
-/// The losses are kept in the metadata of the grid: error_max and error_rms, of tolerance and rounding apart
-/// (error_max_tolerance, ...), error_max_to_float, clipped_voxels, clipped_max_change and storage, each where it is not
-/// 0. For a grid that had them already the sums are kept, which bound the errors since the first source.
-/// @throw IoError          the source fails, or two of its slabs are larger than the machine's memory
-/// @throw InvalidArgument  tolerance, step or maxError negative, a limit not finite, values that half floats cannot
-/// hold, or a transform
-///                         that OpenVDB refuses (voxels of less than 3e-15 cubed world units)
+/// The losses are kept in the metadata of the grid, each where it is not 0: error_max and error_rms; the parts of
+/// tolerance and of rounding (error_max_tolerance and so on); error_max_to_float, clipped_voxels, clipped_max_change
+/// and storage. For a grid that had them already the sums are kept, which bound the errors since the first source.
+/// @throw IoError          the source fails, or two of its voxel slabs are larger than the machine's memory
+/// @throw InvalidArgument  tolerance, step or maxError is negative, a limit is not finite, half floats cannot hold all
+///                         values, or OpenVDB refuses the transform (voxels of less than 3e-15 cubed world units)
 BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options = {});
 
-/// The same for a grid: class, transform and metadata stay. Active voxels and tiles are treated like the voxels of a
-/// dense volume; inactive ones keep their value and state, except that those that hold the old background follow it.
-/// A level set is only rounded to half where that is asked for: its surface stands and falls with both sides of it.
-/// @throw InvalidArgument  as above
+/// Does the same for a grid, whose class, transform and metadata stay. Active voxels and tiles are treated like the
+/// voxels of a dense volume. Inactive ones keep their value and state, except that those that hold the old background
+/// follow it. A level set is only rounded to half, and only where that is asked for, since its surface needs the values
+/// on both sides of it.
+/// @throw InvalidArgument  as buildGrid
 BuiltGrid sparsifyGrid(const ScalarGrid& grid, const BuildOptions& options = {});
 
 }  // namespace umbrick

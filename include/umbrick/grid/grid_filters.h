@@ -11,20 +11,19 @@
 
 namespace umbrick {
 
-/// What lies outside a box of indices, both ends included, becomes inactive background. Indices and transform stay.
-/// @throw InvalidArgument  no active voxel lies in the box; a level set, whose surface it would cut open
+/// Makes all that lies outside a box of indices (both ends included) inactive background. Indices and transform stay.
+/// @throw InvalidArgument  no active voxel lies in the box, or the grid is a level set, whose surface would be cut open
 void cropGrid(openvdb::FloatGrid& grid, const IndexBox& box);
 
-/// Voxels stay active where an active voxel of the mask at the same index is not 0; all others become background.
-/// @return how many that are active are not thereafter
-/// @throw InvalidArgument  the mask's background is not 0; it places a corner of the grid's active voxels further off
-/// than
-///                         a thousandth of a voxel; a level set
+/// Keeps voxels active where an active voxel of the mask at the same index is not 0. All others become background.
+/// @return the number of voxels that were active and are so no more
+/// @throw InvalidArgument  the background of the mask is not 0, the mask places a corner of the grid's active voxels
+///                         farther off than a thousandth of a voxel, or the grid is a level set
 std::uint64_t maskGrid(openvdb::FloatGrid& grid, const openvdb::FloatGrid& mask);
 
-/// The voxels (0, 0, 0) to dims - 1 of a grid, active or not.
-/// @param name  what messages call it
-/// @throw InvalidArgument  a transform that is not affine
+/// Reads the voxels (0, 0, 0) to dims - 1 of a grid, active or not, as a dense volume.
+/// @param name  what messages call the volume
+/// @throw InvalidArgument  the transform is not affine
 std::unique_ptr<VoxelSource> gridSource(std::string name, std::shared_ptr<const openvdb::FloatGrid> grid,
                                         const glm::i64vec3& dims);
 

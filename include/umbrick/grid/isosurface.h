@@ -9,17 +9,17 @@
 namespace umbrick {
 
 struct IsosurfaceOptions {
-  float value = 0;      // grid units; what has it or more is inside
-  float halfWidth = 3;  // of the narrow band on each side of the surface, voxels, at least 1
+  float value = 0;      // grid units; where the volume has this value or more is inside
+  float halfWidth = 3;  // half-width of the narrow band on each side of the surface, voxels, at least 1
 };
 
-/// How far the level set's zero crossing is from the surface, in voxels of the level set: |distance| at all points
-/// where an edge between two voxels of the volume crosses the value, linearly from one to the other. They lie on the
-/// trilinear surface exactly.
+/// How far the zero crossing of the level set is from the surface. It is measured as |distance| at all points where an
+/// edge between two neighbouring voxels of the volume crosses the value, with values linear along the edge. These
+/// points lie exactly on the trilinear surface. The unit of the errors is a voxel of the level set.
 struct IsosurfaceReport {
   std::uint64_t crossings = 0;
-  double maxError = 0, rmsError = 0;  // voxels
-  double voxelSize = 0;               // world units
+  double maxError = 0, rmsError = 0;  // voxels of the level set
+  double voxelSize = 0;               // edge of a voxel of the level set, world units
   std::uint64_t activeVoxels = 0, leaves = 0;
 };
 
@@ -28,16 +28,18 @@ struct Isosurface {
   IsosurfaceReport report;
 };
 
-/// Signed distance in world units, negative inside, of OpenVDB's class "level set", with the metadata of the volume and
-/// isosurface_value, isosurface_error_max and isosurface_error_rms (voxels). OpenVDB's tools mesh the surface and
-/// measure distances to the mesh; which side a voxel is on is told by its value, so cavities are outside too.
+/// Makes a grid of signed distance in world units, negative inside, of OpenVDB's class "level set". It has the metadata
+/// of the volume, and isosurface_value, isosurface_error_max and isosurface_error_rms (in voxels). OpenVDB's tools mesh
+/// the surface and measure distances to the mesh. The side of the surface on which a voxel lies is told by its value,
+/// so cavities are outside too.
 ///
-/// Level sets have cubes for voxels. A grid that has such keeps its transform, rotation included; another becomes one
-/// of its smallest spacing, along its own axes where these are at right angles, else along those of the world. Outside
-/// of the grid there is its background, which closes surfaces that reach the faces of a volume.
+/// The voxels of a level set are cubes. A grid whose voxels are cubes keeps its transform, rotation included. For
+/// another grid the cubes have its smallest spacing and lie along its own axes where these are at right angles,
+/// else along those of the world. Outside of the grid there is its background, which closes surfaces that reach the
+/// faces of a volume.
 /// @param volume  a fog volume
-/// @throw InvalidArgument  value not finite or not above the background, no surface (tells the range of the values),
-///                         halfWidth outside [1, 100], a level set, or a transform that is not affine
+/// @throw InvalidArgument  value not finite or not above the background, no surface (the message tells the range of the
+///                         values), halfWidth outside [1, 100], a level set, or a transform that is not affine
 Isosurface makeIsosurface(const ScalarGrid& volume, const IsosurfaceOptions& options);
 
 }  // namespace umbrick

@@ -13,10 +13,10 @@ namespace umbrick {
 
 struct Misplaced {
   openvdb::Coord voxel;
-  openvdb::Vec3d expected, found;  // world
+  openvdb::Vec3d expected, found;  // world space
 };
 
-/// "(1 2 3)"
+/// Returns a vector as a text such as "(1 2 3)".
 template <class Vector>
 std::string vectorText(const Vector& v) {
   std::ostringstream out;
@@ -25,8 +25,8 @@ std::string vectorText(const Vector& v) {
   return out.str();
 }
 
-/// The first corner of the box of `grid`'s active voxels that `other` has elsewhere.
-/// @param tolerance  in shortest edges of a voxel
+/// Returns the first corner of the box of `grid`'s active voxels that `other` places elsewhere, or nothing.
+/// @param tolerance  largest distance that counts as the same place, in shortest edges of a voxel
 inline std::optional<Misplaced> misplacedCorner(const openvdb::FloatGrid& grid, const openvdb::FloatGrid& other,
                                                 double tolerance) {
   const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();

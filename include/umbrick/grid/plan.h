@@ -11,33 +11,34 @@
 namespace umbrick {
 
 struct PlanOptions {
-  double share = 0.1;                                // of the layers that is read, but no fewer than 5
-  std::int64_t wholeVoxels = std::int64_t(1) << 24;  // volumes up to so many are read as a whole
-  VdbCodec codec = VdbCodec::blosc;                  // of the .vdb
+  double share = 0.1;                                // share of the layers that is read; at least 5 layers are
+  std::int64_t wholeVoxels = std::int64_t(1) << 24;  // volumes of up to so many voxels are read as a whole
+  VdbCodec codec = VdbCodec::blosc;                  // of the .vdb file
 };
 
-/// `value` +- `uncertainty`, 95 % confidence; exact where that is 0.
+/// An estimate `value` +- `uncertainty` at 95 % confidence. It is exact where the uncertainty is 0.
 struct Estimate {
   double value = 0, uncertainty = 0;
 };
 
 struct GridPlan {
   std::uint64_t voxels = 0, voxelsRead = 0;
-  std::int64_t layers = 0, layersRead = 0;  // of 8 slices, as high as a leaf
+  std::int64_t layers = 0, layersRead = 0;  // layers of 8 slices, as high as a leaf
   Estimate activeVoxels, leaves;
-  Estimate gridBytes;   // of the grid in memory
-  Estimate fileBytes;   // of the .vdb
-  Estimate peakBytes;   // while it is converted: the grid and the slabs that it is made of; the program itself and what
-                        // the format of the source needs come on top
+  Estimate gridBytes;  // of the grid in memory
+  Estimate fileBytes;  // of the .vdb file
+  /// Memory during the conversion, for the grid and the voxel slabs of which it is made. What the program itself
+  /// and the format of the source need comes on top.
+  Estimate peakBytes;
   std::string storage;  // as in BuildReport
 };
 
-/// Builds the leaves of layers of 8 slices, evenly spaced over the volume, and packs some of them as a .vdb does; the
-/// slices between are skipped. Nothing is kept.
+/// Reads layers of 8 slices that are evenly spaced over the volume, and skips the slices between. It builds the leaves
+/// of these layers, packs some of them as a .vdb file does, and keeps nothing.
 ///
 /// The uncertainty comes from the differences between layers that follow each other, as is usual for a systematic
-/// sample of n of N: t(n-1) N sqrt((1 - n/N) / n * mean of (y_k+1 - y_k)^2 / 2), Wolter 2007, Introduction to Variance
-/// Estimation, ch. 8. Where no layer has anything, what fits between two of them is the uncertainty.
+/// sample of n layers of N: t(n-1) N sqrt((1 - n/N) / n * mean of (y_k+1 - y_k)^2 / 2), Wolter 2007, Introduction to
+/// Variance Estimation, ch. 8. Where no layer has anything, the uncertainty is what fits between two of them.
 /// @throw InvalidArgument  as buildGrid; share outside (0, 1]
 /// @throw IoError          as buildGrid
 GridPlan planGrid(VoxelSource& source, const BuildOptions& options = {}, const PlanOptions& plan = {});

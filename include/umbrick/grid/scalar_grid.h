@@ -12,15 +12,16 @@
 namespace umbrick {
 
 struct ScalarGrid {
-  std::shared_ptr<const openvdb::FloatGrid> grid;  // include float_grid.h to look into it
+  std::shared_ptr<const openvdb::FloatGrid> grid;  // float_grid.h must be included to look into it
   std::string name;
-  double conversionError = 0;  // largest |stored - float| when the file held double or integers beyond 24 bits
+  /// Grid units; not 0 when the file held doubles or integers beyond 24 bits: largest |stored - float|.
+  double conversionError = 0;
 
   /// @throw InvalidArgument  the transform is not affine
   glm::dmat4 indexToWorld() const;
-  /// Bounds of the active voxels' centres; tiles included. Empty for an empty grid.
+  /// Returns the bounds of the centres of the active voxels, tiles included; empty for an empty grid.
   IndexBox activeBox() const;
-  /// World bounds of activeBox(), of its eight corners.
+  /// Returns the bounds in world space of the eight corners of activeBox().
   Box worldBounds() const;
 };
 

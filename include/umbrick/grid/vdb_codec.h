@@ -5,10 +5,11 @@
 
 namespace umbrick {
 
-/// How the values in a .vdb are packed.
+/// How the values in a .vdb file are packed.
 enum class VdbCodec { blosc, zip, none };
 
-/// The same as OpenVDB's flags: inactive values are left out; Blosc becomes zip where OpenVDB was built without it.
+/// Returns OpenVDB's flags for a codec. Inactive values are left out, and Blosc becomes zip where OpenVDB was
+/// built without it.
 std::uint32_t compressionOf(VdbCodec codec);
 
 }  // namespace umbrick

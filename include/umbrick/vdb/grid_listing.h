@@ -11,15 +11,15 @@ namespace umbrick {
 
 struct GridListing {
   struct Row {
-    std::string
-        label;         // what readScalarGrid takes: the name, with "[k]" behind it when several share it or it is empty
+    /// What readScalarGrid takes: the name, with "[k]" behind it when several grids share the name or it is empty.
+    std::string label;
     std::string type;  // "float", "vec3s", ...
     bool scalar = false;
   };
   std::vector<Row> grids;
-  openvdb::MetaMap metadata;  // of the file
+  openvdb::MetaMap metadata;  // metadata of the file
 };
-/// @throw IoError
+/// @throw IoError  the file cannot be read
 GridListing listGrids(const std::filesystem::path& path);
 
 }  // namespace umbrick

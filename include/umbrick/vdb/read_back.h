@@ -9,10 +9,11 @@
 namespace umbrick {
 
 /// Reads a grid back from a file that writeGrids, writeNanoVdb or writeDense made; the extension says which. A dense
-/// file does not tell what is active: of it one gets `written` with the values that the file has in the box of the
-/// active voxels; those that differ are active.
-/// @param index  of the grid in the file, in the order in which they were written
-/// @throw IoError  unreadable, no such grid, or one with another background or place (by a millionth of a voxel)
+/// file does not tell what is active. Of it one gets `written` with the values that the file has in the box of the
+/// active voxels, and voxels whose values differ are active.
+/// @param index  place of the grid in the file, in the order in which grids were written
+/// @throw IoError  the file is unreadable, or has no such grid, or one with another background or in another place
+///                 (by a millionth of a voxel)
 openvdb::FloatGrid::ConstPtr readBack(const std::filesystem::path& file, const openvdb::FloatGrid& written,
                                       std::size_t index = 0);
 

@@ -16,48 +16,52 @@
 
 namespace umbrick {
 
-/// Writes grids to a new .vdb file, whole or not at all; inactive values are left out.
-/// @throw IoError  not writable, disk full; what `check` throws
+/// Writes grids to a new .vdb file, whole or not at all. Inactive values are left out. What `check`
+/// throws is passed on.
+/// @throw IoError  the file is not writable, or the disk is full
 void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
                 const openvdb::MetaMap& metadata = {}, VdbCodec codec = VdbCodec::blosc,
                 const WrittenCheck& check = {});
 
 /// How NanoVDB stores the values of a leaf: as 32-bit floats, or in so many bits each between the smallest and the
-/// largest of the leaf's 512 values. adaptive: each leaf in as few of 1, 2, 4, 8 and 16 as keep maxError.
+/// largest of the leaf's 512 values. With `adaptive`, each leaf takes the fewest of 1, 2, 4, 8 and 16 bits that
+/// keep maxError.
 enum class NanoValues { float32, bits4, bits8, bits16, adaptive };
 
 struct NanoOptions {
   NanoValues values = NanoValues::float32;
-  float maxError = 0;  // of adaptive, grid units
+  float maxError = 0;  // used by `adaptive` only, grid units
 };
 
 /// A WrittenCheck that is also told the errors of the grids.
 using NanoCheck = std::function<void(const std::filesystem::path& written, const std::vector<QuantiseError>& errors)>;
 
-/// Writes grids to a new .nvdb file of NanoVDB 32.4, unpacked, whole or not at all. It keeps no metadata but the name.
+/// Writes grids to a new .nvdb file of NanoVDB 32.4, unpacked, whole or not at all. Of the metadata the file keeps
+/// only the name.
 /// @return the error of each grid, as measured; 0 for 32-bit floats
-/// @throw IoError          not writable, disk full
-/// @throw InvalidArgument  a grid that NanoVDB cannot hold, or one for which 16 bits a value do not keep maxError
+/// @throw IoError          the file is not writable, or the disk is full
+/// @throw InvalidArgument  NanoVDB cannot hold a grid, or 16 bits a value do not keep maxError
 std::vector<QuantiseError> writeNanoVdb(const std::filesystem::path& path,
                                         const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
                                         const NanoOptions& options = {}, const NanoCheck& check = {});
 
 struct DenseOptions {
-  /// Stored if it is one of u8, i8, u16, i16, u32 and i32 and holds every value of the grid exactly; else f32.
+  /// The values are stored in this type if it is one of u8, i8, u16, i16, u32 and i32 and holds every value of the grid
+  /// exactly; else they are stored as f32.
   std::optional<VoxelType> type = {};
-  std::int64_t maxBytes = std::int64_t(1) << 34;  // of voxels that are written: 16 GiB
+  std::int64_t maxBytes = std::int64_t(1) << 34;  // at most so many bytes of voxels are written: 16 GiB
 };
 
-/// What was written.
+/// The box and the type that were written.
 struct DenseBox {
-  glm::i64vec3 first{0}, dims{0};  // of the grid's voxels
+  glm::i64vec3 first{0}, dims{0};  // first voxel in index space of the grid, and number of voxels
   VoxelType type = VoxelType::f32;
 };
 
-/// Writes the box of the active voxels with what is in it, whole or not at all, as a .nrrd, or as a .mhd beside a .raw
-/// of the same stem (PendingPair). The place of the voxels is that of the grid, rotation and shear included.
-/// @throw IoError          not writable, disk full
-/// @throw InvalidArgument  no active voxel, a box beyond maxBytes, a transform that is not affine, another extension
+/// Writes the box of the active voxels with all values in it, whole or not at all, as a .nrrd, or as a .mhd beside a
+/// .raw of the same stem (PendingPair). The place of the voxels is that of the grid, rotation and shear included.
+/// @throw IoError          a file is not writable, or the disk is full
+/// @throw InvalidArgument  no active voxel, a box beyond maxBytes, a transform that is not affine, or another extension
 DenseBox writeDense(const std::filesystem::path& path, const openvdb::FloatGrid& grid, const DenseOptions& options = {},
                     const WrittenCheck& check = {});
 
