@@ -37,12 +37,12 @@ TexelScale unormScale(const Bricks& volume, VoxelFormat format) {
   return {step * codes, static_cast<double>(volume.value.min), exact ? 0 : step};
 }
 
-// The codes of values in a fixed-point format of codes 0 to `most`.
+// Turns values into the codes of a fixed-point format, 0 to `most`.
 class UnormCodes {
  public:
   UnormCodes(const TexelScale& scale, double most)
       : offset_(scale.offset), perUnit_(1 / (scale.scale / most)), most_(most) {}
-  /// To be cut to a whole number.
+  /// Returns a number that becomes the nearest code when the caller cuts it to a whole number.
   double operator()(float value) const {
     return std::clamp((static_cast<double>(value) - offset_) * perUnit_ + 0.5, 0.0, most_);
   }
@@ -63,7 +63,8 @@ TexelScale texelScale(const Bricks& volume, VoxelFormat format) {
     case VoxelFormat::unorm16:
       return unormScale(volume, format);
     case VoxelFormat::half:
-      // Half of a unit in the last of 11 places, and of 2^-24 near zero; larger values than 65504 are cut off.
+      // The error is half of a unit in the last of 11 places, and half of 2^-24 near zero. Values beyond
+      // 65504 are cut off.
       return {1, 0,
               volume.exactFormat == VoxelFormat::half ? 0 : std::max({largest * 0x1p-11, 0x1p-25, largest - 65504})};
     case VoxelFormat::float32:
@@ -326,7 +327,8 @@ void BrickAtlas::upload(std::span<const std::pair<std::int32_t, std::int32_t>> b
   const TexelFormat texel = texelFormat(format_, volume_.hasGradients);
   const std::size_t voxels = volume_.layout.voxels();
   const glm::ivec3 edge = volume_.layout.edge();
-  // Bricks are read and encoded by all cores, some at a time to bound the memory, then handed over by this thread.
+  // Bricks are read and encoded by all cores, some at a time to bound the memory. This thread then hands them
+  // to the driver.
   const std::size_t batch = std::clamp<std::size_t>((std::size_t{64} << 20) / (voxels * texel.bytes), 1, 256);
   std::vector<std::byte> staging(std::min(batch, brickAndSlot.size()) * voxels * texel.bytes);
   struct Scratch {

@@ -24,9 +24,10 @@ TexelFormat texelFormat(VoxelFormat format, bool gradients) {
 
 VoxelFormat parseVoxelFormat(const std::string& name, const Bricks& volume) {
   if (name == "auto") {
-    // Whole numbers never describe gradient magnitudes.
+    // Gradient magnitudes are not whole numbers, so no smaller format holds them exactly.
     if (volume.hasGradients) return VoxelFormat::float32;
-    // Software and hardware alike filter 8-bit texels with 8-bit weights: exact voxels, but steps between them.
+    // Software and hardware alike filter 8-bit texels with 8-bit weights, which keeps voxels exact but makes
+    // steps between them.
     return volume.exactFormat == VoxelFormat::unorm8 ? VoxelFormat::unorm16 : volume.exactFormat;
   }
   for (const VoxelFormat format : {VoxelFormat::unorm8, VoxelFormat::unorm16, VoxelFormat::half, VoxelFormat::float32})

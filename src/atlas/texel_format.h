@@ -10,10 +10,10 @@
 namespace umbrick {
 
 struct TexelFormat {
-  GLenum internal;    // e.g. GL_R16
+  GLenum internal;    // such as GL_R16
   GLenum layout;      // GL_RED or GL_RG
-  GLenum type;        // of a component
-  std::size_t bytes;  // of a texel
+  GLenum type;        // of one component
+  std::size_t bytes;  // of one texel
 };
 
 TexelFormat texelFormat(VoxelFormat format, bool gradients);

@@ -26,7 +26,7 @@ std::string print(const glm::i64vec3& v) {
   return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + ")";
 }
 
-// Voxels first to last, both included, if 32 bits hold their coordinates.
+// Returns the box of voxels from first to last, both included, if 32 bits hold their coordinates.
 CoordBBox checkedBox(const glm::i64vec3& first, const glm::i64vec3& last, const char* what) {
   using Limits = std::numeric_limits<std::int32_t>;
   for (int axis = 0; axis < 3; ++axis)
@@ -41,7 +41,7 @@ CoordBBox checkedBox(const glm::i64vec3& first, const glm::i64vec3& last, const 
   return {coord(first), coord(last)};
 }
 
-/// The bricks of a grid: what both lattices, the regular one and that of a single cell, have in common.
+/// The bricks of a grid: what the regular lattice and the lattice of a single cell have in common.
 class GridBricks final : public Bricks {
  public:
   GridBricks(const ScalarGrid& grid, const BrickOptions& options)
@@ -66,7 +66,7 @@ class GridBricks final : public Bricks {
     collectBricks(survey.cells);
   }
 
-  // Makes one brick of all that slabs may reach from.
+  // Makes one brick of all that slabs may reach the domain from.
   void unite() {
     if (domain.empty()) return;
     const IndexBox box = reach();
@@ -76,7 +76,7 @@ class GridBricks final : public Bricks {
       throw InvalidArgument("one brick of the whole grid would have " + print(glm::i64vec3(edge)) +
                             " voxels, more than 2^31 = 2147483648");
     layout.interior = glm::ivec3(extent);
-    // It begins and ends with a layer of background, so it sees each value and a gradient of zero.
+    // The brick begins and ends with a layer of background, so its ranges include all values and a gradient of zero.
     bricks = {{box.min, value, gradient}};
   }
 
@@ -102,7 +102,7 @@ class GridBricks final : public Bricks {
     });
   }
 
-  /// Turns OpenVDB's errors, as from a file whose voxels are loaded late, into ours.
+  /// Runs `work` and turns OpenVDB's errors into ours, such as those of a file whose voxels are loaded late.
   template <class Work>
   void withGridErrors(const Work& work) const {
     try {
@@ -126,7 +126,7 @@ class GridBricks final : public Bricks {
     const glm::i64vec3 last = glm::i64vec3(extent.max) + std::int64_t(1);
     checkedBox(first, last, "the grid, grown by one voxel,");
     domain = {glm::ivec3(first), glm::ivec3(last)};
-    // Every cell that slabs may reach the domain from must be readable.
+    // Every cell from which slabs may reach the domain must be readable.
     const std::int64_t interior = layout.interior.x, seen = margin();
     glm::i64vec3 lowest, highest;
     for (int axis = 0; axis < 3; ++axis) {
@@ -170,8 +170,8 @@ class GridBricks final : public Bricks {
     return range;
   }
 
-  // Calls visit(row, strideY, strideZ, count) for each row of voxels along x in `box`, y then z ascending; each voxel
-  // has all its neighbours. Works in slabs, so that a huge box needs little memory.
+  // Calls visit(row, strideY, strideZ, count) for each row of voxels along x in `box`, in ascending order of y, then z.
+  // Each voxel has all its neighbours. The voxels are read in voxel slabs, so that a huge box needs little memory.
   template <class Visit>
   void forEachRow(const CoordBBox& box, std::vector<float>& slab, const Visit& visit) const {
     const glm::i64vec3 first(box.min().x(), box.min().y(), box.min().z());

@@ -12,7 +12,7 @@ namespace umbrick {
 namespace {
 std::int64_t floorDivide(std::int64_t a, std::int64_t b) { return (a >= 0 ? a : a - b + 1) / b; }
 
-// A count that may exceed 64 bits.
+// Prints a count that may exceed 64 bits.
 std::string printCount(long double count) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(0) << count;
@@ -28,7 +28,7 @@ IndexBox Bricks::reach() const {
 std::vector<Brick> backgroundBricks(const Bricks& bricks, std::size_t limit) {
   if (bricks.domain.empty()) return {};
   const IndexBox reach = bricks.reach();
-  // Cells that meet it, counted from a brick: a lattice of one cell does not begin at 0.
+  // Cells are counted from a brick, since a lattice of one cell does not begin at 0.
   const glm::i64vec3 phase(bricks.bricks.empty() ? glm::ivec3(0) : bricks.bricks.front().origin);
   glm::i64vec3 first, last;
   long double cells = 1;
@@ -38,14 +38,14 @@ std::vector<Brick> backgroundBricks(const Bricks& bricks, std::size_t limit) {
     last[axis] = floorDivide(reach.max[axis] - phase[axis], interior);
     cells *= static_cast<long double>(last[axis] - first[axis] + 1);
   }
-  // All bricks lie among these cells, each in its own.
+  // All bricks lie in these cells, no two in one.
   const long double count = std::max(0.0L, cells - static_cast<long double>(bricks.bricks.size()));
   if (count > static_cast<long double>(limit))
     throw InvalidArgument("the background value " + std::to_string(bricks.background) + " fills " + printCount(count) +
                           " bricks of the volume's box, more than the limit of " + std::to_string(limit));
   std::vector<Brick> result;
   result.reserve(static_cast<std::size_t>(count));
-  auto next = bricks.bricks.begin();  // in the same order
+  auto next = bricks.bricks.begin();  // bricks are in the same order as the cells
   for (std::int64_t z = first.z; z <= last.z; ++z)
     for (std::int64_t y = first.y; y <= last.y; ++y)
       for (std::int64_t x = first.x; x <= last.x; ++x) {

@@ -11,16 +11,16 @@
 
 namespace umbrick {
 
-/// Central differences of neighbouring voxels, brought to world space with the transpose of the inverse of the linear
-/// part of the transform (gradients are covectors). In double precision, so that a result depends on the voxels alone
-/// and not on where a brick begins.
+/// Takes central differences of neighbouring voxels and brings them to world space by the transpose of the inverse of
+/// the linear part of the transform, since gradients are covectors. It computes in double precision, so that a result
+/// depends on the voxels alone and not on where a brick begins.
 class WorldGradient {
  public:
   explicit WorldGradient(const glm::dmat4& indexToWorld)
       : half_(0.5 * glm::transpose(glm::inverse(glm::dmat3(indexToWorld)))) {}
 
-  /// Magnitudes of `count` voxels along x, grid units per world unit.
-  /// @param row  the first of them; its neighbours are at row +- 1, +- strideY and +- strideZ
+  /// Computes the magnitudes of `count` voxels along x, in grid units per world unit.
+  /// @param row  the first of these voxels; its neighbours are at row +- 1, +- strideY and +- strideZ
   void magnitudes(const float* row, std::ptrdiff_t strideY, std::ptrdiff_t strideZ, int count, float* result) const {
     const glm::dmat3 m = half_;
     for (int i = 0; i < count; ++i) {
@@ -37,7 +37,7 @@ class WorldGradient {
   }
 
  private:
-  glm::dmat3 half_;  // with the 1/2 of the central difference
+  glm::dmat3 half_;  // includes the 1/2 of the central difference
 };
 
 }  // namespace umbrick

@@ -9,9 +9,10 @@
 
 namespace umbrick {
 
-/// @param values  of a whole leaf, all finite
+/// @param values  all values of a leaf, which must be finite
 inline Range rangeOfLeaf(const float* values) {
-  // Independent lanes, so that the compiler may use vectors: it must not reorder a single running minimum of floats.
+  // The lanes are independent, so that the compiler may use vectors. It must not reorder a single running
+  // minimum of floats.
   constexpr int lanes = 8;
   std::array<float, lanes> low, high;
   std::copy_n(values, lanes, low.begin());

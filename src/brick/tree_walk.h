@@ -12,8 +12,8 @@ namespace umbrick {
 using FloatTree = openvdb::FloatTree;
 using FloatLeaf = FloatTree::LeafNodeType;
 
-/// Cuts `box` along the multiples of `edge`, a power of two. The counters have 64 bits, since a box may end at the
-/// last 32-bit coordinate.
+/// Cuts `box` along the multiples of `edge`, a power of two. The counters have 64 bits, since a box may end at the last
+/// 32-bit coordinate.
 template <class Visit>
 void forEachBlock(const openvdb::CoordBBox& box, std::int64_t edge, const Visit& visit) {
   using openvdb::Coord;
@@ -43,7 +43,7 @@ void walkNode(const Node& node, const openvdb::CoordBBox& box, const Leaf& leaf,
   });
 }
 
-/// Calls leaf(const FloatLeaf&, part) or tile(float, part) for parts that together are `box`; what no node covers is a
+/// Calls leaf(const FloatLeaf&, part) or tile(float, part) for parts that together are `box`. What no node covers is a
 /// tile of the background.
 template <class Leaf, class Tile>
 void walkTree(const FloatTree& tree, const openvdb::CoordBBox& box, const Leaf& leaf, const Tile& tile) {

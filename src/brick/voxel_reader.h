@@ -13,12 +13,12 @@
 
 namespace umbrick {
 
-/// Reads boxes of a grid's voxels; what is not finite is read as background.
+/// Reads boxes of a grid's voxels. Voxels that are not finite are read as background.
 class VoxelReader {
  public:
   VoxelReader(const FloatTree& tree, float background) : tree_(tree), background_(background) {}
 
-  // Set when the grid has none, which saves a test per voxel.
+  // Says that all voxels of the grid are finite, which saves a test per voxel.
   void setAllFinite() { allFinite_ = true; }
 
   Range range(const openvdb::CoordBBox& box) const {
@@ -29,7 +29,7 @@ class VoxelReader {
     return range;
   }
 
-  // x fastest.
+  // Copies the voxels of a box, x fastest.
   void copy(const openvdb::CoordBBox& box, float* voxels) const {
     const openvdb::Coord size = box.dim();
     const std::size_t strideY = size.x(), strideZ = strideY * size.y();

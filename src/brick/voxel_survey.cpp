@@ -23,16 +23,16 @@ static_assert(kLeafEdge == 8, "a leaf is eight words of one bit per voxel");
 using LeafBits = std::array<std::uint64_t, kLeafEdge>;  // word x, bit 8 y + z
 
 bool isWhole(float value) {
-  // From 2^24 on every float is a whole number; the rest fits an int.
+  // From 2^24 on every float is a whole number. Smaller ones fit an int.
   const float small = std::abs(value) < 16777216.0f ? value : 0.0f;
   return static_cast<float>(static_cast<int>(small)) == small;
 }
 
-// Exactly representable with 5 bits of exponent and 10 of mantissa.
+// Returns whether a float with 5 bits of exponent and 10 of mantissa has this value exactly.
 bool isHalf(float value) {
   const float size = std::abs(value);
   const bool tenBits = (std::bit_cast<std::uint32_t>(value) & 0x1fffu) == 0;
-  // Below the smallest normal half, 2^-14, halves are the multiples of 2^-24.
+  // Below the smallest normal half, 2^-14, half floats are the multiples of 2^-24.
   return size < 0x1p-14f ? isWhole(size * 0x1p24f) : tenBits && size <= 65504.0f;
 }
 
@@ -48,7 +48,7 @@ LeafBits bitsThatDiffer(const float* values, float background) {
   return bits;
 }
 
-// Index-space box of the set bits, which are not all zero.
+// Returns the box in index space of the bits that are set, of which there must be one at least.
 openvdb::CoordBBox boxOfBits(const LeafBits& bits, const openvdb::Coord& origin) {
   int firstX = 8, lastX = -1;
   std::uint64_t yz = 0;
@@ -71,19 +71,20 @@ openvdb::CoordBBox boxOfBits(const LeafBits& bits, const openvdb::Coord& origin)
                         edge + " x " + edge + " voxels; use larger bricks or a smaller grid");
 }
 
-// The median of the values where their middle half is much narrower than its distance from 0, so that some values far
-// off do not matter; else 0. Each value counts once, however often it is there: a marker of missing data is one.
+// Returns the median of the values where their middle half is much narrower than its distance from 0, else 0. The
+// middle half is taken so that some values far off do not matter. Each value counts once, however many voxels have it,
+// so that a marker of missing data is one among many.
 float anchorOf(std::vector<float>& values) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
   const auto quartile = [&](std::size_t quarters) { return values[(values.size() - 1) * quarters / 4]; };
   const float low = quartile(1), median = quartile(2), high = quartile(3);
-  constexpr double kFarther = 256;  // spreads: eight bits that single precision gains
+  constexpr double kFarther = 256;  // in spreads of the middle half: eight bits that single precision gains
   return (static_cast<double>(high) - low) * kFarther < std::abs(static_cast<double>(median)) ? median : 0;
 }
 
-// A growing list of cells, each kept once.
+// A growing list of cells that keeps each cell once.
 class CellList {
  public:
   void add(const glm::ivec3& cell, int interior) {
@@ -132,7 +133,7 @@ class Surveyor {
     }
     const Range range = rangeOfLeaf(values);
     value_.include(range);
-    // A few voxels of each leaf, spread over it, stand for all; its extremes for what is thin.
+    // A few voxels of each leaf, spread over it, stand for all; the extremes stand for thin structures between them.
     for (const float value : {values[73], values[201], values[310], values[438], range.min, range.max})
       if (value != background_) samples_.push_back(value);
     for (int i = 0; whole_ && i < kLeafVoxels; ++i) whole_ = isWhole(values[i]);
@@ -165,7 +166,7 @@ class Surveyor {
     reach(tile);
   }
 
-  // The tiles of a node.
+  // Surveys the tiles of a node.
   template <class Node>
   void see(const Node& node) {
     for (auto tile = node.cbeginValueAll(); tile; ++tile) {

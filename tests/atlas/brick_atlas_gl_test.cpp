@@ -20,7 +20,7 @@ namespace {
 
 const IndexBox kVoxels{glm::ivec3(-13, 0, 5), glm::ivec3(20, 19, 30)};
 
-// No two voxels near each other are equal; the values are grid units as of a CT.
+// Returns values in grid units, as of a CT, such that no two voxels near each other are equal.
 double scattered(const glm::ivec3& i) {
   const unsigned hash = static_cast<unsigned>(i.x) * 73856093u ^ static_cast<unsigned>(i.y) * 19349663u ^
                         static_cast<unsigned>(i.z) * 83492791u;
@@ -33,7 +33,7 @@ std::vector<std::int32_t> allOf(const BrickAtlas& atlas) {
   return bricks;
 }
 
-// Every texel of every texture, two channels: x fastest.
+// Reads every texel of every texture, with two channels, x fastest.
 std::vector<std::vector<float>> readTextures(const GlFunctions& gl, const BrickAtlas& atlas) {
   const glm::ivec3 size = atlas.textureSize();
   std::vector<std::vector<float>> textures;
@@ -50,10 +50,10 @@ std::vector<std::vector<float>> readTextures(const GlFunctions& gl, const BrickA
 
 struct Difference {
   double value = 0, gradient = 0;
-  double texel = 0;  // from what BrickAtlas::texelOf says
+  double texel = 0;  // largest difference from what BrickAtlas::texelOf says
 };
 
-// Largest difference of resident bricks from what the volume reads.
+// Returns the largest difference of resident bricks from what the volume reads.
 Difference compare(const GlFunctions& gl, const BrickAtlas& atlas, const Bricks& volume) {
   const auto textures = readTextures(gl, atlas);
   const glm::ivec3 edge = volume.layout.edge(), size = atlas.textureSize();
@@ -103,7 +103,7 @@ TEST_CASE("Every voxel comes back from the texture as the volume reads it", "[at
             CHECK_THAT(complaint<InvalidArgument>([&] { parseVoxelFormat(name, volume); }), Contains("gradient"));
             continue;
           }
-          // In one texture, and in as many as small ones make.
+          // The slots are in one texture, and in as many textures as small ones make.
           for (const int texturesOf : {0, 2}) {
             INFO("interior " << interior << ", apron " << apron << ", gradients " << gradients << ", " << name << ", "
                              << texturesOf);
@@ -137,7 +137,7 @@ TEST_CASE("Every voxel comes back from the texture as the volume reads it", "[at
             } else {
               CHECK(worst.value <= 0.5 * step + rounding);
               CHECK(std::abs(worst.value - atlas.formatError()) <= rounding);
-              CHECK(worst.gradient <= 0.5 * 2.0);  // half: up to 4000 apart over 2 voxels
+              CHECK(worst.gradient <= 0.5 * 2.0);  // a half float: gradients of up to 4000 over 2 voxels
             }
           }
         }
@@ -188,7 +188,7 @@ TEST_CASE("Bricks of one value share a slot, and give it back together", "[atlas
   for (std::int32_t brick = 0; brick < 31; ++brick) atlas.release(brick);
   CHECK(atlas.isResident(31));
   atlas.require(std::vector<std::int32_t>{0});
-  CHECK(atlas.uploadedBricks() == 1);  // brick 31 still holds it
+  CHECK(atlas.uploadedBricks() == 1);  // brick 31 still holds the slot
   atlas.release(0);
   atlas.release(31);
   atlas.require(std::vector<std::int32_t>{5});
@@ -199,12 +199,12 @@ TEST_CASE("Bricks of one value share a slot, and give it back together", "[atlas
 TEST_CASE("Slots are recycled and bricks stay what they are", "[atlas][gl]") {
   const auto context = testContext();
   if (!context) return;
-  // A third of the bricks hold one value, in three kinds.
+  // A third of the bricks are uniform, with three different values.
   const auto field = [](const glm::ivec3& i) { return i.x >= 30 ? 1.0 + (i.x + i.y) / 100 : scattered(i); };
   const FieldBricks volume(field, {glm::ivec3(0), glm::ivec3(63, 31, 31)}, {.background = -1});
   AtlasOptions options;
   options.budgetBytes = 11 * volume.layout.voxels() * 4;
-  options.maxTextureEdge = 20;  // 8 slots to a texture
+  options.maxTextureEdge = 20;  // texels: 8 slots to a texture
   BrickAtlas atlas(*context, volume, volume.bricks, options);
   CHECK_FALSE(atlas.holdsAll());
   CHECK(atlas.slots() == 11);
@@ -219,7 +219,7 @@ TEST_CASE("Slots are recycled and bricks stay what they are", "[atlas][gl]") {
     while (resident.size() > 8) {
       const std::int32_t brick = random(volume.bricks.size());
       atlas.release(brick);
-      atlas.release(brick);  // once more changes nothing
+      atlas.release(brick);  // a second release changes nothing
       resident.erase(brick);
     }
     std::vector<std::int32_t> wanted{random(volume.bricks.size()), random(volume.bricks.size())};
@@ -236,7 +236,7 @@ TEST_CASE("Slots are recycled and bricks stay what they are", "[atlas][gl]") {
       slots.insert({slot.texture, slot.origin.x, slot.origin.y, slot.origin.z});
       ++ownSlots;
     }
-    CHECK(slots.size() == ownSlots);  // no two in one slot
+    CHECK(slots.size() == ownSlots);  // no two bricks are in one slot
     if (round % 20 == 0) CHECK(compare(context->gl(), atlas, volume).value == 0);
   }
   CHECK(compare(context->gl(), atlas, volume).value == 0);
@@ -260,14 +260,14 @@ TEST_CASE("What does not fit is refused with what is needed and what there is", 
   CHECK(atlas.slots() == 3);
   CHECK_THAT(complaint<InvalidArgument>([&] { atlas.require(allOf(atlas)); }),
              Contains("3 bricks") && Contains("4 MiB"));
-  // What was refused has not spoilt it: what is resident is there.
+  // The refused request has not spoilt the atlas: bricks that are resident are still there.
   CHECK(compare(context->gl(), atlas, volume).value == 0);
   for (const std::int32_t brick : allOf(atlas)) atlas.release(brick);
   atlas.require(std::vector<std::int32_t>{7, 1, 4});
   CHECK(compare(context->gl(), atlas, volume).value == 0);
 }
 
-// A texture of at most so many bytes: software drivers refuse large ones.
+// Textures have a largest number of bytes, since software drivers refuse large ones.
 TEST_CASE("Slots are spread evenly over textures of bounded size", "[atlas][gl]") {
   const auto context = testContext();
   if (!context) return;

@@ -53,7 +53,7 @@ TEST_CASE("A brick's range is that of its interior and apron, and only backgroun
     }
 }
 
-// A sample near a face reaches into the apron: such a brick may be visible.
+// A sample near a face reaches into the apron, so such a brick may be visible.
 TEST_CASE("A brick with an empty interior but an occupied apron exists", "[brick]") {
   const auto bricks = brickGrid(makeVoxels({{{31, 5, 5}, 2.0f}}), {32});
   REQUIRE(bricks->bricks.size() == 2);
@@ -116,7 +116,7 @@ TEST_CASE("Tiles of every level are enumerated, and most of their bricks are uni
   CHECK_THROWS_WITH(brickGrid(makeGrid(grid), {8}), Catch::Contains("8388608") && Catch::Contains("8 x 8 x 8"));
 }
 
-TEST_CASE("A gradient is the covector: a linear field has the same one under every transform", "[brick]") {
+TEST_CASE("A gradient is a covector: a linear field has the same one under every transform", "[brick]") {
   const glm::dvec3 slope(0.7, -0.4, 1.1);  // grid units per world unit
   for (const glm::dmat4& toWorld :
        {glm::dmat4(1), crookedTransform(), glm::dmat4(1e-3, 0, 0, 0, 0, 2e-3, 0, 0, 0, 0, 1e-3, 0, 0, 0, 0, 1),
@@ -126,10 +126,10 @@ TEST_CASE("A gradient is the covector: a linear field has the same one under eve
     };
     const ScalarGrid grid = withTransform(makeFilled({40, 40, 40}, {-16, -16, -16}, field), toWorld);
     const auto bricks = brickGrid(grid, {16, 1, true});
-    // Cell 0 with its apron lies inside the box, where no difference reaches out of it.
+    // Cell 0 with its apron lies inside the box, so no difference reaches out of it.
     std::vector<float> values(bricks->layout.voxels()), gradients(values.size());
     bricks->read({0, 0, 0}, values, gradients);
-    // Rounding of the stored values, over two voxels' distance.
+    // The stored values are rounded, over the distance of two voxels.
     const double voxel = std::cbrt(std::abs(glm::determinant(glm::dmat3(toWorld))));
     const double tolerance = 1e-6 * glm::length(slope) + 4 * 6e-8 * bricks->value.extent() / voxel;
     double worst = 0;
@@ -142,11 +142,11 @@ TEST_CASE("A gradient is the covector: a linear field has the same one under eve
   }
 }
 
-// The apron's gradient sees one voxel more than its value.
+// The gradient in the apron sees one voxel more than its value.
 TEST_CASE("A brick of background with a gradient in its apron exists when gradients are asked for", "[brick]") {
   const ScalarGrid grid = makeVoxels({{{30, 5, 5}, 2.0f}});
   CHECK(brickAt(*brickGrid(grid, {32, 1, false}), {32, 0, 0}) == nullptr);
-  // Voxel 31 has a gradient, and the space behind it that interpolates between 31 and 32 belongs to the next brick.
+  // Voxel 31 has a gradient. The space behind it, which interpolates between 31 and 32, belongs to the next brick.
   const auto bricks = brickGrid(grid, {32, 1, true});
   const Brick* next = brickAt(*bricks, {32, 0, 0});
   REQUIRE(next);
@@ -155,7 +155,7 @@ TEST_CASE("A brick of background with a gradient in its apron exists when gradie
 }
 
 TEST_CASE("Gradients that overflow stay finite", "[brick]") {
-  // Near the smallest voxels that OpenVDB accepts: it refuses a determinant below 3e-15.
+  // The voxels are nearly the smallest that OpenVDB accepts: it refuses a determinant below 3e-15.
   const glm::dmat4 tiny(2e-5, 0, 0, 0, 0, 2e-5, 0, 0, 0, 0, 2e-5, 0, 0, 0, 0, 1);
   const auto bricks = brickGrid(withTransform(makeVoxels({{{3, 3, 3}, 3e38f}}), tiny), {8, 1, true});
   CHECK(bricks->gradient == Range{0, std::numeric_limits<float>::max()});
@@ -166,18 +166,18 @@ TEST_CASE("The format is the smallest that holds every voxel exactly", "[brick]"
   CHECK(formatOf(makeVoxels({{{0, 0, 0}, -1000.0f}}, -1255.0f)) == VoxelFormat::unorm8);
   CHECK(formatOf(makeVoxels({{{0, 0, 0}, 256.0f}})) == VoxelFormat::unorm16);
   CHECK(formatOf(makeVoxels({{{0, 0, 0}, 65535.0f}})) == VoxelFormat::unorm16);
-  CHECK(formatOf(makeVoxels({{{0, 0, 0}, 65535.0f}}, -1.0f)) == VoxelFormat::float32);  // 65535 has 16 bits
+  CHECK(formatOf(makeVoxels({{{0, 0, 0}, 65535.0f}}, -1.0f)) == VoxelFormat::float32);  // 65535 needs 16 bits
   CHECK(formatOf(makeVoxels({{{0, 0, 0}, 33554432.0f}}, 33554432.0f + 64)) == VoxelFormat::unorm8);
   CHECK(formatOf(makeVoxels({{{0, 0, 0}, 0.5f}})) == VoxelFormat::half);
   CHECK(formatOf(makeVoxels({{{0, 0, 0}, 0.5f}}, 65504.0f)) == VoxelFormat::half);
   CHECK(formatOf(makeVoxels({{{0, 0, 0}, 0.5f}}, 65536.0f)) == VoxelFormat::float32);
   CHECK(formatOf(makeVoxels({{{0, 0, 0}, 0x1.004p-3f}})) == VoxelFormat::half);
   CHECK(formatOf(makeVoxels({{{0, 0, 0}, 0x1.002p-3f}})) == VoxelFormat::float32);
-  CHECK(formatOf(makeVoxels({{{0, 0, 0}, 0x1p-24f}})) == VoxelFormat::half);  // the smallest half
+  CHECK(formatOf(makeVoxels({{{0, 0, 0}, 0x1p-24f}})) == VoxelFormat::half);  // the smallest half float
   CHECK(formatOf(makeVoxels({{{0, 0, 0}, 0x1p-25f}})) == VoxelFormat::float32);
   CHECK(formatOf(makeVoxels({{{0, 0, 0}, 0x1.8p-24f}})) == VoxelFormat::float32);
   CHECK(formatOf(makeVoxels({{{0, 0, 0}, 0.1f}})) == VoxelFormat::float32);
-  CHECK(formatOf(makeVoxels({{{0, 0, 0}, 1e-40f}})) == VoxelFormat::float32);  // denormal
+  CHECK(formatOf(makeVoxels({{{0, 0, 0}, 1e-40f}})) == VoxelFormat::float32);  // a denormal float
 
   // Inactive voxels, tiles and the background count.
   const openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(0);
@@ -209,8 +209,9 @@ TEST_CASE("Few voxels far apart make few bricks", "[brick]") {
   CHECK_THROWS_WITH(backgroundBricks(*brickGrid(grid)), Catch::Contains("limit of 1048576"));
 }
 
-TEST_CASE("Bricks up to the last 32-bit coordinate work, those beyond are refused by name", "[brick]") {
-  // The brick before the last one: its apron still has coordinates, and slabs reach the domain from no other.
+TEST_CASE("Bricks up to the last 32-bit coordinate work, and those beyond are refused by name", "[brick]") {
+  // The brick is the one before the last. Its apron still has coordinates, and slabs reach the domain from
+  // no brick beyond.
   const auto bricks = brickGrid(makeVoxels({{{kLargest - 34, 0, 0}, 1.0f}, {{-kLargest + 33, 0, 0}, 1.0f}}), {32});
   CHECK(bricks->domain.max.x == kLargest - 33);
   std::vector<float> voxels(bricks->layout.voxels());
@@ -266,7 +267,7 @@ TEST_CASE("The grid without bricks is one brick, all that slabs reach the domain
         Range{*std::min_element(values.begin(), values.end()), *std::max_element(values.begin(), values.end())});
   CHECK(whole->bricks[0].gradient == Range{*std::min_element(gradients.begin(), gradients.end()),
                                            *std::max_element(gradients.begin(), gradients.end())});
-  // The same voxels as through bricks.
+  // The voxels are the same as through bricks.
   std::vector<float> brickValues(bricks->layout.voxels()), brickGradients(brickValues.size());
   const glm::ivec3 edge = whole->layout.edge();
   std::size_t wrong = 0, compared = 0;
@@ -286,7 +287,7 @@ TEST_CASE("The grid without bricks is one brick, all that slabs reach the domain
   CHECK(wrong == 0);
 }
 
-TEST_CASE("Options that make no bricks are refused", "[brick]") {
+TEST_CASE("Options that no brick can have are refused", "[brick]") {
   const ScalarGrid grid = makeVoxels({{{0, 0, 0}, 1.0f}});
   for (const int interior : {-8, 0, 4, 12, 264}) CHECK_THROWS_AS(brickGrid(grid, {interior}), InvalidArgument);
   CHECK_THROWS_WITH(brickGrid(grid, {12}), Catch::Contains("12") && Catch::Contains("multiple of 8"));

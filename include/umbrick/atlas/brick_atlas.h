@@ -20,23 +20,25 @@ struct AtlasOptions {
   VoxelFormat format = VoxelFormat::float32;
   std::uint64_t budgetBytes = std::uint64_t{2} << 30;        // of all textures together
   std::uint64_t maxTextureBytes = std::uint64_t{512} << 20;  // of one texture; software drivers refuse more than 1 GiB
-  int maxTextureEdge = 0;                                    // texels; 0: what the driver allows
+  int maxTextureEdge = 0;                                    // texels; 0 takes what the driver allows
 };
 
-/// Texels to grid values: value = offset + texel * scale, where a texel is what a shader reads.
+/// How texels are turned into grid values: value = offset + texel * scale, where a texel is what a shader reads.
 struct TexelScale {
   double scale = 1, offset = 0;
-  double rounding = 0;  // largest |voxel - texel| that the format may cause, grid units; 0: the format is exact
+  /// Grid units: the largest |voxel - texel| that the format may cause; 0 when the format is exact.
+  double rounding = 0;
   double toTexel(double value) const { return (value - offset) / scale; }
 };
 
-/// How an atlas of this format stores the values of a volume. Whole numbers are stored as they are where they fit,
-/// other values are spread over the codes of a fixed-point format. 32-bit floats hold the distance from volume.anchor.
+/// Returns how an atlas of this format stores the values of a volume. Whole numbers are stored as they are where they
+/// fit. In a fixed-point format other values are spread over the codes. 32-bit floats hold the distance
+/// from volume.anchor.
 TexelScale texelScale(const Bricks& volume, VoxelFormat format);
 
-/// What a shader reads where all voxels have this value, to a rounding. @param scale  of that format
+/// Returns what a shader reads where all voxels have this value, up to a rounding. @param scale  that of the format
 double texelOf(float value, const TexelScale& scale, VoxelFormat format);
-/// Likewise of a gradient magnitude, which fixed point does not hold.
+/// Returns the same for a gradient magnitude, which no fixed-point format holds.
 double gradientTexelOf(float gradient, VoxelFormat format);
 
 /// A pool of slots, all in textures of one size, filled as bricks are required. When every brick fits, each is uploaded
@@ -47,7 +49,7 @@ class BrickAtlas {
  public:
   struct Slot {
     int texture = 0;
-    glm::ivec3 origin{0};  // texels, of the first apron voxel
+    glm::ivec3 origin{0};  // first apron voxel, in texels
   };
 
   /// A pool for all of these.
@@ -71,11 +73,11 @@ class BrickAtlas {
   /// Makes bricks resident, those that are not yet. Others stay as long as there is room.
   /// @throw InvalidArgument  more slots are needed than the budget allows: names both sizes
   void require(std::span<const std::int32_t> bricks);
-  /// Gives the brick's slot back.
+  /// Gives the slot of a brick back.
   void release(std::int32_t brick);
 
   bool isResident(std::int32_t brick) const { return slotOf_[static_cast<std::size_t>(brick)] >= 0; }
-  Slot slot(std::int32_t brick) const;  // of a resident brick
+  Slot slot(std::int32_t brick) const;  // the brick must be resident
   GLuint texture(int index) const { return textures_[static_cast<std::size_t>(index)].name(); }
   int textureCount() const { return static_cast<int>(textures_.size()); }
   glm::ivec3 textureSize() const { return size_; }
@@ -87,7 +89,7 @@ class BrickAtlas {
   bool holdsAll() const { return slots_ >= slotsForAll_; }
   std::uint64_t textureBytes() const;
   std::uint64_t uploadedBricks() const { return uploaded_; }
-  /// Largest difference between a voxel and its texel so far; 0 for an exact format.
+  /// Returns the largest difference between a voxel and its texel so far, grid units; 0 for an exact format.
   double formatError() const { return formatError_; }
 
  private:
@@ -120,8 +122,8 @@ class BrickAtlas {
   double formatError_ = 0;
 };
 
-/// "auto" takes what the volume needs. @throw InvalidArgument  an unknown name, or a format that cannot hold the
-/// volume's gradient magnitudes
+/// Returns the format of a name; "auto" takes what the volume needs.
+/// @throw InvalidArgument  an unknown name, or a format that cannot hold the volume's gradient magnitudes
 VoxelFormat parseVoxelFormat(const std::string& name, const Bricks& volume);
 std::string voxelFormatName(VoxelFormat format);
 

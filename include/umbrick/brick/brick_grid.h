@@ -17,8 +17,8 @@ namespace umbrick {
 /// @throw IoError          voxels that a file promised could not be loaded
 std::unique_ptr<Bricks> brickGrid(const ScalarGrid& grid, const BrickOptions& options = {});
 
-/// The whole domain as one brick: the path without bricks, to compare with. Its lattice begins at domain.min, not at 0;
-/// options.interior only cuts the work of finding ranges.
+/// Makes one brick of the whole domain: a picture through it can be compared with one through many bricks. Its lattice
+/// begins at domain.min, not at 0. options.interior only tells how the work of finding ranges is divided.
 /// @throw InvalidArgument  more than 2^31 voxels, or as brickGrid
 /// @throw IoError          as brickGrid
 std::unique_ptr<Bricks> unbrickedGrid(const ScalarGrid& grid, const BrickOptions& options = {});

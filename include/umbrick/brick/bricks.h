@@ -13,7 +13,7 @@
 
 namespace umbrick {
 
-/// The smallest texel that holds every voxel exactly.
+/// The smallest format of a texel that holds every voxel exactly.
 enum class VoxelFormat {
   unorm8,   // whole numbers that span at most 255
   unorm16,  // whole numbers that span at most 65535
@@ -45,49 +45,53 @@ struct BrickLayout {
 };
 
 struct Brick {
-  glm::ivec3 origin;  // index space, first owned voxel
+  glm::ivec3 origin;  // first owned voxel in index space
   Range value;        // grid units, over interior and apron
-  Range gradient;  // gradient magnitude, grid units per world unit, over interior and apron; {0, 0} when not asked for
+  /// Gradient magnitude over interior and apron, grid units per world unit; {0, 0} when it is not asked for.
+  Range gradient;
   bool uniform() const { return value.min == value.max; }
 };
 
-/// The bricks of one volume. What holds the voxels is behind read(), so that no GL room sees OpenVDB.
+/// The bricks of one volume. Whatever holds the voxels is hidden behind read(), so that no GL room sees OpenVDB.
 class Bricks {
  public:
   virtual ~Bricks() = default;
 
   BrickLayout layout;
-  glm::dmat4 indexToWorld{1};  // affine
-  // Active voxels, and others that differ from the background, grown by one.
+  glm::dmat4 indexToWorld{1};  // an affine transform
+  // The box of active voxels and of others that differ from the background, grown by one voxel.
   IndexBox domain;
   Range value;     // over all voxels, the background included
-  Range gradient;  // {0, 0} without gradients
+  Range gradient;  // over all bricks; {0, 0} without gradients
   float background = 0;
-  // A value near which most voxels lie that are not background, where they lie together far from 0 (pressures around
-  // 101 325, say); else 0. Single precision has more digits for distances from it than for the values themselves.
+  // A value near which most voxels lie that are not background, where these lie together far from 0 (such as pressures
+  // around 101 325); else 0. Single precision has more digits for distances from it than for the values themselves.
   float anchor = 0;
   bool hasGradients = false;
   VoxelFormat exactFormat = VoxelFormat::float32;
-  std::uint64_t nonFiniteVoxels = 0;  // active NaN or infinite voxels, read as background
-  // The cells that hold anything but background in interior or apron, or a gradient; ascending in z, then y, then x.
-  // Those beyond the domain are among them whose aprons reach into it: slabs with their middle there may do so, too.
+  std::uint64_t nonFiniteVoxels = 0;  // active NaN or infinite voxels, which read as background
+  // The cells whose interior or apron holds anything but background, or a gradient; ascending in z, then y, then x.
+  // Among them are cells beyond the domain whose aprons reach into it, since a slab whose middle lies in such a cell
+  // may reach into the domain, too.
   std::vector<Brick> bricks;
 
-  /// How far beyond its faces a brick sees voxels: the apron, and one more with gradients.
+  /// Returns how far beyond its faces a brick sees voxels: the apron, and one voxel more with gradients.
   int margin() const { return layout.apron + (hasGradients ? 1 : 0); }
-  /// The box from which a slab or a gradient may reach into the domain: the domain grown by the margin.
+  /// Returns the box from which a slab or a gradient may reach into the domain: the domain grown by the margin.
   IndexBox reach() const;
 
-  /// Voxels of the cell whose first owned voxel is `origin` (any lattice cell, also one not in `bricks`), x fastest,
-  /// edge() voxels along each axis beginning at origin - apron. Safe to call from several threads.
-  /// @param gradients  empty, or the gradient magnitude of each voxel: central differences of neighbouring voxels, in
-  ///                   grid units per world unit
+  /// Reads the voxels of the cell whose first owned voxel is `origin`, which may be any lattice cell, also one that is
+  /// not in `bricks`. They are x fastest, edge() voxels along each axis, beginning at origin - apron. Several threads
+  /// may call this at the same time.
+  /// @param gradients  empty, or receives the gradient magnitude of each voxel: central differences of neighbouring
+  ///                   voxels, in grid units per world unit
   /// @throw InvalidArgument  a span of the wrong size, or gradients without hasGradients
   virtual void read(const glm::ivec3& origin, std::span<float> values, std::span<float> gradients = {}) const = 0;
 };
 
-/// Cells of the lattice that meet reach() and are not in `bricks`: what must be drawn when the background is visible.
-/// @throw InvalidArgument  more than `limit`: says how many and names the background value
+/// Returns the cells of the lattice that meet reach() and are not in `bricks`. They must be drawn when the
+/// background is visible.
+/// @throw InvalidArgument  there are more than `limit`; the message says how many and names the background value
 std::vector<Brick> backgroundBricks(const Bricks& bricks, std::size_t limit = 1u << 20);
 
 }  // namespace umbrick
