@@ -25,7 +25,7 @@ bool hasExtension(const char* list, std::string_view name) {
   return false;
 }
 
-// The functions of EGL that are used here, from a library loaded at run time.
+// The functions of EGL that are used here, from a library that is loaded at run time.
 struct Egl {
   explicit Egl(const SharedLibrary& library)
       : getProcAddress(library.function<PFNEGLGETPROCADDRESSPROC>("eglGetProcAddress")),
@@ -56,8 +56,8 @@ struct Candidate {
   EGLDisplay display;
 };
 
-// Displays that need no screen, GPUs first: devices with hardware, Mesa's surfaceless platform, software devices, and
-// what the environment calls its default.
+// Lists displays that need no screen, GPUs first: devices with hardware, Mesa's surfaceless platform, software devices,
+// and what the environment calls its default.
 std::vector<Candidate> candidates(const Egl& egl) {
   std::vector<Candidate> hardware, software;
   const char* client = egl.queryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
@@ -98,7 +98,8 @@ class EglContext : public GlContext {
   ~EglContext() override { close(); }
 
   void makeCurrent() override {
-    // EGL does nothing for a context that it takes for current, though OSMesa may have put another one in its place.
+    // EGL does nothing for a context that it takes for current, though OSMesa may have put another one in its place. So
+    // EGL is told first that none is current.
     if (egl_.getCurrentContext() == context_)
       egl_.makeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (!egl_.makeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
@@ -106,7 +107,7 @@ class EglContext : public GlContext {
   }
 
  private:
-  // Empty when the context is made, else what failed.
+  // Makes the context. @return empty, or what failed
   std::string open(EGLDisplay display) {
     if (display == EGL_NO_DISPLAY) return "no display";
     EGLint major = 0, minor = 0;
@@ -138,11 +139,11 @@ class EglContext : public GlContext {
   }
   void close() {
     if (display_ == EGL_NO_DISPLAY) return;
-    // Another context may be current by now, and stays so.
+    // If another context is current by now, it stays so.
     if (context_ != EGL_NO_CONTEXT && egl_.getCurrentContext() == context_)
       egl_.makeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (context_ != EGL_NO_CONTEXT) egl_.destroyContext(display_, context_);
-    // The display is the process's, not ours: another context may still use it, so it is not terminated.
+    // The display belongs to the process and another context may still use it, so it is not terminated.
     context_ = EGL_NO_CONTEXT;
     display_ = EGL_NO_DISPLAY;
   }

@@ -50,7 +50,8 @@ class OsmesaContext : public GlContext {
  private:
   void destroy() { library_.function<decltype(&OSMesaDestroyContext)>("OSMesaDestroyContext")(context_); }
 
-  // OSMesa draws to memory of ours; everything here draws to framebuffer objects, so it is small and never looked at.
+  // OSMesa draws to memory of ours. All drawing here goes to framebuffer objects, so this memory is small and
+  // never looked at.
   static constexpr int kEdge = 8;
   std::vector<unsigned char> pixels_ = std::vector<unsigned char>(4 * kEdge * kEdge);
   SharedLibrary library_;

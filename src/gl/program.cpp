@@ -9,25 +9,25 @@
 
 namespace umbrick {
 
-std::string_view shaderText(std::string_view path);  // embedded by the build
+std::string_view shaderText(std::string_view path);  // made by the build, which embeds the shaders
 
 namespace {
 
-// A driver is told that line n of the i-th file is line i * kLinesPerFile + n of one file: GLSL can number files, but
-// Mesa forgets the number in most of its messages.
+// A driver is told that line n of the i-th file is line i * kLinesPerFile + n of a single file. GLSL can number files,
+// but Mesa forgets the number in most of its messages.
 constexpr int kLinesPerFile = 10'000;
 
 std::string lineMark(std::size_t file, int line) {
   return "#line " + std::to_string(static_cast<int>(file) * kLinesPerFile + line) + "\n";
 }
 
-// Appends a file with its includes. `files` lists the files in order of first use.
+// Appends a file with its includes. `files` lists the files in the order of their first use.
 void appendSource(const std::string& path, std::vector<std::string>& files, std::vector<std::string>& open,
                   std::string& out) {
   for (const std::string& outer : open)
     if (outer == path) throw GlError("shader " + path + " includes itself");
   for (const std::string& known : files)
-    if (known == path) return;  // each file once, as with include guards
+    if (known == path) return;  // each file is taken once, as with include guards
   const std::string_view text = shaderText(path);
   if (text.empty()) throw GlError("no shader " + path);
   const std::size_t number = files.size();
@@ -60,8 +60,8 @@ std::string expand(const std::string& path, const ShaderConstants& constants, st
   return out;
 }
 
-// A driver's message with our files and lines: Mesa says "0:10006(19): error", others "0(10006) : error" or
-// "ERROR: 0:10006: ".
+// Returns a driver's message with our files and lines. Mesa writes "0:10006(19): error", others write "0(10006) :
+// error" or "ERROR: 0:10006: ".
 std::string withFileNames(std::string_view log, const std::vector<std::string>& files) {
   std::string out;
   for (std::size_t at = 0; at < log.size();) {
@@ -132,7 +132,7 @@ void GlProgram::link(std::span<const GLuint> shaders, const std::string& names) 
   name_ = gl.CreateProgram();
   for (const GLuint shader : shaders) gl.AttachShader(name_, shader);
   gl.LinkProgram(name_);
-  for (const GLuint shader : shaders) gl.DeleteShader(shader);  // kept alive by the program
+  for (const GLuint shader : shaders) gl.DeleteShader(shader);  // the program keeps it alive
   GLint linked = 0;
   gl.GetProgramiv(name_, GL_LINK_STATUS, &linked);
   if (linked) return;

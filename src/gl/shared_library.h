@@ -9,11 +9,11 @@ namespace umbrick {
 
 class SharedLibrary {
  public:
-  /// Loads the first of `names` that exists. It stays loaded until the process ends: drivers leave threads and exit
-  /// handlers behind that must not lose their code.
-  /// @throw GlError  none could be loaded: the loader's message
+  /// Loads the first of `names` that exists. It stays loaded until the process ends, since drivers leave threads and
+  /// exit handlers behind that must not lose their code.
+  /// @throw GlError  none could be loaded; the message is the loader's
   explicit SharedLibrary(std::initializer_list<const char*> names);
-  /// @throw GlError  no such function
+  /// @throw GlError  there is no such function
   GlProcedure procedure(const char* name) const;
   template <class Function>
   Function function(const char* name) const {

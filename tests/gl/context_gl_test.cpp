@@ -21,7 +21,7 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-// What this program's hidden test says in a process of its own: drivers read their environment once.
+// Returns what a hidden test of this program says in a process of its own, since drivers read their environment once.
 std::string inEnvironment(const std::string& environment, const std::string& test) {
   char program[4096];
   const ssize_t length = readlink("/proc/self/exe", program, sizeof(program));
@@ -85,7 +85,7 @@ void clearAndCheck(const GlContext& context, float value) {
 
 }  // namespace
 
-TEST_CASE("A context says what it is and does OpenGL 4.5", "[gl]") {
+TEST_CASE("A context says what it is, and has OpenGL 4.5", "[gl]") {
   for (const auto& [backend, prefix] : {std::pair(Backend::osmesa, "OSMesa: "), std::pair(Backend::egl, "EGL: ")}) {
     const auto context = testContext(backend);
     if (!context) continue;
@@ -108,8 +108,8 @@ TEST_CASE("OSMesa and EGL draw the same picture", "[gl]") {
   double brightest = 0;
   for (const float value : second.pixels) brightest = std::max(brightest, static_cast<double>(value));
   CHECK(brightest > 0.3);
-  // Formulas and filters of another driver round otherwise, and a GPU filters with weights of 1/256 of a voxel's step
-  // of 0.3: over 40 voxels of sigma_t 0.4 that averages out to below a thousandth of alpha.
+  // Another driver rounds formulas and filters differently. A GPU filters with weights of 1/256 of a voxel's step of
+  // 0.3; over 40 voxels of sigma_t 0.4 that averages out to below a thousandth of alpha.
   const bool isSoftware = egl->renderer().find("llvmpipe") != std::string::npos;
   CHECK(maxDifference(first, second) < (isSoftware ? 1e-5 : 2e-3));
 }
@@ -128,13 +128,13 @@ TEST_CASE("Contexts live side by side and end in any order", "[gl]") {
       second->makeCurrent();
       clearAndCheck(*second, 0.75f);
     }
-    // Objects belong to a context: a texture of one is none of the other.
+    // Objects belong to one context: the texture of one is no texture of the other.
     first->makeCurrent();
     const GlTexture texture = makeTexture2d(first->gl(), GL_R32F, 2, 2, GL_NEAREST);
     GLint size[4] = {};
     first->gl().GetTextureImage(texture.name(), 0, GL_RED, GL_FLOAT, sizeof(size), size);
     CHECK(first->gl().GetError() == GL_NO_ERROR);
-    // The end of the other one leaves this one current, if both are of one library.
+    // When the other context ends, this one stays current, if both are of one library.
     second.reset();
     if (one != other) first->makeCurrent();
     clearAndCheck(*first, 0.125f);
@@ -149,11 +149,11 @@ TEST_CASE("Pictures do not depend on what the context drew before", "[gl]") {
   CHECK(maxDifference(first, samplePicture(*context)) == 0);
 }
 
-// For the test below, which calls this program.
+// The test below calls this program to run these two.
 TEST_CASE("say what EGL says", "[.]") { std::cout << "SAYS <" << failureOf(Backend::egl) << "> SAID\n"; }
 TEST_CASE("say what any backend says", "[.]") { std::cout << "SAYS <" << failureOf(Backend::automatic) << "> SAID\n"; }
 
-// Mesa's softpipe is no OpenGL 4.5, and of EGL there is no vendor at all.
+// Mesa's softpipe has no OpenGL 4.5, and for EGL no vendor is left at all.
 TEST_CASE("Without a driver one line says what was tried", "[gl]") {
   const std::string environment = "GALLIUM_DRIVER=softpipe __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent.json";
   const std::string egl = inEnvironment(environment, "say what EGL says");

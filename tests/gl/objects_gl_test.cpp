@@ -15,7 +15,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-// A driver that makes nothing and keeps a ledger.
+// A driver that makes nothing and keeps a ledger of its calls.
 struct Ledger : GlFunctions {
   mutable std::vector<GLuint> made, deleted;
 };
@@ -56,7 +56,7 @@ TEST_CASE("An object is deleted once, wherever it moves", "[gl]") {
   CHECK(ledger.deleted == ledger.made);
 }
 
-TEST_CASE("Objects of a driver are its own kind and gone when deleted", "[gl]") {
+TEST_CASE("Objects of a driver are of their own kind, and gone when deleted", "[gl]") {
   const auto context = testContext();
   if (!context) return;
   const GlFunctions& gl = context->gl();
@@ -79,7 +79,7 @@ TEST_CASE("Objects of a driver are its own kind and gone when deleted", "[gl]") 
   checkGl(gl, "after the error was taken");
 }
 
-TEST_CASE("A texture or target that the driver refuses is an error that says which", "[gl]") {
+TEST_CASE("A texture or target that the driver refuses is an error that names it", "[gl]") {
   const auto context = testContext();
   if (!context) return;
   const GlFunctions& gl = context->gl();

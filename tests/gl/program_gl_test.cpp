@@ -11,7 +11,7 @@
 #include "umbrick/gl/objects.h"
 
 namespace umbrick {
-std::vector<std::string> shaderTextNames();  // embedded by the build
+std::vector<std::string> shaderTextNames();  // made by the build, which embeds the shaders
 }
 
 using namespace umbrick;
@@ -47,11 +47,11 @@ TEST_CASE("A shader holds every file it includes once, in the place of the first
   CHECK(source.find("float slabFactor(float x)") < source.find("Slab evaluateSlab("));
 }
 
-// What a driver is told is line 10 000 i + n is line n of the i-th file, in order of first use.
+// What a driver is told is line 10 000 i + n is line n of the i-th file, in the order of first use.
 TEST_CASE("Every line of a shader keeps its number and its file", "[gl]") {
   const std::string source = shaderSource("shade/occlusion_slice.frag");
   const std::string own = shaderSource("shade/clip.glsl");
-  // Lines of a file without includes follow their mark as they are in the file.
+  // The lines of a file without includes follow their mark as they are in the file.
   const std::string mark = "#line 1\n";
   const std::string body = own.substr(own.find(mark) + mark.size());
   int found = 0;
@@ -66,7 +66,7 @@ TEST_CASE("A shader that does not exist is named", "[gl]") {
   CHECK(complaint([] { shaderSource("shade/none.frag"); }) == "no shader shade/none.frag");
 }
 
-TEST_CASE("Every shader that is not an include compiles by itself or says where it fails", "[gl]") {
+TEST_CASE("Every shader that is not an include compiles by itself, or says where it fails", "[gl]") {
   const auto context = testContext();
   if (!context) return;
   const std::vector<std::string> names = shaderTextNames();
@@ -74,7 +74,7 @@ TEST_CASE("Every shader that is not an include compiles by itself or says where 
   int compiled = 0;
   for (const std::string& name : names) {
     if (!name.ends_with(".frag") && !name.ends_with(".comp")) continue;
-    // Those of polygons say where they lie in the atlas.
+    // Shaders of slices say where their polygons lie in the atlas.
     const bool isSlice = shaderSource(name).find("flat in vec4 slab_centre") != std::string::npos;
     INFO(name);
     for (const int perspective : {0, 1})
@@ -120,7 +120,7 @@ TEST_CASE("A driver's complaint names our file and line", "[gl]") {
   const std::string message =
       complaint([&] { GlProgram(context->gl(), "shade/full_screen.vert", "shade/occlusion_spread.frag"); });
   CHECK_THAT(message, StartsWith("shader shade/occlusion_spread.frag: ") && Contains("kTaps"));
-  // The mark after the file's last include says where it goes on.
+  // The mark after the last include of the file says where the file goes on.
   const std::string text = shaderSource("shade/footprint.glsl");
   const std::size_t taps = text.find("uniform vec4 taps["), mark = text.rfind("#line ", taps);
   const std::size_t start = text.find('\n', mark) + 1;
@@ -137,7 +137,7 @@ TEST_CASE("A program moves without being deleted twice", "[gl]") {
   GlProgram first(gl, "shade/full_screen.vert", "shade/saturated.frag");
   GlProgram second = std::move(first);
   second.set("saturation", 0.5f);
-  second.set("not there", 1);  // ignored
+  second.set("not there", 1);  // an unknown name is ignored
   GlProgram third(gl, "shade/full_screen.vert", "shade/saturated.frag");
   third = std::move(second);
   third.use();

@@ -22,25 +22,26 @@ enum class Backend {
 inline constexpr Name<Backend> kBackends[]{
     {"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}};
 
-/// Made current on the thread that creates it, and used on that thread only. Of several, the one that was made current
-/// last is used, and stays current when another one of its backend ends.
+/// A context is made current on the thread that creates it, and is used on that thread only. Of several contexts the
+/// one that was made current last is used. It stays current when another context of the same backend ends.
 class GlContext {
  public:
   virtual ~GlContext();
   const GlFunctions& gl() const { return *functions_; }
   Backend backend() const { return backend_; }
-  /// "OSMesa: llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 (Core Profile) Mesa 22.3.6"
+  /// Returns a text such as "OSMesa: llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 (Core Profile) Mesa 22.3.6".
   const std::string& description() const { return description_; }
   const std::string& renderer() const { return renderer_; }
   virtual void makeCurrent() = 0;
 
-  /// Limits that size a volume's textures.
+  /// Returns the limits to the size of a volume's textures.
   int maxTextureEdge2d() const { return maxTextureEdge2d_; }
   int maxTextureEdge3d() const { return maxTextureEdge3d_; }
 
  protected:
   GlContext();
-  /// Once the derived class has made its context current: loads the functions and reads what the driver says.
+  /// Loads the functions and reads what the driver says. A derived class calls this once it has made its
+  /// context current.
   void initialise(Backend backend, std::unique_ptr<GlFunctions> functions);
 
  private:

@@ -53,9 +53,9 @@ struct GlFunctions {
 
 using GlProcedure = void (*)();
 
-/// Fills the table.
-/// @param procedure  gives the address of a function of the current context by its full name, or null
-/// @throw GlError    names the first function that the driver lacks
+/// Loads all functions.
+/// @param procedure  returns the address of a function of the current context by its full name, or null
+/// @throw GlError    the driver lacks a function; the message names the first one
 GlFunctions loadGlFunctions(const std::function<GlProcedure(const char*)>& procedure);
 
 }  // namespace umbrick

@@ -9,7 +9,7 @@
 
 namespace umbrick {
 
-/// A name and who deletes it; `Kind` makes and deletes one. The context must be current for both.
+/// Owns the name of one object, which `Kind` makes and deletes. The context must be current for both.
 template <class Kind>
 class GlObject {
  public:
@@ -60,19 +60,20 @@ using GlVertexArray = GlObject<GlVertexArrayKind>;
 using GlFramebuffer = GlObject<GlFramebufferKind>;
 using GlQuery = GlObject<GlQueryKind>;
 
-/// A 2D texture of one level with clamped edges; `filter` GL_NEAREST or GL_LINEAR.
-/// @throw GlError  the driver has no room for it: says size and format
+/// Makes a 2D texture of one level with clamped edges. `filter` is GL_NEAREST or GL_LINEAR.
+/// @throw GlError  the driver has no room for it; the message says size and format
 GlTexture makeTexture2d(const GlFunctions& gl, GLenum format, int width, int height, GLenum filter);
-/// An array of 2D textures. @throw GlError
+/// Makes an array of 2D textures of this kind. @throw GlError  as makeTexture2d
 GlTexture makeTextureArray(const GlFunctions& gl, GLenum format, int width, int height, int layers, GLenum filter);
-/// A 3D texture of one level with clamped edges and linear filter. @throw GlError
+/// Makes a 3D texture of one level with clamped edges and linear filter. @throw GlError  as makeTexture2d
 GlTexture makeTexture3d(const GlFunctions& gl, GLenum format, int width, int height, int depth);
 
-/// A framebuffer that draws into `colours` (attachments 0, 1, ...) and, if not 0, into a depth-stencil texture.
+/// Makes a framebuffer that draws into `colours` (attachments 0, 1, ...) and into a depth-stencil texture if
+/// that is not 0.
 /// @throw GlError  the driver refuses the combination
 GlFramebuffer makeFramebuffer(const GlFunctions& gl, std::initializer_list<GLuint> colours, GLuint depthStencil = 0);
 
-/// @throw GlError  an error is pending: names it and `where`
+/// @throw GlError  an OpenGL error is pending; the message names it and `where`
 void checkGl(const GlFunctions& gl, const char* where);
 
 }  // namespace umbrick

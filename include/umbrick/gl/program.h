@@ -12,17 +12,17 @@
 
 namespace umbrick {
 
-/// Values of `const int` names that a shader expects, fixed when it is compiled: what a scene does not use costs
-/// nothing.
+/// Values of the `const int` names that a shader expects. They are fixed when the shader is compiled, so that what a
+/// scene does not use costs nothing.
 using ShaderConstants = std::map<std::string, int>;
 
 class GlProgram {
  public:
-  /// @param vertex, fragment  paths below shaders/, e.g. "shade/slice.vert"
-  /// @throw GlError  no such shader, or the driver's message with our file and line
+  /// @param vertex, fragment  paths below shaders/, such as "shade/slice.vert"
+  /// @throw GlError  there is no such shader, or it does not compile: the driver's message with our file and line
   GlProgram(const GlFunctions& gl, const std::string& vertex, const std::string& fragment,
             const ShaderConstants& constants = {});
-  /// A compute program, e.g. of "shade/window_march.comp". @throw GlError  likewise
+  /// Makes a compute program, for example of "shade/window_march.comp". @throw GlError  as the constructor
   static GlProgram compute(const GlFunctions& gl, const std::string& path, const ShaderConstants& constants = {});
   ~GlProgram();
   GlProgram(GlProgram&& other) noexcept;
@@ -48,8 +48,8 @@ class GlProgram {
   std::map<std::string, GLint> locations_;
 };
 
-/// The text of a shader with its includes and constants, as it goes to the driver: for messages and tests.
-/// @throw GlError  no such shader, or one that includes itself
+/// Returns the text of a shader with its includes and constants, as it goes to the driver. Messages and tests need it.
+/// @throw GlError  there is no such shader, or it includes itself
 std::string shaderSource(const std::string& path, const ShaderConstants& constants = {});
 
 }  // namespace umbrick
