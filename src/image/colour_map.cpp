@@ -12,8 +12,9 @@
 namespace umbrick {
 namespace {
 
-// Every 17th of the 256 colours of magma, 8-bit sRGB. Smith and van der Walt 2015, "A Better Default Colormap for
-// Matplotlib", https://bids.github.io/colormap; the data are CC0. Straight lines between them miss the others by 2.2.
+// Every 17th of the 256 colours of magma, in 8-bit sRGB. Smith and van der Walt 2015, "A Better Default Colormap
+// for Matplotlib", https://bids.github.io/colormap; the data are CC0. Straight lines between these miss the others
+// by 2.2 at most.
 const std::array<glm::dvec3, 16> kMagma{{{0, 0, 4},
                                          {11, 9, 36},
                                          {32, 17, 75},

@@ -38,10 +38,10 @@ inline void checkBackground(const glm::dvec3& background) {
       throw InvalidArgument("background: expected linear RGB in [0, 1], found " + std::to_string(background[c]));
 }
 
-// In [0, 1]; NaN is 0, as in a PNG file.
+// Returns the value that a screen shows, in [0, 1]. NaN is 0, as in a PNG file.
 inline double shownValue(double value) { return std::isnan(value) ? 0 : std::clamp(value, 0.0, 1.0); }
 
-/// Linear RGB in [0, 1] of a pixel of 3 channels, or of 4: premultiplied.
+/// Returns linear RGB in [0, 1] of a pixel of 3 channels, or of 4 premultiplied channels over the background.
 inline glm::dvec3 shownColour(const float* pixel, int channels, const glm::dvec3& background) {
   const double through = channels == 4 ? 1 - shownValue(pixel[3]) : 0;
   glm::dvec3 shown;

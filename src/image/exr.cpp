@@ -26,7 +26,7 @@ constexpr std::array<const char*, 4> kSuffixes{"R", "G", "B", "A"};
 constexpr const char* kDepth = "Z";
 constexpr float kLargestHalf = 65504;
 
-// What channel `c` of a layer is called in the file.
+// Returns what channel `c` of a layer is called in the file.
 std::string channelName(const ImageLayer& layer, int c) {
   if (layer.name.empty()) return layer.image.channels == 1 ? "Y" : kSuffixes[static_cast<std::size_t>(c)];
   return layer.image.channels == 1 ? layer.name : layer.name + "." + kSuffixes[static_cast<std::size_t>(c)];
@@ -53,7 +53,7 @@ void checkLayers(const std::vector<ImageLayer>& layers) {
   }
 }
 
-// One channel as it goes to the file: rows from the top.
+// One channel as it goes to the file, with rows from the top.
 struct ChannelRows {
   std::string name;
   Imf::PixelType type = Imf::FLOAT;
@@ -89,7 +89,8 @@ void writePlanes(const std::string& path, int width, int height, const std::vect
   file.writePixels(height);
 }
 
-// Layer name and channel suffix: "V" is the layer V, "light.R" the channel R of layer light, "R" of the main layer.
+// Returns the layer's name and the channel's suffix: "V" is the layer V, "light.R" is the channel R of the layer light,
+// and "R" is of the main layer.
 std::pair<std::string, std::string> splitName(const std::string& channel) {
   const std::size_t dot = channel.rfind('.');
   if (dot != std::string::npos) return {channel.substr(0, dot), channel.substr(dot + 1)};
@@ -97,7 +98,7 @@ std::pair<std::string, std::string> splitName(const std::string& channel) {
   return isMain ? std::pair{std::string(), channel} : std::pair{channel, std::string()};
 }
 
-// RGBA order, then the alphabet.
+// Sorts suffixes: RGBA first, in this order, then the others by the alphabet.
 int suffixRank(const std::string& suffix) {
   const auto at = std::find(kSuffixes.begin(), kSuffixes.end(), suffix);
   return static_cast<int>(at - kSuffixes.begin());
@@ -105,11 +106,11 @@ int suffixRank(const std::string& suffix) {
 
 struct FileLayer {
   std::string name;
-  std::vector<std::string> channels;  // full names
+  std::vector<std::string> channels;  // full names in the file
 };
 
 std::vector<FileLayer> layersOf(const Imf::ChannelList& list) {
-  std::map<std::string, std::vector<std::pair<int, std::string>>> groups;  // the main one, "", sorts first
+  std::map<std::string, std::vector<std::pair<int, std::string>>> groups;  // by layer; the main layer, "", sorts first
   for (auto channel = list.begin(); channel != list.end(); ++channel) {
     const auto [layer, suffix] = splitName(channel.name());
     groups[layer].emplace_back(suffixRank(suffix), channel.name());
@@ -155,7 +156,7 @@ ExrFile readOpened(Imf::InputFile& file) {
   }
   file.setFrameBuffer(buffer);
   file.readPixels(window.min.y, window.max.y);
-  // The file's first row is the top one.
+  // The first row of the file is the top one.
   for (ImageLayer& layer : result.layers) {
     const auto row = static_cast<std::ptrdiff_t>(width) * layer.image.channels;
     const auto begin = layer.image.pixels.begin();
@@ -193,7 +194,7 @@ void writeExr(const std::filesystem::path& path, const std::vector<ImageLayer>& 
 
 ExrFile readExr(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) readTextFile(path);  // says what is wrong with it
+  if (!std::filesystem::is_regular_file(path, ignored)) readTextFile(path);  // throws and says what is wrong with it
   bool tiled = false, deep = false;
   if (!Imf::isOpenExrFile(path.c_str(), tiled, deep)) throw IoError(path.string() + ": not an EXR file");
   if (deep) throw IoError(path.string() + ": a deep EXR file, which has no scan lines of pixels");

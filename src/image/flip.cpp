@@ -18,15 +18,16 @@
 namespace umbrick {
 namespace {
 
-// Linear sRGB to CIE XYZ, one column per primary, in the fractions that the program of the paper's authors has.
+// The matrix from linear sRGB to CIE XYZ, one column per primary, in the fractions of the program of the
+// paper's authors.
 const glm::dmat3 kToXyz(10135552 / 24577794.0, 2613072 / 12288897.0, 1425312 / 73733382.0,  // red
                         8788810 / 24577794.0, 8788810 / 12288897.0, 8788810 / 73733382.0,   // green
                         4435075 / 24577794.0, 887015 / 12288897.0, 70074185 / 73733382.0);  // blue
 const glm::dmat3 kFromXyz = glm::inverse(kToXyz);
 const glm::dvec3 kWhite = kToXyz * glm::dvec3(1);
 
-// YCxCz without the factors and offset that its definition gives the channels: filters whose weights have the sum 1
-// neither see nor change them. y is luminance, Y / Y_white.
+// A picture in YCxCz, but without the factors and the offset that the definition gives the channels. Filters whose
+// weights have the sum 1 neither see nor change them. y is luminance, Y / Y_white.
 struct Opponent {
   Plane y, redGreen, blueYellow;  // y, x - y, y - z of XYZ over white
 };
@@ -48,7 +49,7 @@ Opponent opponentOf(const Image& image, const glm::dvec3& background) {
 
 // --- the colour pipeline of the paper ---
 
-// Contrast sensitivity as a sum of Gaussians a sqrt(pi / b) exp(-pi^2 d^2 / b), d in degrees.
+// A term of the contrast sensitivity, which is a sum of Gaussians a sqrt(pi / b) exp(-pi^2 d^2 / b), with d in degrees.
 struct Sensitivity {
   double a, b;
 };
@@ -59,7 +60,7 @@ double sigmaPixels(const Sensitivity& term, double pixelsPerDegree) {
   return pixelsPerDegree * std::sqrt(term.b / (2 * std::numbers::pi * std::numbers::pi));
 }
 
-// All filters reach 3 standard deviations of the widest one.
+// All filters reach 3 standard deviations of the widest one, in pixels.
 int sensitivityRadius(double pixelsPerDegree) {
   return static_cast<int>(std::ceil(3 * sigmaPixels(kBlueYellowWide, pixelsPerDegree)));
 }
@@ -69,7 +70,7 @@ Plane seenThrough(const Sensitivity& term, const Plane& plane, double pixelsPerD
   return filtered(plane, kernel, kernel);
 }
 
-// The two Gaussians have different widths, so that only their sum is normalised: each counts by its volume.
+// The two Gaussians have different widths, so only their sum is normalised, and each counts by its volume.
 Plane seenThroughBlueYellow(const Plane& plane, double pixelsPerDegree) {
   const auto volume = [&](const Sensitivity& term) {
     const Kernel kernel = gaussian(sigmaPixels(term, pixelsPerDegree), sensitivityRadius(pixelsPerDegree));
@@ -89,13 +90,13 @@ Opponent filteredAsSeen(const Opponent& image, double pixelsPerDegree) {
           seenThroughBlueYellow(image.blueYellow, pixelsPerDegree)};
 }
 
-// CIE 15: the cube root with a straight start.
+// The curve of CIE 15: the cube root with a straight start.
 double labCurve(double t) {
   constexpr double kDelta = 6 / 29.0;
   return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3 * kDelta * kDelta) + 4 / 29.0;
 }
 
-// CIELAB of a linear RGB colour with a and b scaled by lightness, which is Hunt's effect.
+// Returns CIELAB of a linear RGB colour, with a and b scaled by lightness, which is Hunt's effect.
 glm::dvec3 huntLab(const glm::dvec3& linear) {
   const glm::dvec3 xyz = kToXyz * linear / kWhite;
   const double x = labCurve(xyz.x), y = labCurve(xyz.y), z = labCurve(xyz.z);
@@ -110,12 +111,13 @@ glm::dvec3 huntLab(const Opponent& image, std::size_t i) {
   return huntLab(glm::clamp(linear, 0.0, 1.0));
 }
 
-// HyAB distance ^ q_c.
+// Returns HyAB distance ^ q_c.
 double colourDistance(const glm::dvec3& a, const glm::dvec3& b) {
   return std::pow(std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z), 0.7);
 }
 
-// The distance in [0, 1]: up to p_c of the largest one (green to blue) takes the range to p_t, the rest what is left.
+// Maps a distance to [0, 1]. Distances up to p_c of the largest one (green to blue) take the range up to p_t, and
+// larger ones the rest.
 double colourError(double distance) {
   static const double kLargest = colourDistance(huntLab({0, 1, 0}), huntLab({0, 0, 1}));
   static const double kBend = 0.4 * kLargest;
@@ -124,7 +126,7 @@ double colourError(double distance) {
 
 // --- the feature pipeline of the paper ---
 
-// Positive weights of the sum 1, negative ones of -1.
+// Scales a kernel so that its positive weights have the sum 1 and its negative ones the sum -1.
 Kernel balanced(Kernel kernel) {
   double positive = 0, negative = 0;
   for (const double weight : kernel) (weight > 0 ? positive : negative) += weight;
@@ -132,13 +134,13 @@ Kernel balanced(Kernel kernel) {
   return kernel;
 }
 
-// Strength of edges and points: lengths of the first and second Gaussian derivatives along x and y.
+// The strength of edges and points: lengths of the first and second Gaussian derivatives along x and y.
 struct Features {
   Plane edges, points;
 };
 
 Features featuresOf(const Plane& luminance, double pixelsPerDegree) {
-  const double sigma = 0.5 * 0.082 * pixelsPerDegree;  // w = 0.082 degrees is twice the standard deviation
+  const double sigma = 0.5 * 0.082 * pixelsPerDegree;  // pixels; w = 0.082 degrees is twice the standard deviation
   const int radius = static_cast<int>(std::ceil(3 * sigma));
   const Kernel bell = gaussian(sigma, radius);
   Kernel slope = bell, bend = bell;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The same number, the same infinity, or NaN in both.
+// Returns true for the same number, the same infinity, or NaN in both.
 bool same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 double absoluteError(float a, float b) {
@@ -32,13 +32,14 @@ double relativeSquare(double error, float reference) {
   return error * error / (static_cast<double>(reference) * reference + kSteady);
 }
 
-// What one row of pixels adds. Rows are added up in their order, so that threads do not change the rounding.
+// What one row of pixels adds to the sums. Rows are added up in their order, so that threads do not
+// change the rounding.
 struct RowSums {
   double square = 0, squareRgb = 0, relative = 0;
   std::uint64_t differing = 0, equal = 0;
 };
 
-// `errors` receives the error e of each pixel.
+// Measures one row; `errors` receives the error e of each pixel.
 RowSums measureRow(const Image& test, const Image& reference, int y, double* errors) {
   const int channels = test.channels;
   const int colours = hasColour(test) ? 3 : channels;
@@ -62,7 +63,7 @@ RowSums measureRow(const Image& test, const Image& reference, int y, double* err
   return sums;
 }
 
-// The smallest error that at least 99.9 % of all do not exceed.
+// Returns the smallest error that at least 99.9 % of all do not exceed.
 double percentile999(std::vector<double> errors) {
   const auto rank = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() - errors.size() / 1000 - 1);
   std::nth_element(errors.begin(), rank, errors.end());

@@ -13,7 +13,7 @@ namespace {
 
 int radiusOf(const Kernel& kernel) { return static_cast<int>(kernel.size() / 2); }
 
-// Whole rows at a time, one weight after the other: a loop without branches that the compiler turns into vectors.
+// Adds whole rows, one weight after the other, in a loop without branches that the compiler turns into vectors.
 void addScaled(double* sum, const double* values, double weight, int count) {
   for (int x = 0; x < count; ++x) sum[x] += weight * values[x];
 }

@@ -6,7 +6,7 @@
 
 namespace umbrick {
 
-/// width x height values, row by row.
+/// A channel of width x height values, row by row.
 struct Plane {
   int width = 0;
   int height = 0;
@@ -19,16 +19,16 @@ struct Plane {
   }
 };
 
-/// Weights at offsets -radius to radius, an odd number of them.
+/// The weights of a filter at offsets -radius to radius, so an odd number of them.
 using Kernel = std::vector<double>;
 
-/// exp(-x^2 / (2 sigma^2)), not normalised.
+/// Returns the weights exp(-x^2 / (2 sigma^2)), not normalised.
 Kernel gaussian(double sigma, int radius);
-/// The kernel divided by its sum.
+/// Returns the kernel divided by the sum of its weights.
 Kernel normalised(Kernel kernel);
 
-/// out(x, y) = sum over i, j of alongX[i] alongY[j] in(x + i, y + j), on all threads; beyond the border the image
-/// continues with the border's values.
+/// Returns out(x, y) = sum over i, j of alongX[i] alongY[j] in(x + i, y + j), computed on all threads. Beyond its
+/// border the image continues with the values of the border.
 Plane filtered(const Plane& in, const Kernel& alongX, const Kernel& alongY);
 
 }  // namespace umbrick

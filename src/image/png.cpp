@@ -35,7 +35,8 @@ glm::dvec3 mapped(const glm::dvec3& colour, ToneMap toneMap) {
       return colour;
     case ToneMap::reinhard:
       return colour / (1 + glm::dot(colour, glm::dvec3(0.2126, 0.7152, 0.0722)));
-    // Narkowicz 2015, "ACES Filmic Tone Mapping Curve", a fit of the ACES reference curve, without its exposure of 0.6.
+    // The filmic curve is a fit of the ACES reference curve, Narkowicz 2015, "ACES Filmic Tone Mapping Curve", without
+    // its exposure of 0.6.
     case ToneMap::filmic:
       return colour * (2.51 * colour + 0.03) / (colour * (2.43 * colour + 0.59) + 0.14);
   }
@@ -46,7 +47,7 @@ std::uint8_t byteOf(double share) { return static_cast<std::uint8_t>(std::lround
 
 double finiteOr0(float value) { return std::isnan(value) ? 0 : std::clamp<double>(value, 0, 1e30); }
 
-// Rows from the top, straight alpha.
+// Encodes the image with rows from the top and straight alpha.
 std::vector<std::uint8_t> encoded(const Image& image, const PngOptions& options) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(image.pixels.size());
@@ -65,8 +66,8 @@ std::vector<std::uint8_t> encoded(const Image& image, const PngOptions& options)
   return bytes;
 }
 
-// libpng reports errors by a jump, which must not pass over anything with a destructor: what follows a setjmp below
-// holds plain data only.
+// libpng reports errors by a jump, which must not skip the destructor of anything. So what follows a setjmp below holds
+// plain data only.
 struct Report {
   std::array<char, 256> message{};
 };
@@ -168,7 +169,7 @@ void writePng(const std::filesystem::path& path, const Image& image, const PngOp
 
 Image readPng(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) readTextFile(path);  // says what is wrong with it
+  if (!std::filesystem::is_regular_file(path, ignored)) readTextFile(path);  // throws and says what is wrong with it
   const auto fail = [&](const std::string& reason) { throw IoError(path.string() + ": cannot read: " + reason); };
   const File file(std::fopen(path.c_str(), "rb"));
   if (!file) fail(std::strerror(errno));

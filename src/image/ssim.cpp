@@ -45,7 +45,7 @@ double meanSsim(const Image& test, const Image& reference, const glm::dvec3& bac
   for (int y = kRadius; y < test.height - kRadius; ++y)
     for (int x = kRadius; x < test.width - kRadius; ++x) {
       const double ma = meanA.row(y)[x], mb = meanB.row(y)[x];
-      // In this order a window that is equal in both gives 1 to the last bit.
+      // In this order of operations a window that is equal in both pictures gives 1 to the last bit.
       const double variances = (squareA.row(y)[x] - ma * ma) + (squareB.row(y)[x] - mb * mb);
       const double covariance = mixed.row(y)[x] - ma * mb;
       sum += (2 * ma * mb + kSteadyMean) * (2 * covariance + kSteadyVariance) /

@@ -61,7 +61,7 @@ glm::dvec3 fromHsv(const glm::dvec3& hsv) {
   return hsv.z * mix(glm::dvec3(1), full, hsv.y);
 }
 
-// Msh: magnitude, saturation angle and hue angle of a Lab colour.
+// Returns a Lab colour as Msh: magnitude, saturation angle and hue angle.
 glm::dvec3 toMsh(const glm::dvec3& lab) {
   const double magnitude = std::sqrt(lab.x * lab.x + lab.y * lab.y + lab.z * lab.z);
   const double saturation = magnitude > 0.001 ? std::acos(std::clamp(lab.x / magnitude, -1.0, 1.0)) : 0;
@@ -73,7 +73,7 @@ glm::dvec3 fromMsh(const glm::dvec3& msh) {
           msh.x * std::sin(msh.y) * std::sin(msh.z)};
 }
 
-// The hue with which a saturated colour meets an unsaturated one of magnitude `unsaturated`.
+// Returns the hue with which a saturated colour meets an unsaturated one of magnitude `unsaturated`.
 double adjustedHue(const glm::dvec3& msh, double unsaturated) {
   if (msh.x >= unsaturated - 0.1) return msh.z;
   const double spin = msh.y * std::sqrt(unsaturated * unsaturated - msh.x * msh.x) / (msh.x * std::sin(msh.y));
@@ -109,7 +109,7 @@ glm::dvec3 mixHsv(const glm::dvec3& from, const glm::dvec3& to, double t, bool w
 
 glm::dvec3 mixColours(const glm::dvec3& from, const glm::dvec3& to, double t, ColourSpace space) {
   if (space == ColourSpace::step) return to;
-  // The way into a colour space and back is rounded: its ends are not.
+  // The way into a colour space and back is rounded, but the ends must be exact.
   if (t <= 0) return from;
   if (t >= 1) return to;
   glm::dvec3 colour = mix(from, to, t);

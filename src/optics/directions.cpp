@@ -14,7 +14,7 @@ namespace umbrick {
 namespace {
 constexpr double kGoldenAngle = 2.39996322972865332;  // pi (3 - sqrt(5))
 
-// Two axes perpendicular to a unit vector. Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+// Returns two axes perpendicular to a unit vector. Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
 std::pair<glm::dvec3, glm::dvec3> tangents(const glm::dvec3& n) {
   const double sign = std::copysign(1.0, n.z);
   const double a = -1 / (sign + n.z), b = n.x * n.y * a;
@@ -32,7 +32,8 @@ glm::dvec3 around(const glm::dvec3& axis, const std::pair<glm::dvec3, glm::dvec3
   return glm::normalize(cosine * axis + sine * (std::cos(phi) * sides.first + std::sin(phi) * sides.second));
 }
 
-// How many directions each ring takes, at least one, so that they sum to about `count`: as its circumference.
+// Returns how many directions each ring takes, in proportion to its circumference: at least one each, and about
+// `count` together.
 std::vector<int> ringCounts(const std::vector<double>& sines, int count) {
   double sum = 0;
   for (const double sine : sines) sum += sine;
@@ -58,7 +59,7 @@ std::vector<QuadratureNode> gaussLegendre(int count) {
   if (count < 1) throw InvalidArgument("quadrature: expected at least 1 node, found " + std::to_string(count));
   std::vector<QuadratureNode> nodes(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
-    // Newton's iteration from the asymptotic place of the root; P by its three-term recurrence.
+    // Newton's iteration starts at the asymptotic place of the root. P comes from its three-term recurrence.
     double x = std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5)), slope = 1;
     for (int iteration = 0; iteration < 100; ++iteration) {
       double p = 1, before = 0;
@@ -82,7 +83,7 @@ std::vector<WeightedDirection> coneDirections(const glm::dvec3& axis, double ape
   const glm::dvec3 pole = unit(axis);
   if (aperture == 0 || count == 1) return {{pole, 1}};
   const auto sides = tangents(pole);
-  // A ring of the cone is about as far from the next as its directions are from each other.
+  // The number of rings makes a ring about as far from the next as its directions are from each other.
   const double area = 2 * std::numbers::pi * (1 - std::cos(aperture));
   const int rings = std::max(1, static_cast<int>(std::lround(aperture / std::sqrt(area / count))));
   const std::vector<QuadratureNode> nodes = gaussLegendre(rings);

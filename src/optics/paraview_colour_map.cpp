@@ -15,12 +15,13 @@ namespace {
 constexpr double kMostOpacity = 0.999;  // what counts as opaque: a medium of 6.9 optical depths per unit distance
 constexpr double kLevel = 0.5 / 255;    // pieces of a curve are off by less than half a level of an 8-bit display
 
-// A curve through nodes in ascending order, two at one place for a step: linear between them, constant beyond.
+// A curve through nodes in ascending order, two at one place for a step. It is linear between nodes and
+// constant beyond.
 template <typename T>
 struct Curve {
   std::vector<std::pair<double, T>> nodes;
 
-  // Limit from below and value at `x`.
+  // Returns the limit from below and the value at `x`.
   std::pair<T, T> sides(double x) const {
     const auto before = [](const auto& node, double at) { return node.first < at; };
     const auto after = [](double at, const auto& node) { return at < node.first; };
@@ -36,15 +37,15 @@ struct Curve {
   }
 };
 
-// Appends pieces of a curve from `x1` (already there) to `x2`, halved until `close(approximation, truth)` holds at
-// places within each. `at` takes [0, 1].
+// Appends pieces of a curve from `x1`, which is there already, to `x2`. Pieces are halved until `close(approximation,
+// truth)` holds at places within each. `at` takes [0, 1].
 template <typename T, typename At, typename Close>
 void appendPieces(Curve<T>& curve, double x1, double x2, const At& at, const Close& close) {
   struct Piece {
     double begin, end;
   };
   constexpr double kShortest = 1.0 / 1024;
-  std::vector<Piece> pending;  // the next one last
+  std::vector<Piece> pending;  // the next one is last
   for (int i = 3; i >= 0; --i) pending.push_back({0.25 * i, 0.25 * (i + 1)});
   while (!pending.empty()) {
     const auto [begin, end] = pending.back();
@@ -78,7 +79,7 @@ ColourSpace readColourSpace(const JsonValue& map) {
   return space == ColourSpace::hsv && wrap && wrap->number() != 0 ? ColourSpace::hsvWrap : space;
 }
 
-// Ascending "x" of the entry at `item`.
+// Reads "x" of the entry at `item`, which must not descend.
 template <typename T>
 double readPlace(const JsonValue& item, const std::vector<std::pair<double, T>>& before) {
   if (!before.empty() && item.number() < before.back().first)
@@ -90,7 +91,7 @@ double readShare(const JsonValue& item) {
   return item.number([](double share) { return share >= 0 && share <= 1; }, "a number from 0 to 1");
 }
 
-// A list of numbers that come in groups of four.
+// Reads a list of numbers that come in groups of four.
 std::vector<JsonValue> readGroups(const JsonValue& list, const char* group) {
   std::vector<JsonValue> items = list.items();
   if (items.empty() || items.size() % 4 != 0) list.failExpected(std::string("groups of 4 numbers (") + group + ")");
@@ -129,8 +130,8 @@ Curve<glm::dvec3> readColours(const JsonValue& map) {
   return curve;
 }
 
-// Opacity between two points of a vtkPiecewiseFunction, whose class comment defines midpoint and sharpness: the place
-// where the mean is reached, and how much the curve bends from linear (0) to a step (1) there.
+// Returns the opacity between two points of a vtkPiecewiseFunction, whose class comment defines midpoint and sharpness:
+// the place where the mean is reached, and how much the curve bends there, from linear (0) to a step (1).
 double mixOpacities(double from, double to, double t, double midpoint, double sharpness) {
   midpoint = std::clamp(midpoint, 1e-5, 1 - 1e-5);
   double s = t < midpoint ? 0.5 * t / midpoint : 0.5 + 0.5 * (t - midpoint) / (1 - midpoint);
@@ -138,7 +139,7 @@ double mixOpacities(double from, double to, double t, double midpoint, double sh
   if (sharpness < 0.01) return from + (to - from) * s;
   const double power = 1 + 10 * sharpness;
   s = s < 0.5 ? 0.5 * std::pow(2 * s, power) : 1 - 0.5 * std::pow(2 * (1 - s), power);
-  // Hermite, with flatter ends the sharper it is.
+  // The curve is Hermite's, with flatter ends the sharper it is.
   const double ss = s * s, sss = ss * s, slope = (1 - sharpness) * (to - from);
   const double opacity = (2 * sss - 3 * ss + 1) * from + (-2 * sss + 3 * ss) * to + (2 * sss - 3 * ss + s) * slope;
   return std::clamp(opacity, std::min(from, to), std::max(from, to));
@@ -172,7 +173,7 @@ Curve<double> readExtinction(const JsonValue& map, double first, double last) {
   for (std::size_t i = 1; i < points.size(); ++i) {
     const auto& [x1, from] = points[i - 1];
     const auto& [x2, to] = points[i];
-    // A step at the midpoint, of which pieces would make a ramp.
+    // The curve is a step at the midpoint, of which pieces would make a ramp.
     if (from.sharpness > 0.99 && x1 < x2) {
       const double middle = x1 + (x2 - x1) * from.midpoint;
       curve.nodes.emplace_back(middle, extinction(from.opacity, unitDistance));
@@ -192,7 +193,8 @@ Curve<double> readExtinction(const JsonValue& map, double first, double last) {
 
 }  // namespace
 
-// Fields that say nothing about colour or opacity (Creator, NanColor, Name, ...) are ParaView's own affair.
+// Fields that say nothing about colour or opacity (Creator, NanColor, Name and others) are ParaView's own
+// affair and ignored.
 TransferFunction readParaViewColourMap(const JsonValue& maps) {
   const std::vector<JsonValue> list = maps.items();
   if (list.size() != 1)

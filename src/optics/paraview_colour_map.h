@@ -6,8 +6,9 @@
 
 namespace umbrick {
 
-/// See parseTransferFunction for what becomes of colours and opacities. @param maps  the array of the file
-/// @throw IoError
+/// Reads a colour map; parseTransferFunction tells what becomes of colours and opacities.
+/// @param maps  the array of the file
+/// @throw IoError  it is not such an array
 TransferFunction readParaViewColourMap(const JsonValue& maps);
 
 }  // namespace umbrick

@@ -17,8 +17,8 @@ std::string print(double number) {
   return text;
 }
 
-// A place on an axis: between nodes `lower` and `upper`, weight of the upper one. Constant beyond the ends, at a step
-// its upper side.
+// A place on an axis, between nodes `lower` and `upper`, with the weight of the upper one. Beyond the ends the function
+// is constant, and at a step this is its upper side.
 struct Place {
   std::size_t lower = 0, upper = 0;
   double weight = 0;
@@ -33,8 +33,8 @@ Place locate(const std::vector<double>& axis, double at) {
   return {upper - 1, upper, (at - below) / (axis[upper] - below)};
 }
 
-// All places where a function that is linear between nodes can have its maximum over [low, high]: the ends, and the
-// nodes between them with both sides of each step. At `low` a step has only its upper side.
+// Returns all places where a function that is linear between nodes can have its maximum over [low, high]: the ends, and
+// the nodes between them with both sides of each step. At `low` a step has only its upper side.
 std::vector<Place> extremes(const std::vector<double>& axis, double low, double high) {
   if (axis.empty()) return {Place{}};
   std::vector<Place> places{locate(axis, low), locate(axis, high)};
@@ -70,7 +70,7 @@ void checkMedium(const Medium& medium, std::size_t index) {
     throw InvalidArgument(at + "sigma_t is " + print(medium.sigma_t) + ", must be 0 or more and finite");
 }
 
-// Nodes that count: of a run of equal ones the first and the last.
+// Returns the nodes that count: of several equal ones the first and the last.
 std::vector<std::size_t> nodesThatCount(const std::vector<double>& axis) {
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < axis.size(); ++i)
@@ -78,7 +78,7 @@ std::vector<std::size_t> nodesThatCount(const std::vector<double>& axis) {
   return kept;
 }
 
-// Rounded outwards, so that the range contains every control point.
+// Returns the ends of an axis rounded outwards, so that the range contains every control point.
 Range domain(const std::vector<double>& axis) {
   if (axis.empty()) return {0, 0};
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -137,7 +137,7 @@ bool TransferFunction::isTransparent(const Range& value, const Range& gradient) 
 
 double TransferFunction::majorant(const Range& value, const Range& gradient) const {
   if (value.empty() || (is2d() && gradient.empty())) return 0;
-  // Bilinear in each cell, so the maximum is at a corner of a cell or of the ranges.
+  // The function is bilinear in each cell, so its maximum is at a corner of a cell or of the ranges.
   const std::vector<Place> rows = extremes(gradients_, gradient.min, gradient.max);
   double largest = 0;
   for (const Place& v : extremes(values_, value.min, value.max))

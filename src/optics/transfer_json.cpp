@@ -13,7 +13,7 @@
 
 namespace umbrick {
 
-// Defined by the build: the text of assets/transfer/<name>, empty if there is none.
+// The build defines this function: it returns the text of assets/transfer/<name>, empty if there is none.
 std::string_view transferPresetText(std::string_view name);
 std::vector<std::string> transferPresetTextNames();
 
@@ -32,7 +32,7 @@ double readSigma(const JsonValue& value) {
   return value.number([](double sigma) { return sigma >= 0; }, "a number >= 0");
 }
 
-// Numbers of one axis, in order.
+// Reads the numbers of one axis, in order.
 std::vector<double> readAxis(const JsonValue& value) {
   std::vector<double> axis;
   for (const JsonValue& item : value.items()) {

@@ -12,7 +12,7 @@
 using namespace umbrick;
 using Catch::Contains;
 
-// Colours of the published table that lie between the ones that are stored.
+// The colours of the published table here lie between those that are stored.
 TEST_CASE("Magma is the published map to 2.2 of 255", "[image]") {
   const std::array<std::pair<int, glm::dvec3>, 6> published{{{0, {0.001462, 0.000466, 0.013866}},
                                                              {25, {0.078815, 0.054184, 0.211667}},
@@ -49,7 +49,7 @@ TEST_CASE("A colour-mapped image holds the map's colours, linear and opaque, and
   }
 }
 
-TEST_CASE("Colour maps refuse ranges that are none", "[image]") {
+TEST_CASE("Colour maps refuse an empty range", "[image]") {
   const Image values(2, 2, 1);
   CHECK_THROWS_WITH(colourMapped(Image(2, 2, 4), 0, 1), Contains("expected 1 channel, found 4"));
   CHECK_THROWS_WITH(colourMapped(values, 1, 1), Contains("expected a range of values"));

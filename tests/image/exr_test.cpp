@@ -67,18 +67,18 @@ TEST_CASE("Half EXR files round to 11 bits, clamp what is finite and keep depth 
   CHECK(read.at(1, 0)[0] == -65504);
   CHECK(std::isinf(read.at(2, 0)[0]));
   CHECK(std::isnan(read.at(3, 0)[0]));
-  for (int x = 4; x < 9; ++x)  // half of the last of 11 bits
+  for (int x = 4; x < 9; ++x)  // half a unit in the last of 11 bits
     CHECK(read.at(x, 3)[1] == Approx(colour.at(x, 3)[1]).epsilon(1.0 / 2048));
   CHECK(file.layers.at(1).name == "Z");
   CHECK(file.layers.at(1).image.at(4, 4)[0] == 100'000.125f);
 }
 
-// Read from the bytes, since writer and reader could agree on a mirrored file.
+// The bytes of the file are read, since writer and reader could agree on a mirrored file.
 TEST_CASE("The bottom row of an image is the last scan line of the file", "[image]") {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "a.exr";
   Image image(1, 2, 1);
-  image.at(0, 0)[0] = 1.5f;  // bottom
+  image.at(0, 0)[0] = 1.5f;  // bottom row
   image.at(0, 1)[0] = 2.5f;
   writeExr(path, {{"V", image}}, {ExrPixel::float32, {}});
   const std::string bytes = readBytes(path);
@@ -117,7 +117,7 @@ TEST_CASE("Missing, truncated and foreign EXR files are named", "[image]") {
     std::ofstream(cut, std::ios::binary) << bytes.substr(0, length);
     CHECK_THROWS_AS(readExr(cut), IoError);
   }
-  // Damage: an error of ours or other pixels, never anything else.
+  // A damaged file gives an error of ours or other pixels, never anything else.
   std::mt19937 random(4);
   for (int i = 0; i < 300; ++i) {
     std::string damaged = bytes;

@@ -31,8 +31,8 @@ Image randomPicture(int width, int height, unsigned seed) {
 
 }  // namespace
 
-// The numbers are of the authors' Python program (NVlabs/flip, python/flip_api.py, "compute_ldrflip") carried over to
-// double precision with SciPy's correlate for its 2D filters, on these pictures encoded as sRGB.
+// The numbers were computed with the authors' Python program (NVlabs/flip, python/flip_api.py, "compute_ldrflip"),
+// carried over to double precision with SciPy's correlate for its 2D filters, on these pictures encoded as sRGB.
 TEST_CASE("FLIP has the values of its authors' program", "[image]") {
   struct Expected {
     Formula test, reference;
@@ -53,7 +53,7 @@ TEST_CASE("FLIP has the values of its authors' program", "[image]") {
     CAPTURE(static_cast<int>(expected.test), expected.pixelsPerDegree);
     const Image map = flipMap(formulaPicture(expected.test), formulaPicture(expected.reference), glm::dvec3(0),
                               expected.pixelsPerDegree);
-    const double tolerance = 1e-7;  // a map is float: 3e-8, and their constants have nine digits
+    const double tolerance = 1e-7;  // a map is of floats: 3e-8, and the authors' constants have nine digits
     CHECK(meanOf(map) == Approx(expected.mean).margin(tolerance));
     CHECK(*std::max_element(map.pixels.begin(), map.pixels.end()) == Approx(expected.most).margin(tolerance));
     CHECK(map.at(20, 30)[0] == Approx(expected.inside).margin(tolerance));
@@ -79,7 +79,7 @@ TEST_CASE("FLIP of a picture and itself is 0, and neither order nor direction ma
     CHECK(back.pixels[i] == Approx(map.pixels[i]).margin(1e-6));
 }
 
-// The scale ends at the distance of green to blue by definition.
+// By definition the scale ends at the distance of green to blue.
 TEST_CASE("FLIP is in [0, 1], and green beside blue is 1", "[image]") {
   const auto flip = [](const glm::vec3& a, const glm::vec3& b) {
     return flipMap(solid(1, 1, a.r, a.g, a.b), solid(1, 1, b.r, b.g, b.b)).pixels[0];
@@ -97,8 +97,9 @@ TEST_CASE("FLIP is in [0, 1], and green beside blue is 1", "[image]") {
   }
 }
 
-// Without features FLIP is the distance of two colours: CIELAB of the primaries as tabulated (sRGB, D65), Hunt's factor
-// L / 100, HyAB; grey c has L = 116 cbrt(c) - 16. The table's white differs in the fourth digit from the paper's.
+// Without features FLIP is the distance of two colours: CIELAB of the primaries as tabulated (sRGB, D65), with Hunt's
+// factor L / 100, and HyAB. A grey c has L = 116 cbrt(c) - 16. The white of the table differs in the fourth digit
+// from the paper's.
 TEST_CASE("FLIP of two greys has its closed form", "[image]") {
   const double green = 0.877347, blue = 0.322970;
   const double largest = std::pow(
@@ -111,7 +112,7 @@ TEST_CASE("FLIP of two greys has its closed form", "[image]") {
   CHECK(flip(1, 0) == Approx(0.95 + 0.05 * (most - 0.4 * largest) / (0.6 * largest)).epsilon(1e-3));
 }
 
-TEST_CASE("Fine detail differs less to FLIP the farther away it is", "[image]") {
+TEST_CASE("Fine detail differs less to FLIP the farther away it is seen", "[image]") {
   Image detail(40, 40, 4);
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x)
@@ -141,7 +142,7 @@ TEST_CASE("FLIP compares what a screen shows", "[image]") {
   CHECK(flip(three, black) == flip(solid(3, 3, 1, 1, 1), solid(3, 3, 0, 0, 0)));
 }
 
-TEST_CASE("FLIP refuses what it cannot look at", "[image]") {
+TEST_CASE("FLIP refuses pictures that it cannot compare, and options out of range", "[image]") {
   const Image a(4, 3, 4);
   CHECK_THROWS_WITH(flipMap(a, Image(3, 4, 4)), Contains("4 x 3 beside 3 x 4 pixels"));
   CHECK_THROWS_WITH(flipMap(a, Image(4, 3, 3)), Contains("4 beside 3 channels"));

@@ -10,7 +10,7 @@ namespace umbrick {
 
 enum class Formula { smooth, shifted, checks, waves, noise, flat };
 
-/// 64 x 48 pixels, linear RGB rounded to float, alpha 1; y counts from row 0.
+/// Returns 64 x 48 pixels of linear RGB, rounded to float, with alpha 1; y counts from row 0.
 inline Image formulaPicture(Formula formula) {
   Image image(64, 48, 4);
   const auto put = [&](int x, int y, double r, double g, double b) {
@@ -27,7 +27,7 @@ inline Image formulaPicture(Formula formula) {
           put(x, y, 0.5 + 0.4 * std::sin(0.21 * x + 0.05 * y), 0.5 + 0.4 * std::sin(0.13 * y + 1),
               0.5 + 0.4 * std::cos(0.17 * x - 0.11 * y));
           break;
-        case Formula::shifted:  // smooth one pixel to the right, its green differently
+        case Formula::shifted:  // as smooth, but one pixel to the right and with another green
           put(x, y, 0.5 + 0.4 * std::sin(0.21 * (x - 1) + 0.05 * y), 0.5 + 0.4 * std::sin(0.13 * y + 1.3),
               0.5 + 0.4 * std::cos(0.17 * (x - 1) - 0.11 * y));
           break;
@@ -50,7 +50,7 @@ inline Image formulaPicture(Formula formula) {
   return image;
 }
 
-/// `width` x `height` pixels of one linear premultiplied colour.
+/// Returns `width` x `height` pixels of one linear premultiplied colour.
 inline Image solid(int width, int height, float r, float g, float b, float a = 1) {
   Image image(width, height, 4);
   for (std::size_t i = 0; i < image.pixels.size(); i += 4) {

@@ -27,7 +27,7 @@ Image row(std::vector<float> values) {
   return image;
 }
 
-// The errors 1 to `count`, each once, in an order without order, against 0.
+// Returns an image with the errors 1 to `count` against 0, each once, in no obvious order.
 Image everyErrorUpTo(int width, int height) {
   Image image(width, height, 1);
   std::iota(image.pixels.begin(), image.pixels.end(), 1.0f);
@@ -68,7 +68,7 @@ TEST_CASE("A constant offset of the colour is its own RMSE, maximum and percenti
   CHECK(difference.relMse == Approx((relative(0.25) + relative(0.5) + relative(0.125)) / 3));
 }
 
-TEST_CASE("Alpha counts in RMSE, maximum and percentile, not where only colour does", "[image]") {
+TEST_CASE("Alpha counts in RMSE, maximum and percentile, and not where only colour does", "[image]") {
   const ImageDifference difference =
       differenceOf(solid(12, 12, 0.25f, 0.25f, 0.25f, 0.75f), solid(12, 12, 0.25f, 0.25f, 0.25f));
   CHECK(difference.rmse == 0.125);  // sqrt(0.25^2 / 4)
@@ -76,7 +76,7 @@ TEST_CASE("Alpha counts in RMSE, maximum and percentile, not where only colour d
   CHECK(difference.p999 == 0.25);
   CHECK(difference.rmseRgb == 0);
   CHECK(difference.relMse == 0);
-  CHECK(difference.flip == 0);  // before black
+  CHECK(difference.flip == 0);  // in front of black
   DifferenceOptions white;
   white.background = glm::dvec3(1);
   CHECK(differenceOf(solid(12, 12, 0.25f, 0.25f, 0.25f, 0.75f), solid(12, 12, 0.25f, 0.25f, 0.25f), white).flip > 0.1);
@@ -102,7 +102,7 @@ TEST_CASE("The largest error is found, and the first of several", "[image]") {
   CHECK(difference.maxPixel == glm::ivec2(20, 5));
 }
 
-TEST_CASE("Errors scale with the images, relative errors hardly change where the reference is bright", "[image]") {
+TEST_CASE("Errors scale with the images, and relative errors hardly change where the reference is bright", "[image]") {
   const Image a = formulaPicture(Formula::shifted), b = formulaPicture(Formula::smooth);
   const ImageDifference one = differenceOf(a, b), four = differenceOf(scaled(a, 4), scaled(b, 4));
   CHECK(four.rmse == 4 * one.rmse);  // a power of two rounds nowhere
@@ -119,7 +119,7 @@ TEST_CASE("relMSE has its steady value where the reference is black", "[image]")
   CHECK(differenceOf(row({0, 0}), row({0.5f, 0})).relMse == Approx(0.5 * 0.25 / 0.26));
 }
 
-TEST_CASE("Only relMSE asks which image is the reference", "[image]") {
+TEST_CASE("Only for relMSE it matters which image is the reference", "[image]") {
   const Image a = formulaPicture(Formula::noise), b = formulaPicture(Formula::smooth);
   const ImageDifference there = differenceOf(a, b), back = differenceOf(b, a);
   CHECK(there.rmse == back.rmse);
@@ -165,7 +165,7 @@ TEST_CASE("A value that is finite in one image only is never averaged away", "[i
       CHECK(std::isinf(difference.relMse));
       CHECK(difference.maxPixel == glm::ivec2(7, 9));
       CHECK(difference.nonFiniteDiffering == 1);
-      CHECK(difference.p999 == 0);  // one of 3072
+      CHECK(difference.p999 == 0);  // one pixel of 3072
       CHECK(std::isfinite(*difference.ssim));
       CHECK(std::isfinite(*difference.flip));
     }
@@ -177,7 +177,7 @@ TEST_CASE("A value that is finite in one image only is never averaged away", "[i
   CHECK(differenceOf(row({most}), row({-most})).rmse == 2.0 * most);
 }
 
-TEST_CASE("What has no colour, or is smaller than a window, has no SSIM or FLIP", "[image]") {
+TEST_CASE("Images without colour, or smaller than a window, have no SSIM or FLIP", "[image]") {
   const ImageDifference single = differenceOf(Image(20, 20, 1), Image(20, 20, 1));
   CHECK(!single.rmseRgb);
   CHECK(!single.ssim);

@@ -29,7 +29,7 @@ Image roundTrip(std::initializer_list<float> rgba, const PngOptions& options = {
 }
 }  // namespace
 
-// IEC 61966-2-1, and values of it that are in every table.
+// The values of IEC 61966-2-1 are those that are in every table.
 TEST_CASE("The sRGB curve has its standard's values and is its own inverse", "[image]") {
   CHECK(linearToSrgb(0) == 0);
   CHECK(linearToSrgb(1) == Approx(1).epsilon(1e-15));
@@ -39,7 +39,7 @@ TEST_CASE("The sRGB curve has its standard's values and is its own inverse", "[i
   for (int i = 0; i <= 255; ++i) CHECK(linearToSrgb(srgbToLinear(i / 255.0)) == Approx(i / 255.0).epsilon(1e-6));
 }
 
-// Every image that 8 bits can hold must survive: alpha and colour together.
+// Every image that 8 bits can hold must survive, alpha and colour together.
 TEST_CASE("A PNG read and written again is the same", "[image]") {
   const TemporaryFolder folder;
   std::mt19937 random(2);
@@ -70,7 +70,7 @@ TEST_CASE("Row 0 of an image is the bottom of the picture", "[image]") {
 TEST_CASE("Colours over alpha are un-premultiplied before they are encoded", "[image]") {
   const Image read = roundTrip({0.1f, 0.2f, 0.0f, 0.5f});
   const double alpha = 128 / 255.0;              // nearest of 8 bits
-  const double level = 1 / 255.0 * 2.4 / 1.055;  // half a level of the steepest part of the curve, and alpha's
+  const double level = 1 / 255.0 * 2.4 / 1.055;  // half a level of the steepest part of the curve, and of alpha
   CHECK(read.pixels[3] == Approx(alpha));
   CHECK(read.pixels[0] == Approx(alpha * 0.2).margin(level / 2));
   CHECK(read.pixels[1] == Approx(alpha * 0.4).margin(level / 2));
@@ -91,7 +91,7 @@ TEST_CASE("Exposure and tone maps act on linear colour over its own alpha", "[im
   CHECK(filmic(0.5f) < filmic(0.8f));
 }
 
-TEST_CASE("What no picture should hold is written as something that a picture can", "[image]") {
+TEST_CASE("Values that no picture should hold are written as something that a picture can hold", "[image]") {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   const Image read = roundTrip({nan, infinity, -1, 2});
   CHECK(read.pixels[0] == 0);

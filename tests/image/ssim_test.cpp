@@ -12,13 +12,13 @@
 using namespace umbrick;
 using Catch::Contains;
 
-// The numbers are of scikit-image 0.19.3: structural_similarity(reference, test, gaussian_weights=True, sigma=1.5,
+// The numbers are from scikit-image 0.19.3: structural_similarity(reference, test, gaussian_weights=True, sigma=1.5,
 // use_sample_covariance=False, data_range=1) of the pictures' Rec. 709 luminance encoded as sRGB.
 TEST_CASE("SSIM has the values of scikit-image", "[image]") {
   const auto ssim = [](Formula test, Formula reference) {
     return meanSsim(formulaPicture(test), formulaPicture(reference));
   };
-  // Both compute in double precision; variances as differences of squares lose four digits of sixteen.
+  // Both compute in double precision. Variances as differences of squares lose four digits of sixteen.
   const double tolerance = 1e-11;
   CHECK(ssim(Formula::shifted, Formula::smooth) == Approx(0.957192168452).margin(tolerance));
   CHECK(ssim(Formula::waves, Formula::checks) == Approx(-0.462695835564).margin(tolerance));
@@ -50,7 +50,7 @@ TEST_CASE("SSIM compares what a screen shows", "[image]") {
   CHECK(meanSsim(solid(11, 11, nan, -1, 0), solid(11, 11, 0, 0, 0)) == 1);
 }
 
-TEST_CASE("SSIM refuses what it cannot look at", "[image]") {
+TEST_CASE("SSIM refuses pictures that it cannot compare, and a background out of range", "[image]") {
   const Image a(11, 11, 4);
   CHECK_THROWS_WITH(meanSsim(a, Image(12, 11, 4)), Contains("11 x 11 beside 12 x 11 pixels"));
   CHECK_THROWS_WITH(meanSsim(a, Image(11, 11, 3)), Contains("4 beside 3 channels"));

@@ -39,15 +39,15 @@ TEST_CASE("Directions of a cone lie in it, share it and balance around its axis"
           along += weight * glm::dot(direction, axis);
         }
         CHECK(sum == Approx(1).epsilon(1e-13));
-        // The mean cosine over the solid angle is (1 + cos aperture) / 2: any number of rings is exact for it, and so
+        // The mean cosine over the solid angle is (1 + cos aperture) / 2. Any number of rings is exact for it, and so
         // is a spiral, whose cosines are the middles of equal steps.
         if (count > 1) CHECK(along == Approx((1 + std::cos(aperture)) / 2).margin(1e-13));
       }
     }
 }
 
-// Smooth on the cone: what a homogeneous medium of unit depth does to light, exp(-1 / cos). The closed form is by
-// substitution an exponential integral; 64 Gauss nodes in the cosine have it to rounding.
+// The integrand is smooth on the cone: what a homogeneous medium of unit depth does to light, exp(-1 / cos). By
+// substitution the closed form is an exponential integral; 64 Gauss nodes in the cosine have it to rounding.
 TEST_CASE("The mean over a cone converges faster than any power of the rings", "[optics]") {
   const double aperture = 1.0, cosine = std::cos(aperture);
   double exact = 0;
@@ -59,13 +59,13 @@ TEST_CASE("The mean over a cone converges faster than any power of the rings", "
     for (const auto& [direction, weight] : coneDirections({0, 0, 1}, aperture, count))
       sum += weight * std::exp(-1 / direction.z);
     const double error = std::abs(sum - exact);
-    CHECK(error < std::max(before / 4, 1e-15));  // a method of order one in the rings gives a half
+    CHECK(error < std::max(before / 4, 1e-15));  // a set whose error were of order one in the rings would give a half
     before = error;
   }
 }
 
 TEST_CASE("Random directions of a cone are uniform in its solid angle", "[optics]") {
-  // A lattice of the unit square maps to the mean cosine.
+  // A lattice of the unit square is mapped to directions, whose mean cosine is known.
   const double aperture = 1.2;
   double along = 0;
   for (int i = 0; i < 64; ++i)
@@ -73,7 +73,7 @@ TEST_CASE("Random directions of a cone are uniform in its solid angle", "[optics
   CHECK(along == Approx((1 + std::cos(aperture)) / 2).epsilon(1e-12));
 }
 
-TEST_CASE("Impossible directions are refused", "[optics]") {
+TEST_CASE("An axis of no length, an aperture out of range and a count of 0 are refused", "[optics]") {
   CHECK_THROWS_AS(coneDirections({0, 0, 0}, 1, 4), InvalidArgument);
   CHECK_THROWS_AS(coneDirections({0, 0, 1}, -1, 4), InvalidArgument);
   CHECK_THROWS_AS(coneDirections({0, 0, 1}, 1, 0), InvalidArgument);

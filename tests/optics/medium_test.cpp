@@ -8,7 +8,8 @@
 
 using namespace umbrick;
 
-// The promise is 1e-6 from 1e-8 to 1e4; double precision is the truth, as its own error is a billion times smaller.
+// The promise is 1e-6 for x from 1e-8 to 1e4. Double precision is the truth, as its own error is a billion
+// times smaller.
 TEST_CASE("Opacity and slab factor do not cancel for thin or overflow for thick slabs", "[optics]") {
   double worst = 0;
   for (int i = 0; i <= 240'000; ++i) {
@@ -30,7 +31,8 @@ TEST_CASE("Opacity rises with optical depth across the switch of formulas", "[op
   float x = 0.4999f;
   while (x < 0.5001f) {
     const float next = std::nextafter(x, 1.0f);
-    // Three roundings of numbers below 1 (6e-8 each at most): the exponential, the difference and the series.
+    // The limit is three roundings of numbers below 1 (6e-8 each at most): the exponential, the difference
+    // and the series.
     REQUIRE(oneMinusExp(next) >= oneMinusExp(x) - 1.8e-7f);
     x = next;
   }
@@ -56,14 +58,14 @@ TEST_CASE("Cone phase integrates to one over the sphere", "[optics]") {
       const double cosAngle = -1 + 2 * (i + 0.5) / steps;
       integral += 2 * std::numbers::pi * 2 / steps * conePhase(static_cast<float>(cosAngle), aperture);
     }
-    // The one step, and the rounding of float near cos = 1, where numbers are 6e-8 apart.
+    // The error is the one step, and the rounding of float near cos = 1, where numbers are 6e-8 apart.
     const double share = 1 - std::cos(static_cast<double>(aperture));
     CHECK(integral == Approx(1).margin((2.0 / steps + 1.2e-7) / share));
   }
 }
 
 TEST_CASE("A narrow cone keeps its solid angle", "[optics]") {
-  // pi a^2 to second order; 1 - cos(1e-4) in float would be 0 or 1.2 times it.
+  // The solid angle is pi a^2 to second order; 1 - cos(1e-4) in float would be 0 or 1.2 times it.
   CHECK(coneSolidAngle(1e-4f) == Approx(3.14159265 * 1e-8).epsilon(1e-6));
   CHECK(coneSolidAngle(1.57079633f) == Approx(2 * 3.14159265).epsilon(1e-6));
   CHECK(coneRadius(2.0f, 0.7853982f) == Approx(2).epsilon(1e-6));

@@ -16,7 +16,7 @@ const double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 }  // namespace
 
-TEST_CASE("A transfer function is linear between points and constant beyond them", "[optics]") {
+TEST_CASE("A transfer function is linear between points, and constant beyond them", "[optics]") {
   const TransferFunction f({{10, {{0, 0.2, 1}, 0}}, {20, {{1, 0.4, 0}, 4}}});
   CHECK(f(-5) == f(10));
   CHECK(f(99) == f(20));
@@ -35,20 +35,20 @@ TEST_CASE("Two equal values make a step that belongs to its upper side", "[optic
   const TransferFunction threshold({{5, {kGrey, 0}}, {5, {kGrey, 2}}});
   CHECK(threshold(4.999).sigma_t == 0);
   CHECK(threshold(5).sigma_t == 2);
-  // Of more than two equal values the ones between have no place to hold.
+  // Of more than two equal values the ones in the middle have no place where they hold.
   CHECK(TransferFunction({{5, {kGrey, 0}}, {5, {kGrey, 7}}, {5, {kGrey, 2}}}) == threshold);
 }
 
 TEST_CASE("The falling side of a step counts in every range that comes from below", "[optics]") {
   const TransferFunction f({{0, {kGrey, 0}}, {5, {kGrey, 3}}, {5, {kGrey, 0}}});
-  CHECK(f.majorant({0, 5}) == Approx(3));  // the supremum: never reached
+  CHECK(f.majorant({0, 5}) == Approx(3));  // the supremum, which is never reached
   CHECK(f.isTransparent({5, 9}));
   CHECK_FALSE(f.isTransparent({std::nextafter(5.0f, 0.0f), 9}));
   CHECK(f.isTransparent({-kInfinity, 0}));
-  CHECK(f.isTransparent(Range{}));  // nothing there
+  CHECK(f.isTransparent(Range{}));  // nothing is there
 }
 
-// Against a fine scan of the range and both sides of each control point: none exceeds the majorant, and one reaches it.
+// A fine scan takes the range and both sides of each control point: no value exceeds the majorant, and one reaches it.
 TEST_CASE("The majorant bounds the function tightly over random ranges", "[optics]") {
   std::mt19937 random(3);
   for (int repeat = 0; repeat < 200; ++repeat) {
@@ -69,8 +69,8 @@ TEST_CASE("The majorant bounds the function tightly over random ranges", "[optic
   }
 }
 
-TEST_CASE("A 2D function is bilinear in value and gradient, constant beyond its lattice", "[optics]") {
-  // Value fastest: rows are gradients.
+TEST_CASE("A 2D function is bilinear in value and gradient, and constant beyond its lattice", "[optics]") {
+  // The value is fastest, so rows are gradients.
   const TransferFunction f({0, 10}, {0, 2}, {{kGrey, 0}, {kGrey, 1}, {kGrey, 2}, {kGrey, 5}});
   REQUIRE(f.is2d());
   CHECK(f(0, 0).sigma_t == 0);
@@ -108,7 +108,7 @@ TEST_CASE("A domain is rounded outwards to float", "[optics]") {
   CHECK(domain.min == Approx(0.1).epsilon(2e-7));
 }
 
-TEST_CASE("Impossible transfer functions are refused by name", "[optics]") {
+TEST_CASE("Impossible transfer functions are refused, and the message names what is wrong", "[optics]") {
   using Points = std::vector<TransferFunction::Point>;
   CHECK_THROWS_WITH(TransferFunction(Points{}), Catch::Contains("no values"));
   CHECK_THROWS_WITH(TransferFunction(Points{{2, {}}, {1, {}}}), Catch::Contains("1 follows 2"));

@@ -63,7 +63,7 @@ TEST_CASE("Malformed transfer functions are refused with line, column and field"
                     Contains("albedo: expected an array of 2, found an array of 1"));
 }
 
-TEST_CASE("Presets and files are found by name, and others are told apart", "[optics]") {
+TEST_CASE("Presets and files are found by name, and other names are refused", "[optics]") {
   const std::vector<std::string> presets = transferPresets();
   for (const char* name : {"ct-bone", "ct-head", "fire", "grey-ramp", "smoke"})
     CHECK(std::find(presets.begin(), presets.end(), name) != presets.end());
@@ -86,7 +86,7 @@ TEST_CASE("ParaView colours become linear albedo and opacities extinction per un
       "ScalarOpacityUnitDistance": 2)"));
   CHECK(f(0).albedo.r == Approx(0.21404114));  // IEC 61966-2-1 of 0.5
   CHECK(f(10).sigma_t == Approx(std::log(4.0) / 2));
-  // Within a level of 8 bits of the curves that ParaView draws, everywhere.
+  // Everywhere the function is within a level of 8 bits of the curves that ParaView draws.
   for (double value = 0; value <= 10; value += 0.013) {
     CHECK(linearToSrgb(f(value).albedo.g) == Approx(value / 10).margin(1 / 255.0));
     CHECK(1 - std::exp(-2 * f(value).sigma_t) == Approx(0.075 * value).margin(1 / 255.0));
@@ -100,7 +100,7 @@ TEST_CASE("ParaView's missing opacities rise to the most opaque medium", "[optic
   CHECK(1 - std::exp(-f(0.5).sigma_t) == Approx(0.5));
 }
 
-// Independent: computed with vtkColorTransferFunction of VTK 9.1.
+// The colours were computed independently, with vtkColorTransferFunction of VTK 9.1.
 TEST_CASE("ParaView's colour spaces give VTK's colours", "[optics]") {
   struct Expected {
     const char* space;
@@ -119,7 +119,7 @@ TEST_CASE("ParaView's colour spaces give VTK's colours", "[optics]") {
   for (const Expected& e : table) {
     const TransferFunction f = parse(paraView(points + e.space));
     INFO(e.space << " at " << e.value);
-    for (int c = 0; c < 3; ++c)  // one level of 8 bits: what the pieces are chosen for
+    for (int c = 0; c < 3; ++c)  // one level of 8 bits, for which the pieces are chosen
       CHECK(linearToSrgb(f(e.value).albedo[c]) == Approx(e.display[c]).margin(1 / 255.0));
   }
 }
@@ -131,13 +131,13 @@ TEST_CASE("ParaView's hues go the short way round when they wrap", "[optics]") {
     const glm::dvec3 c = f(0.3).albedo;
     return glm::dvec3(linearToSrgb(c.r), linearToSrgb(c.g), linearToSrgb(c.b));
   };
-  for (int c = 0; c < 3; ++c) {  // VTK 9.1
+  for (int c = 0; c < 3; ++c) {  // from VTK 9.1
     CHECK(display("1")[c] == Approx(glm::dvec3(0.81000, 0.24303, 0.10350)[c]).margin(1 / 255.0));
     CHECK(display("0")[c] == Approx(glm::dvec3(0.10527, 0.81000, 0.10350)[c]).margin(1 / 255.0));
   }
 }
 
-// Computed with vtkPiecewiseFunction of VTK 9.1.
+// The opacities were computed with vtkPiecewiseFunction of VTK 9.1.
 TEST_CASE("Midpoint and sharpness bend the opacity as in VTK", "[optics]") {
   const TransferFunction f = parse(paraView(
       R"("RGBPoints": [0, 0, 0, 0, 1, 1, 1, 1], "ColorSpace": "RGB", "Points": [0, 0.1, 0.3, 0.4, 1, 0.9, 0.5, 0])"));
@@ -154,7 +154,7 @@ TEST_CASE("A sharp ParaView opacity is a step at its midpoint", "[optics]") {
   CHECK(f.isTransparent({0, 0.2499f}));
 }
 
-TEST_CASE("What ParaView can say and we cannot is refused", "[optics]") {
+TEST_CASE("Colour maps of ParaView are refused that are malformed or that we cannot represent", "[optics]") {
   CHECK_THROWS_WITH(parse("[]"), Contains("expected one colour map, found 0"));
   CHECK_THROWS_WITH(parse(R"([{"Name": "a", "IndexedColors": [1, 1, 1]}])"), Contains("[0]: the field 'RGBPoints'"));
   CHECK_THROWS_WITH(parse(paraView(R"("RGBPoints": [0, 0, 0, 0, 1])")),

@@ -17,14 +17,15 @@ TEST_CASE("Stretches join without gaps, and steps have none", "[optics]") {
   CHECK(std::isinf(stretches.front().lower));
   CHECK(std::isinf(stretches.back().upper));
   for (std::size_t i = 1; i < stretches.size(); ++i) CHECK(stretches[i].lower == stretches[i - 1].upper);
-  // Below 1; from 1 to the lower side of the step; from its upper side to 5; above.
+  // The stretches are: below 1; from 1 to the lower side of the step; from its upper side to 5; above.
   const std::pair<std::size_t, std::size_t> points[]{{0, 0}, {0, 1}, {2, 3}, {3, 3}};
   for (std::size_t i = 0; i < 4; ++i) CHECK(std::pair(stretches[i].low, stretches[i].high) == points[i]);
   CHECK(axisStretches({3}).size() == 2);
   CHECK(axisStretches({3, 3}).size() == 2);
 }
 
-// What a shader does: pick the stretch whose number is the count of ends at or below the value, and interpolate.
+// A shader does the same: it takes the stretch whose number is the count of ends at or below the value,
+// and interpolates.
 TEST_CASE("Interpolation within stretches is the function, at steps its upper side", "[optics]") {
   std::mt19937 random(5);
   for (int trial = 0; trial < 200; ++trial) {
@@ -45,7 +46,7 @@ TEST_CASE("Interpolation within stretches is the function, at steps its upper si
   }
 }
 
-// Held against a sum over 20 000 parts.
+// The truth is a sum over 20 000 parts.
 TEST_CASE("Light of a piece comes from where its centroid says", "[optics]") {
   const auto largestError = [](double mostTau) {
     double largest = 0;
@@ -65,11 +66,11 @@ TEST_CASE("Light of a piece comes from where its centroid says", "[optics]") {
       }
     return largest;
   };
-  // The error that the header states.
+  // This is the error that the header states.
   CHECK(largestError(1e4) < 0.009);
-  // Nothing scatters, or next to nothing: in the middle.
+  // If nothing scatters, or next to nothing, the centroid is in the middle.
   CHECK(scatteringCentroid(0, 0, 0, 0) == Approx(0.5));
   CHECK(scatteringCentroid(1e-12f, 1e-12f, 1e-12f, 1e-12f) == Approx(0.5));
-  // Extinction as large as a renderer's bound: at the very front.
+  // With extinction as large as a renderer's bound, it is at the very front.
   CHECK(scatteringCentroid(1e30f, 1e30f, 1e30f, 1) == Approx(0).margin(1e-6));
 }

@@ -10,8 +10,9 @@
 
 namespace umbrick {
 
-/// One layer of a file. The main layer has an empty name; its channels are R, G, B, A. A layer of one channel is stored
-/// as the channel `name` ("depth" as Z when it is called "Z"); of several as `name.R`, `name.G`, ...
+/// One layer of a file. The main layer has an empty name, and its channels are R, G, B, A. A layer of one channel
+/// is stored as the channel `name` ("depth" as Z when it is called "Z"), one of several channels as `name.R`,
+/// `name.G`, and so on.
 struct ImageLayer {
   std::string name;
   Image image;
@@ -20,8 +21,8 @@ struct ImageLayer {
 enum class ExrPixel { half, float32 };
 
 struct ExrOptions {
-  ExrPixel pixel = ExrPixel::half;              // "Z" is always float32
-  std::map<std::string, std::string> metadata;  // string attributes of the header, e.g. {"umbrick.scene", json}
+  ExrPixel pixel = ExrPixel::half;              // of all layers but "Z", which is always float32
+  std::map<std::string, std::string> metadata;  // string attributes of the header, such as {"umbrick.scene", json}
 };
 
 struct ExrFile {
@@ -29,13 +30,13 @@ struct ExrFile {
   std::map<std::string, std::string> metadata;
 };
 
-/// Writes all layers, of one size, as one part; scan lines from the top as the format wants. Nothing half-written.
-/// Half clamps finite values beyond 65504 to it.
-/// @throw InvalidArgument  no layers, sizes that differ, two layers of one name
-/// @throw IoError          names the file and what failed
+/// Writes all layers, which have one size, as one part with scan lines from the top as the format wants. The file is
+/// written whole or not at all. Half floats clamp finite values beyond 65504 to it.
+/// @throw InvalidArgument  no layers, sizes that differ, or two layers of one name
+/// @throw IoError          the file could not be written; the message names it and what failed
 void writeExr(const std::filesystem::path& path, const std::vector<ImageLayer>& layers, const ExrOptions& options = {});
 
-/// @throw IoError  missing, truncated, or not an EXR file that holds scan lines
+/// @throw IoError  the file is missing, truncated, or not an EXR file that holds scan lines
 ExrFile readExr(const std::filesystem::path& path);
 
 }  // namespace umbrick

@@ -7,12 +7,14 @@
 
 namespace umbrick {
 
-/// Pixels per degree of visual angle, 0.7 m from a display that is 0.7 m and 3840 pixels wide: 67.02.
+/// Pixels per degree of visual angle, as seen from 0.7 m at a display that is 0.7 m wide and has 3840 pixels
+/// across: 67.02.
 inline constexpr double kFlipPixelsPerDegree = 3840 * 3.14159265358979323846 / 180;
 
-/// The error of every pixel in [0, 1], 1 channel; its mean is the FLIP of two pictures.
+/// Returns the error of every pixel in [0, 1], as 1 channel. Its mean is the FLIP of the two pictures.
 ///
-/// Both are shown: over `background`, clamped to [0, 1] (no tone mapping), with NaN as 0. Then, per pixel,
+/// Both pictures are taken as a screen shows them: over `background`, clamped to [0, 1] without tone mapping, NaN as 0.
+/// Then, per pixel,
 ///   colour:   YCxCz filtered with the eye's contrast sensitivity, CIELAB with Hunt's adjustment, HyAB distance ^ 0.7,
 ///             spread over [0, 1] (p_c = 0.4, p_t = 0.95)                                          dE_c
 ///   features: the larger change of edges and points in Y (w = 0.082 degrees), / sqrt(2), ^ 0.5    dE_f

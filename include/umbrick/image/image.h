@@ -6,7 +6,8 @@
 
 namespace umbrick {
 
-/// width x height pixels of `channels` interleaved floats; row 0 is the bottom row. Colour is linear, premultiplied.
+/// An image of width x height pixels of `channels` interleaved floats. Row 0 is the bottom row.
+/// Colour is linear and premultiplied.
 struct Image {
   int width = 0;
   int height = 0;

@@ -10,24 +10,24 @@
 namespace umbrick {
 
 enum class ToneMap {
-  none,      // clamp at 1
+  none,      // values above 1 are clamped
   reinhard,  // c / (1 + luminance)
-  filmic,    // Hable 2010 or a fit of the ACES curve; the source is named where it is implemented
+  filmic,    // a fit of the ACES curve; the source is named where it is implemented
 };
 
 struct PngOptions {
   ToneMap toneMap = ToneMap::none;
-  float exposure = 0;                           // stops: colour times 2^exposure before tone mapping
+  float exposure = 0;                           // stops: colour is multiplied by 2^exposure before tone mapping
   std::map<std::string, std::string> metadata;  // tEXt entries
 };
 
-/// Writes an image of 4 channels (linear premultiplied RGBA). Tone mapping acts on the colour over its own alpha:
-/// un-premultiplied, mapped, encoded with the sRGB curve (IEC 61966-2-1), stored beside alpha. Nothing half-written.
+/// Writes an image of 4 channels (linear premultiplied RGBA), whole or not at all. Tone mapping acts on the colour over
+/// its own alpha: it is un-premultiplied, mapped, encoded with the sRGB curve (IEC 61966-2-1) and stored beside alpha.
 /// @throw InvalidArgument  not 4 channels
-/// @throw IoError
+/// @throw IoError          the file could not be written
 void writePng(const std::filesystem::path& path, const Image& image, const PngOptions& options = {});
 
-/// Reads 8-bit RGBA back to linear premultiplied. @throw IoError
+/// Reads 8-bit RGBA and returns linear premultiplied colour. @throw IoError  the file is missing, truncated or no PNG
 Image readPng(const std::filesystem::path& path);
 
 }  // namespace umbrick

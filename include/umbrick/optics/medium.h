@@ -5,21 +5,21 @@
 
 namespace umbrick {
 
-/// exp(-sigma_t ds).
+/// Returns exp(-sigma_t ds).
 float transmittance(float sigma_t, float ds);
-/// (1 - exp(-x)) / x, 1 at x = 0; relative error below 1e-6 for x >= 0.
+/// Returns (1 - exp(-x)) / x, and 1 at x = 0; the relative error is below 1e-6 for x >= 0.
 float slabFactor(float x);
-/// 1 - exp(-x) without cancellation; relative error below 1e-6 for x >= 0.
+/// Returns 1 - exp(-x) without cancellation; the relative error is below 1e-6 for x >= 0.
 float oneMinusExp(float x);
-/// Mean place, as a share from the front, of what a piece of linear extinction and constant albedo scatters to the eye;
-/// off by less than 0.009. @param alpha  opacity: oneMinusExp(tau)
+/// Returns the mean place, as a share from the front, of what a piece of linear extinction and constant albedo scatters
+/// to the eye. It is off by less than 0.009. @param alpha  opacity: oneMinusExp(tau)
 float scatteringCentroid(float sigma_front, float sigma_back, float tau, float alpha);
 
-/// Solid angle of a cone of half-angle `aperture`, sr.
+/// Returns the solid angle of a cone of half-angle `aperture`, sr.
 float coneSolidAngle(float aperture);
-/// Uniform phase function on the cone, in 1/sr. @pre aperture in (0, pi/2)
+/// Returns the uniform phase function on the cone, in 1/sr. @pre aperture in (0, pi/2)
 float conePhase(float cosAngle, float aperture);
-/// ds tan(aperture): the radius of the cone's footprint. Schott et al. 2009, Eq. 11
+/// Returns ds tan(aperture), the radius of the cone's footprint. Schott et al. 2009, Eq. 11
 float coneRadius(float ds, float aperture);
 
 }  // namespace umbrick

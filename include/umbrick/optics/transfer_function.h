@@ -11,7 +11,7 @@
 
 namespace umbrick {
 
-/// A medium at a point: extinction in 1/world unit and the share of it that is scattering, linear RGB.
+/// A medium at a point: its extinction in 1/world unit, and the share of it that is scattering, as linear RGB.
 struct Medium {
   glm::dvec3 albedo{0};
   double sigma_t = 0;  // 1/world unit
@@ -19,13 +19,15 @@ struct Medium {
   bool operator==(const Medium&) const = default;
 };
 
-/// Piecewise linear from control points: albedo and sigma_t each linear between neighbours, constant beyond the ends
-/// (as ParaView's colour and opacity functions are). Classification happens after interpolation of the value.
+/// A transfer function. A 1D function is piecewise linear between control points: albedo and sigma_t are each linear
+/// between neighbours and constant beyond the ends, as ParaView's colour and opacity functions are. Classification
+/// happens after interpolation of the value.
 ///
-/// A 2D function gives the medium on a rectilinear lattice of (value, gradient) with bilinear interpolation, constant
-/// beyond its edges. Gradient magnitude is in grid units per world unit.
+/// A 2D function gives the medium on a rectilinear lattice of (value, gradient), with bilinear interpolation, and is
+/// constant beyond its edges. Gradient magnitude is in grid units per world unit.
 ///
-/// Two equal values make a step: the first holds below it, the second at it and above. Of more than two equal ones the
+/// Two equal values make a step: the first point holds below it, the second one at it and above. Of more than two equal
+/// values the first and the last count. NaN is no medium.
 /// first and the last count. NaN is no medium.
 class TransferFunction {
  public:
@@ -34,30 +36,32 @@ class TransferFunction {
     Medium medium;
   };
 
-  /// @throw InvalidArgument  no points, values not ascending (two equal ones make a step), sigma_t < 0,
-  ///                         albedo outside [0, 1], anything not finite
+  /// @throw InvalidArgument  no points, values not ascending (two equal ones make a step), sigma_t < 0, albedo outside
+  ///                         [0, 1], or anything not finite
   explicit TransferFunction(std::vector<Point> points);
   /// @param media  values.size() x gradients.size(), value fastest
-  /// @throw InvalidArgument  as above, for both axes
+  /// @throw InvalidArgument  as for 1D, for both axes
   TransferFunction(std::vector<double> values, std::vector<double> gradients, std::vector<Medium> media);
 
   bool is2d() const { return !gradients_.empty(); }
   Medium operator()(double value, double gradient = 0) const;
 
-  /// Where the function varies: first to last control point, rounded outwards.
+  /// Returns where the function varies: from the first to the last control point, rounded outwards.
   Range valueDomain() const;
-  Range gradientDomain() const;  // {0, 0} for 1D
+  Range gradientDomain() const;  // {0, 0} for a 1D function
 
-  /// True when sigma_t is 0 everywhere over the ranges (exact for the piecewise function; no widening).
+  /// Returns true when sigma_t is 0 everywhere over the ranges. This is exact for the piecewise function, whose ranges
+  /// are not widened.
   bool isTransparent(const Range& value, const Range& gradient = {0, 0}) const;
-  /// Largest sigma_t over the ranges (its supremum, where a step cuts it off), 1/world unit; 0 for an empty range.
+  /// Returns the largest sigma_t over the ranges, 1/world unit; its supremum where a step cuts it off; 0 for
+  /// an empty range.
   double majorant(const Range& value, const Range& gradient = {0, 0}) const;
 
-  /// The same function with its domain stretched to [low, high] (window: level -/+ width / 2); a domain of no extent,
-  /// as of a single step, moves to the middle.
-  /// @throw InvalidArgument  low >= high or not finite
+  /// Returns the same function with its domain stretched to [low, high] (a window: level -/+ width / 2). A domain of no
+  /// extent, as of a single step, moves to the middle.
+  /// @throw InvalidArgument  low >= high, or not finite
   TransferFunction windowed(double low, double high) const;
-  /// The same function with sigma_t times `factor`. @throw InvalidArgument  factor < 0 or not finite
+  /// Returns the same function with sigma_t times `factor`. @throw InvalidArgument  factor < 0 or not finite
   TransferFunction scaled(double factor) const;
 
   const std::vector<double>& values() const { return values_; }
@@ -70,23 +74,25 @@ class TransferFunction {
   std::vector<Medium> media_;
 };
 
-/// Reads the project's JSON, of a 1D or a 2D function,
+/// Reads the project's JSON of a 1D or a 2D function,
 ///   {"points": [{"value": 500, "albedo": [0.8, 0.5, 0.4], "sigma_t": 0.1}, ...]}
 ///   {"values": [...], "gradients": [...], "albedo": [[r, g, b], ...], "sigma_t": [...]}    lattice, value fastest
-/// with the optional fields "description", "window": [low, high] and "sigmaScale", or a ParaView colour-map export: an
-/// array with one object of "RGBPoints", "Points", "ColorSpace", ... There colours are sRGB display values, as ParaView
-/// shows them; they are interpolated in the colour space that is named (CIEDE2000 as Lab) and become linear albedo.
-/// Opacity a per ScalarOpacityUnitDistance u (1 when it is missing) becomes sigma_t = -ln(1 - a) / u, where opacity
-/// above 0.999 counts as 0.999 (6.9 / u), since 1 would be no finite medium; without "Points" it rises from 0 to 1 over
-/// the colours. Both are curves between ParaView's points, replaced by linear pieces within half a level of 8 bits.
+/// with the optional fields "description", "window": [low, high] and "sigmaScale"; or a colour map exported by
+/// ParaView, which is an array with one object of "RGBPoints", "Points", "ColorSpace" and so on.
+///
+/// The colours of ParaView are sRGB display values, as it shows them. They are interpolated in the colour space that is
+/// named (CIEDE2000 as Lab) and become linear albedo. Opacity a per ScalarOpacityUnitDistance u (1 when it is missing)
+/// becomes sigma_t = -ln(1 - a) / u. Opacity above 0.999 counts as 0.999 (6.9 / u), since 1 would be no finite medium.
+/// Without "Points" it rises from 0 to 1 over the colours. Both are curves between ParaView's points, and are replaced
+/// by linear pieces within half a level of 8 bits.
 /// @param source  what messages call the text, usually its file name
-/// @throw IoError  malformed: names source, line, column and field
+/// @throw IoError  malformed text; the message names source, line, column and field
 TransferFunction parseTransferFunction(std::string_view text, const std::string& source);
-/// A preset's name (see transferPresets) or a file. @throw IoError
+/// Loads a preset by its name (see transferPresets) or a file. @throw IoError  there is neither, or it is malformed
 TransferFunction loadTransferFunction(const std::string& nameOrFile);
-/// Names of the presets that are part of the library.
+/// Returns the names of the presets that are part of the library.
 std::vector<std::string> transferPresets();
-/// The project's JSON of a function: parse(print(f)) == f.
+/// Returns the project's JSON of a function, so that parse(print(f)) == f.
 std::string printTransferFunction(const TransferFunction& transfer);
 
 }  // namespace umbrick

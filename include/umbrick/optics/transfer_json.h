@@ -6,11 +6,11 @@
 namespace umbrick {
 class JsonValue;  // of the room core, which keeps it to the library
 
-/// Our own object or ParaView's array. @throw IoError
+/// Reads our own object or ParaView's array. @throw IoError  it is neither
 TransferFunction readTransferFunction(const JsonValue& value);
-/// [low, high], low < high. @throw IoError
+/// Applies a window [low, high] with low < high. @throw IoError  it is no such window
 TransferFunction windowedBy(const TransferFunction& transfer, const JsonValue& window);
-/// A number >= 0. @throw IoError
+/// Scales sigma_t by a number >= 0. @throw IoError  it is no such number
 TransferFunction scaledBy(const TransferFunction& transfer, const JsonValue& factor);
 
 }  // namespace umbrick

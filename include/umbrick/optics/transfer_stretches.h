@@ -13,12 +13,13 @@ namespace umbrick {
 struct AxisStretch {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
-  std::size_t low = 0, high = 0;  // positions of control points; equal in the constant ends
+  std::size_t low = 0, high = 0;  // positions of control points in the axis; equal in the constant ends
 };
 
-/// The stretches of an axis in ascending order, one more than it has different control points: the first and the last
-/// are the constant ends. A value v lies in the stretch whose number is the count of control points at or below v.
-/// @param axis  ascending, at most two equal ones in a row, not empty: values() or gradients() of a TransferFunction
+/// Returns the stretches of an axis in ascending order. There is one more than the axis has different control points;
+/// the first and the last are the constant ends. A value v lies in the stretch whose number is the count of different
+/// control points at or below v.
+/// @param axis  values() or gradients() of a TransferFunction: ascending, at most two equal ones in a row, not empty
 std::vector<AxisStretch> axisStretches(const std::vector<double>& axis);
 
 }  // namespace umbrick
