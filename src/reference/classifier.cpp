@@ -21,11 +21,11 @@ Classifier::Classifier(const TransferFunction& transfer) : transfer_(transfer) {
 }
 
 Cubic Classifier::throughThirds(const std::array<double, 4>& y, double begin, double h) {
-  // Newton's divided differences at 0, 1, 2, 3 thirds, then from u = 3 (s - begin) / h to s.
+  // Newton's divided differences are taken at 0, 1, 2 and 3 thirds, and then u = 3 (s - begin) / h is replaced by s.
   const double d1 = y[1] - y[0], d2 = (y[2] - 2 * y[1] + y[0]) / 2, d3 = (y[3] - 3 * y[2] + 3 * y[1] - y[0]) / 6;
   const std::array<double, 4> inU{y[0], d1 - d2 + 2 * d3, d2 - 3 * d3, d3};
   const double scale = 3 / h, shift = -scale * begin;  // u = shift + scale s
-  // By Horner's scheme with polynomials.
+  // This is Horner's scheme with polynomials.
   Cubic result;
   for (int i = 3; i >= 0; --i) {
     std::array<double, 4> next{};

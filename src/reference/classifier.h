@@ -10,17 +10,17 @@
 
 namespace umbrick {
 
-/// One linear stretch of a 1D function: sigma_t and albedo at value v are base + slope (v - origin).
+/// One linear stretch of a 1D function: at value v, sigma_t and albedo are base + slope (v - origin).
 struct LinearStretch {
   double origin = 0, sigma_t = 0, sigmaSlope = 0;
   glm::dvec3 albedo{0}, albedoSlope{0};
 };
 
-/// Part [begin, end] of a cell, s in [0, 1] along the ray.
+/// The part [begin, end] of a cell, where s in [0, 1] is the place along the ray.
 struct CellPiece {
   double begin = 0, end = 0;
-  Cubic sigma_t;                           // in s, 1/world unit
-  const LinearStretch* stretch = nullptr;  // 1D
+  Cubic sigma_t;                           // in s; 1/world unit
+  const LinearStretch* stretch = nullptr;  // of a 1D function; null for a 2D function
 };
 
 class Classifier {
@@ -30,7 +30,7 @@ class Classifier {
   bool is2d() const { return transfer_.is2d(); }
   const TransferFunction& transfer() const { return transfer_; }
 
-  /// The stretch of a 1D function that all of these values lie in, if it is only one.
+  /// Returns the stretch of a 1D function in which all of these values lie, if it is only one.
   std::optional<std::size_t> onlyStretch(const Range& values) const {
     if (is2d()) return std::nullopt;
     const std::size_t index = locate(values.min);
@@ -45,7 +45,7 @@ class Classifier {
   }
 
   /// Calls visit(const CellPiece&) for the pieces of [0, 1] where the medium may scatter or absorb, in order.
-  /// @param value,gradient  along the ray; gradient counts for a 2D function only
+  /// @param value,gradient  along the ray; the gradient matters for a 2D function only
   template <class Visit>
   void forEachPiece(const Cubic& value, const Cubic& gradient, const Visit& visit) const {
     if (is2d())
@@ -60,7 +60,7 @@ class Classifier {
   }
 
  private:
-  // Which stretch holds at a value; a step counts as its upper side.
+  // Returns the stretch that holds at a value. A step counts as its upper side.
   std::size_t locate(double value) const {
     return static_cast<std::size_t>(std::upper_bound(values_.begin(), values_.end(), value) - values_.begin());
   }
@@ -74,13 +74,14 @@ class Classifier {
 
   template <class Visit>
   void forEachExact(const Cubic& value, const Visit& visit) const {
-    // Most cells lie between two points: the control points of Bernstein's basis bound the cubic.
+    // Most cells lie between two points of the function. The control points of Bernstein's basis bound the cubic.
     const auto& c = value.c;
     const double b1 = c[0] + c[1] / 3, b2 = b1 + (c[1] + c[2]) / 3, b3 = c[0] + c[1] + c[2] + c[3];
     const std::size_t lowest = locate(std::min({c[0], b1, b2, b3}));
     if (lowest == values_.size() || std::max({c[0], b1, b2, b3}) < values_[lowest])
       return visitStretch(value, lowest, 0, 1, visit);
-    // Else between its turns it meets the points one after the other; ordered control points have no turn.
+    // Other cells meet the points of the function one after the other between the turns of the cubic. Where the control
+    // points are ordered, the cubic has no turn.
     if ((c[0] <= b1 && b1 <= b2 && b2 <= b3) || (c[0] >= b1 && b1 >= b2 && b2 >= b3))
       return forEachMonotonic(value, 0, 1, visit);
     std::array<double, 2> turns{};
@@ -110,9 +111,9 @@ class Classifier {
     visitStretch(value, index, at, end, visit);
   }
 
-  // A 2D function is bilinear between lattice lines, so along a ray of degree six in between: interpolated by a cubic
-  // in each quarter of the cell, or in what lattice lines leave of it. The cubic's four nodes lie inside of a piece,
-  // where a step at one of its ends has only one side.
+  // A 2D function is bilinear between lattice lines, so its extinction along a ray is of degree six there. It is
+  // interpolated by a cubic in each quarter of the cell, or in what lattice lines leave of it. The cubic's four nodes
+  // lie inside of a piece, where a step at one of its ends has only one side.
   template <class Visit>
   void forEachFitted(const Cubic& value, const Cubic& gradient, const Visit& visit) const {
     std::vector<double> cuts{0, 0.25, 0.5, 0.75, 1};
@@ -147,12 +148,12 @@ class Classifier {
     }
   }
 
-  // The cubic through y at `begin` and at one, two and three thirds of h behind it.
+  // Returns the cubic through the values y at `begin` and at one, two and three thirds of h behind it.
   static Cubic throughThirds(const std::array<double, 4>& y, double begin, double h);
 
   TransferFunction transfer_;
   std::vector<double> values_;            // of the control points
-  std::vector<LinearStretch> stretches_;  // below the first point, between neighbours, above the last
+  std::vector<LinearStretch> stretches_;  // below the first point, between neighbours, above the last point
 };
 
 }  // namespace umbrick

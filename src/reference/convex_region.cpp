@@ -31,7 +31,7 @@ ConvexRegion::ConvexRegion(const ResolvedScene& scene, const IndexBox& box, cons
     const glm::dvec3 forward = cameraFrame(scene.camera).forward;
     world.emplace_back(forward, -glm::dot(forward, scene.camera.eye) - scene.camera.nearDistance);
   }
-  // Planes transform with the transpose of the matrix that takes index to world.
+  // Planes are transformed by the transpose of the matrix that takes index space to world space.
   for (const glm::dvec4& plane : world) planes_.push_back(glm::transpose(indexToWorld) * plane);
 }
 

@@ -11,14 +11,14 @@
 
 namespace umbrick {
 
-/// Half-spaces dot(xyz, point) + w >= 0 in index space.
+/// An intersection of half-spaces dot(xyz, point) + w >= 0 in index space.
 class ConvexRegion {
  public:
   /// The box, the clip planes and the clip box of the scene and what of space the camera sees.
   /// @param behindEye  also what lies behind the plane of the eye
   ConvexRegion(const ResolvedScene& scene, const IndexBox& box, const glm::dmat4& indexToWorld, bool behindEye);
 
-  /// The part of the ray with t >= begin that lies inside.
+  /// Returns the part of the ray with t >= begin that lies inside.
   Interval clip(const IndexRay& ray, double begin) const;
 
  private:

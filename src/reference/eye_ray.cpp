@@ -7,18 +7,20 @@
 namespace umbrick {
 namespace {
 
-// Goes through a ray's cells front to back.
+// Goes through the cells of a ray from front to back.
 class Collector {
  public:
   Collector(const Classifier& classifier, const EyeRayOptions& options, double begin, std::vector<Scatterer>& parts)
       : classifier_(classifier), options_(options), begin_(begin), parts_(parts) {}
 
-  // From the sum of optical depths: products of 1 - x would add up their roundings, all of one kind.
+  // The opacity comes from the sum of optical depths. Products of 1 - x would add up their roundings, which all
+  // have one sign.
   double opacity() const { return isDark() ? 1 : -std::expm1(-tau_); }
   bool isDark() const { return transmittance_ < options_.darkest; }
 
-  /// A cell, or part of one; `value` and `gradient` over s in [0, 1] from `begin` to `end` of the ray.
-  /// @param stretch  of a 1D function that the cell lies in; null: not known
+  /// Adds a cell, or part of one. `value` and `gradient` are over s in [0, 1], which is from `begin` to
+  /// `end` of the ray.
+  /// @param stretch  the stretch of a 1D function in which the cell lies; null: not known
   void add(const Cubic& value, const Cubic& gradient, double begin, double end,
            const LinearStretch* stretch = nullptr) {
     value_ = value;
@@ -47,7 +49,7 @@ class Collector {
     }
   }
 
-  // Halves what is too opaque for a few nodes.
+  // Halves a part until it is thin enough for a few nodes.
   void addHalves(const CellPiece& piece, double begin, double end, double tau, int depth) {
     if (isDark() || !(tau > 0)) return;
     if (tau > options_.largestTau && depth > 0) {
@@ -60,8 +62,9 @@ class Collector {
     addPart(piece, begin, end, tau);
   }
 
-  // The opacity is exact; how it is shared out over the part, for centre and albedo, by three Gauss nodes. What comes
-  // before each node is integrated from the same nodes (the coefficients of the Gauss-Legendre method of order six).
+  // The opacity of the part is exact. How it is spread over the part, for the centre and the albedo, is found with
+  // three Gauss nodes. What comes before each node is integrated from the same nodes (the coefficients of the
+  // Gauss-Legendre method of order six).
   void addPart(const CellPiece& piece, double begin, double end, double tau) {
     constexpr double root = 3.872983346207417;  // sqrt(15)
     constexpr double nodes[]{0.5 - root / 10, 0.5, 0.5 + root / 10}, weights[]{5, 8, 5};
@@ -98,7 +101,7 @@ class Collector {
     parts_.push_back(part);
   }
 
-  // exp(-x) of what is small nearly always: its series is off by less than x^5 / 120, 8e-8.
+  // Returns exp(-x), where x is nearly always small. The series is off by less than x^5 / 120, which is 8e-8 at 0.1.
   static double attenuation(double x) {
     return x < 0.1 ? 1 - x * (1 - x * (0.5 - x * (1.0 / 6 - x * (1.0 / 24)))) : std::exp(-x);
   }

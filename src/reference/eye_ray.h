@@ -11,19 +11,19 @@
 
 namespace umbrick {
 
-/// Rays through the pixels' centres, in index space, t the distance from their origin in world units. They begin at the
-/// eye, or on its plane.
+/// Rays through the centres of pixels, in index space; t is the distance from the origin of a ray in world units. Rays
+/// begin at the eye, or on its plane in an orthographic view.
 class EyeRays {
  public:
   EyeRays(const Camera& camera, const glm::dmat4& indexToWorld);
 
   struct Ray {
     IndexRay index;
-    glm::dvec3 direction;       // world, unit length
-    double depthPerLength = 1;  // along the view axis
+    glm::dvec3 direction;       // world space, unit length
+    double depthPerLength = 1;  // depth along the view axis for each unit of t
   };
   Ray through(int x, int y) const;
-  /// A direction of the world, unit length, as a direction of index space.
+  /// Turns a direction of world space, of unit length, into a direction of index space.
   glm::dvec3 toIndex(const glm::dvec3& direction) const { return linear_ * direction; }
 
  private:
@@ -34,21 +34,22 @@ class EyeRays {
   glm::dmat3 linear_;
 };
 
-/// A short part of a ray: how much of what it scatters reaches the eye.
+/// A short part of a ray, and how much of what it scatters reaches the eye.
 struct Scatterer {
   double t = 0;              // centre of the scattering
-  double alpha = 0;          // opacity in front of which the ray's transmittance stands: T(begin) - T(end)
+  double alpha = 0;          // T(begin) - T(end), where T is the transmittance from the eye
   glm::dvec3 light{0};       // Int T sigma_s ds
-  std::int64_t stretch = 0;  // which step of a given length it lies in
+  std::int64_t stretch = 0;  // number of the step of given length in which the part lies
 };
 
 struct EyeRayOptions {
-  double largestTau = 0.1;  // optical depth of one part
-  double step = 0;          // parts end at multiples of it from the beginning of the ray; 0: anywhere
+  double largestTau = 0.1;  // largest optical depth of one part
+  double step = 0;          // world units: parts end at multiples of it from the beginning of the ray; 0: anywhere
   double darkest = 1e-7;    // transmittance at which the ray ends
 };
 
-/// @param parts  appended to, in order
+/// Collects the parts of a ray that scatter.
+/// @param parts  the parts are appended to it, in order
 /// @return the opacity of the ray; 1 once less than `darkest` gets through
 double collectScatterers(const Field& field, Field::Accessor& accessor, const Classifier& classifier,
                          const IndexRay& ray, const Interval& part, const EyeRayOptions& options,

@@ -30,7 +30,7 @@ struct Seen {
   std::uint64_t nonFinite = 0;
 };
 
-// Calls visit(value, active, box) for the tiles above leaf level.
+// Calls visit(value, active, box) for the tiles above the level of leaves.
 template <class Visit>
 void forEachTile(const openvdb::FloatTree& tree, const Visit& visit) {
   auto tile = tree.cbeginValueAll();
@@ -38,7 +38,8 @@ void forEachTile(const openvdb::FloatTree& tree, const Visit& visit) {
   for (; tile; ++tile) visit(*tile, tile.isValueOn(), tile.getBoundingBox());
 }
 
-// The blocks that read one of the voxels in `box`, up to `reach` voxels before the block.
+// Returns the blocks that read one of the voxels in `box`. A block also reads `reach` voxels beyond its
+// own on each side.
 CoordBBox blocksOf(const CoordBBox& box, int reach) {
   const Coord &a = box.min(), &b = box.max();
   const auto low = [&](int x) { return static_cast<int>((std::int64_t(x) - kCells - reach + kCells - 1) >> 3); };
@@ -46,7 +47,7 @@ CoordBBox blocksOf(const CoordBBox& box, int reach) {
   return {Coord(low(a.x()), low(a.y()), low(a.z())), Coord(high(b.x()), high(b.y()), high(b.z()))};
 }
 
-// Voxels of one block with `margin` on each side, x fastest; not finite ones are the background.
+// Reads the voxels of one block with `margin` on each side, x fastest. Those that are not finite become background.
 class BlockReader {
  public:
   BlockReader(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, float background, bool gradients)
@@ -55,7 +56,7 @@ class BlockReader {
         background_(background),
         gradients_(gradients) {}
 
-  // values: kBlockSize floats, behind them as many gradients if there are any.
+  // @param values  receives kBlockSize floats, and behind them as many gradients if there are any
   void read(const Coord& block, float* values) {
     const int margin = gradients_ ? 1 : 0, edge = kVoxels + 2 * margin;
     const Coord first = Coord(block.x() * kCells, block.y() * kCells, block.z() * kCells).offsetBy(-margin);
@@ -75,7 +76,7 @@ class BlockReader {
   }
 
  private:
-  // Central differences per voxel, turned into a gradient per world unit.
+  // Computes central differences per voxel and turns them into a gradient per world unit.
   float magnitude(const float* v, std::ptrdiff_t edge) const {
     const auto difference = [&](std::ptrdiff_t stride) { return (double(v[stride]) - double(v[-stride])) / 2; };
     const double size = glm::length(covariant_ * glm::dvec3(difference(1), difference(edge), difference(edge * edge)));
@@ -99,8 +100,9 @@ std::uint8_t kindOf(const Classifier& classifier, const Range& values) {
   return stretch && *stretch + 1 < FieldBlock::kMixed ? static_cast<std::uint8_t>(*stretch + 1) : FieldBlock::kMixed;
 }
 
-// Tells what each cell is and bounds sigma_t. False when there is nothing to see. Without skipping a cell is looked at
-// when a ray comes to it, and not before.
+// Tells what each cell is and bounds sigma_t. Without skipping, cells are not looked at here but when a ray
+// comes to them.
+// @return false when there is nothing to see in the block
 bool survey(FieldBlock& block, const Classifier& classifier, bool skipEmpty) {
   const TransferFunction& transfer = classifier.transfer();
   const auto gradientsOf = [&](const auto& rangeOfPart) {
@@ -200,7 +202,7 @@ void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToW
   const TransferFunction& transfer = classifier.transfer();
   const bool gradients = transfer.is2d();
   const int reach = gradients ? 1 : 0;
-  // Tiles first: all blocks inside one are alike, those at its faces are looked at one by one below.
+  // Tiles come first. All blocks inside a tile are alike; those at its faces are looked at one by one below.
   std::set<Coord> borders;
   std::map<float, int> uniform;
   forEachTile(tree, [&](float value, bool, const CoordBBox& box) {
@@ -225,7 +227,8 @@ void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToW
     const CoordBBox touched = blocksOf(leaf->getNodeBoundingBox(), reach);
     for (auto block = touched.begin(); block != touched.end(); ++block) wanted.insert(*block);
   }
-  // Blocks at the faces of tiles look alike: each look is kept once. In parts, so that few are held at a time.
+  // Many blocks at the faces of tiles have the same voxels, which are kept only once. The blocks are taken in parts, so
+  // that few are held at a time.
   std::unordered_map<std::string_view, int> looks;
   const std::size_t size = kBlockSize * (gradients ? 2 : 1);
   const std::vector<Coord> all(wanted.begin(), wanted.end());
@@ -258,7 +261,7 @@ void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToW
           storage_.push_back(std::move(voxels[i]));
         }
       }
-      // What is transparent anyway needs no node.
+      // A block that is transparent anyway needs no node.
       if (index >= 0 || tree_->getValue(coords[i]) >= 0) tree_->setValueOn(coords[i], index);
     }
   }

@@ -20,15 +20,17 @@
 
 namespace umbrick {
 
-/// Cells origin to origin + 7 along each axis; the cell at i is the space between voxels i and i + 1.
+/// A block of the cells from origin to origin + 7 along each axis. The cell at i is the space between
+/// voxels i and i + 1.
 struct FieldBlock {
   static constexpr int kCells = 8, kVoxels = kCells + 1;
 
-  const float* values = nullptr;     // kVoxels^3, x fastest; none: every voxel is `uniform`
-  const float* gradients = nullptr;  // magnitudes at the same voxels, for a 2D function
+  const float* values = nullptr;     // kVoxels^3, x fastest; null: every voxel is `uniform`
+  const float* gradients = nullptr;  // gradient magnitudes at the same voxels, for a 2D function
   float uniform = 0;
-  double sigma_maj = 0;  // majorant, 1/world unit
-  // By cell, x fastest: kTransparent, kMixed, or 1 + the stretch of a 1D function that all values of the cell lie in.
+  double sigma_maj = 0;  // 1/world unit
+  // The kinds of the cells, x fastest: kTransparent, kMixed, or 1 + the stretch of a 1D function in which all values
+  // of the cell lie.
   static constexpr std::uint8_t kTransparent = 0, kMixed = 255;
   std::array<std::uint8_t, kCells * kCells * kCells> kinds{};
 
@@ -38,7 +40,7 @@ struct FieldBlock {
   bool sees(const glm::ivec3& cell) const { return kind(cell) != kTransparent; }
 };
 
-/// Of the values, or gradients, at the corners of a cell.
+/// Returns the range of the values, or gradients, at the corners of a cell.
 inline Range rangeOfCell(const float* values, const glm::ivec3& cell) {
   constexpr int n = FieldBlock::kVoxels;
   Range range;
@@ -47,16 +49,16 @@ inline Range rangeOfCell(const float* values, const glm::ivec3& cell) {
   return range;
 }
 
-/// A trilinear cell: its value at local coordinates in [0, 1]^3 and along a line.
+/// A trilinear cell, with its value at local coordinates in [0, 1]^3 and along a line.
 class TrilinearCell {
  public:
   TrilinearCell(const float* block, const glm::ivec3& cell);
   double operator()(const glm::dvec3& p) const {
     return k0_ + p.x * kx_ + p.y * (ky_ + p.x * kxy_) + p.z * (kz_ + p.x * kxz_ + p.y * (kyz_ + p.x * kxyz_));
   }
-  /// Along from + s (to - from).
+  /// Returns the values along the line from + s (to - from).
   Cubic along(const glm::dvec3& from, const glm::dvec3& to) const;
-  /// Of the values from `from` to `to`: two Gauss nodes are exact for a cubic.
+  /// Returns the mean of the values on the line between two points. Two Gauss nodes are exact for a cubic.
   double mean(const glm::dvec3& from, const glm::dvec3& to) const {
     const glm::dvec3 middle = 0.5 * (from + to), offset = 0.28867513459481287 * (to - from);
     return 0.5 * ((*this)(middle - offset) + (*this)(middle + offset));
@@ -84,7 +86,7 @@ inline TrilinearCell::TrilinearCell(const float* block, const glm::ivec3& cell) 
 
 inline Cubic TrilinearCell::along(const glm::dvec3& p, const glm::dvec3& to) const {
   const glm::dvec3 d = to - p;
-  // Coefficients by powers of s of a product of three linear factors.
+  // Returns the coefficients, by powers of s, of a product of three linear factors.
   return {{(*this)(p),
            kx_ * d.x + ky_ * d.y + kz_ * d.z + kxy_ * (p.x * d.y + p.y * d.x) + kxz_ * (p.x * d.z + p.z * d.x) +
                kyz_ * (p.y * d.z + p.z * d.y) + kxyz_ * (d.x * p.y * p.z + p.x * d.y * p.z + p.x * p.y * d.z),
@@ -95,22 +97,23 @@ inline Cubic TrilinearCell::along(const glm::dvec3& p, const glm::dvec3& to) con
 
 class Field {
  public:
-  using BlockTree = openvdb::Int32Tree;  // at block coordinates: index of a block, -1 where all is transparent
+  // At the coordinates of a block: the index of the block, or -1 where all is transparent.
+  using BlockTree = openvdb::Int32Tree;
   using Accessor = openvdb::tree::ValueAccessor<const BlockTree, false>;
 
-  /// @param skipEmpty  false: keep transparent blocks as well, and let rays visit each cell
+  /// @param skipEmpty  false: transparent blocks are kept as well, and rays visit each cell
   Field(const ScalarGrid& grid, const Classifier& classifier, bool skipEmpty);
 
-  /// Active voxels, and others that differ from the background, grown by one.
+  /// Returns the box of active voxels and of others that differ from the background, grown by one voxel.
   const IndexBox& domain() const { return domain_; }
   Accessor accessor() const { return Accessor(*tree_); }
   std::uint64_t nonFiniteVoxels() const { return nonFinite_; }
   std::uint64_t blocks() const { return denseBlocks_; }
   const FieldBlock& block(int index) const { return blocks_[static_cast<std::size_t>(index)]; }
 
-  /// Calls visit(const FieldBlock&, origin, begin, end) for the blocks that the ray meets from `begin` to `end`, in
-  /// order, until it returns false. Transparent nodes of the tree are passed in one step each, and so is a node all of
-  /// whose cells are alike.
+  /// Calls visit(const FieldBlock&, origin, begin, end) for the blocks that the ray meets from `begin` to `end`,
+  /// in order, until it returns false. A node of the tree that is transparent or whose cells are all alike is
+  /// passed in one step.
   template <class Visit>
   void walkBlocks(Accessor& accessor, const IndexRay& ray, const Interval& part, const Visit& visit) const;
 
@@ -148,7 +151,7 @@ void Field::walkBlocks(Accessor& accessor, const IndexRay& ray, const Interval& 
       t = next;
       continue;
     }
-    // A tile is one value: the ray leaves it at once.
+    // A tile has one value, so the ray leaves it in one step.
     const int index = accessor.getValue(at);
     std::int64_t blocks = 1;
     if (skipEmpty_) {
@@ -164,8 +167,8 @@ void Field::walkBlocks(Accessor& accessor, const IndexRay& ray, const Interval& 
   }
 }
 
-/// Calls visit(cell, begin, end) for the cells of a block, which has voxels, that may be seen, from `begin` to `end` of
-/// the ray, in order, until it returns false.
+/// Calls visit(cell, begin, end) for the cells of a block that may be seen, from `begin` to `end` of the ray, in order,
+/// until it returns false. The block must have voxels.
 template <class Visit>
 bool walkCells(const FieldBlock& block, const glm::dvec3& origin, const IndexRay& ray, double begin, double end,
                const Visit& visit) {

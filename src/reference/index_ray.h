@@ -10,7 +10,7 @@ namespace umbrick {
 
 inline double largestComponent(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// origin + t direction. t is a length in world units.
+/// The line origin + t direction, where t is a length in world units.
 struct IndexRay {
   IndexRay() = default;
   IndexRay(const glm::dvec3& from, const glm::dvec3& along)
@@ -18,24 +18,25 @@ struct IndexRay {
 
   glm::dvec3 origin{0}, direction{0};
   glm::dvec3 inverse{std::numeric_limits<double>::infinity()};  // of each component of the direction
-  double perVoxel = 0;                                          // t by which the fastest coordinate changes by 1
+  /// The t by which the coordinate that changes fastest changes by 1.
+  double perVoxel = 0;
 
   glm::dvec3 at(double t) const { return origin + t * direction; }
 };
 
-/// Part of a ray.
+/// The part of a ray from `begin` to `end`.
 struct Interval {
   double begin = 0, end = 0;
   bool empty() const { return !(begin < end); }
 };
 
-/// A step along the ray that is nothing to the field and yet leads off a face: 1e-7 voxels, or more where coordinates
-/// are so large that double precision has no such step.
+/// Returns a step along the ray that is too short to matter for the field and yet leads off a face: 1e-7 voxels, or
+/// more where coordinates are so large that double precision has no such step.
 inline double nudgeOf(const IndexRay& ray, const glm::dvec3& at) {
   return std::max(1e-7, 0x1p-48 * largestComponent(at)) * ray.perVoxel;
 }
 
-/// Where a ray leaves the box [low, high] that it is in.
+/// Returns the t at which a ray leaves the box [low, high] that it is in.
 inline double exitOf(const IndexRay& ray, const glm::dvec3& low, const glm::dvec3& high) {
   double exit = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -45,15 +46,15 @@ inline double exitOf(const IndexRay& ray, const glm::dvec3& low, const glm::dvec
   return exit;
 }
 
-/// Whole number below, of a number that an int holds.
+/// Returns the largest whole number that is not above x, which an int must hold.
 inline int floorToInt(double x) {
   const int whole = static_cast<int>(x);
   return whole - (x < whole ? 1 : 0);
 }
 
 /// Calls visit(cell, begin, end) for the cells of a lattice of 8 x 8 x 8 cubes that the ray meets from `begin` to
-/// `end`, in order, until it returns false; `origin` is the lowest corner of the lattice. Amanatides and Woo 1987.
-/// @return false if visit did
+/// `end`, in order, until it returns false. `origin` is the lowest corner of the lattice. Amanatides and Woo 1987.
+/// @return false if visit returned false
 template <class Visit>
 bool walkLattice(const glm::dvec3& origin, double edge, const IndexRay& ray, double begin, double end,
                  const Visit& visit) {

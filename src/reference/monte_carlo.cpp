@@ -17,7 +17,7 @@ Medium mediumAt(const FieldBlock& block, const glm::dvec3& local, const Transfer
   return transfer(TrilinearCell(block.values, cell)(inside), gradient);
 }
 
-// Mean and squared deviations as numbers come in. Welford 1962.
+// Mean and squared deviations of numbers, updated as they come in. Welford 1962.
 class RunningMoments {
  public:
   void add(const std::array<double, 6>& x) {
@@ -29,7 +29,7 @@ class RunningMoments {
     }
   }
   double mean(std::size_t i) const { return mean_[i]; }
-  /// Of the mean.
+  /// Returns the variance of the mean.
   double variance(std::size_t i) const { return count_ < 2 ? 0 : squares_[i] / (count_ - 1.0) / count_; }
 
  private:
@@ -39,13 +39,13 @@ class RunningMoments {
 
 }  // namespace
 
-// Calls visit(t, medium, sigma_maj) at tentative collisions, whose density is the majorant of each block, until it
-// returns false. In a block that is much denser somewhere than a voxel is wide, each cell has a majorant of its own:
+// Calls visit(t, medium, sigma_maj) at tentative collisions, until it returns false. Their density is the majorant of
+// each block. But in a block that is much denser somewhere than a voxel is wide, each cell has a majorant of its own;
 // else a ray would be stopped again and again on its way through the thin parts.
 template <class Visit>
 void MonteCarloPixel::trackBlocks(const IndexRay& ray, const Interval& part, Random& random, const Visit& visit) {
   const TransferFunction& transfer = space_.classifier.transfer();
-  double tau = -std::log(random.uniform());  // to the next collision, in units of the majorants
+  double tau = -std::log(random.uniform());  // optical depth to the next collision, by the majorants
   const auto track = [&](const FieldBlock& block, const glm::dvec3& origin, double majorant, double t, double end) {
     const double sigma_maj = std::min(majorant, densest_);
     while (tau < sigma_maj * (end - t)) {
@@ -85,7 +85,7 @@ MonteCarloPixel::Collision MonteCarloPixel::collide(const IndexRay& ray, const I
   return collision;
 }
 
-// Radiances whose mean is the light.
+// Returns one direction of light, chosen at random, with a radiance whose mean over all choices is the light.
 LightDirection MonteCarloPixel::chooseLight(const glm::dvec3& towardsEye, Random& random) const {
   const ResolvedScene& scene = space_.scene;
   const double source = space_.lights && space_.lights->size() > 1 ? random.uniform() : 0;
@@ -103,7 +103,7 @@ double MonteCarloPixel::estimateTransmittance(const glm::dvec3& point, const glm
   if (part.empty()) return transmittance;
   trackBlocks(light, part, random, [&](double, const Medium& medium, double sigma_maj) {
     transmittance *= 1 - medium.sigma_t / sigma_maj;
-    // Russian roulette: what is nearly dark goes on only now and then, and then counts for more.
+    // Russian roulette: a path that is nearly dark goes on only now and then, and then counts for more.
     if (transmittance < 0.1) {
       if (random.uniform() >= 10 * transmittance) {
         transmittance = 0;

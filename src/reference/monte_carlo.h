@@ -8,10 +8,10 @@
 
 namespace umbrick {
 
-/// One per thread.
+/// Integrates pixels by Monte Carlo. Each thread has an integrator of its own.
 class MonteCarloPixel {
  public:
-  /// @param voxelEdge  the shortest, world units
+  /// @param voxelEdge  shortest edge of a voxel, world units
   MonteCarloPixel(const ReferenceSpace& space, const ReferenceOptions& options, double voxelEdge, const GoOn& goOn)
       : space_(space),
         options_(options),
@@ -21,7 +21,7 @@ class MonteCarloPixel {
         power_(space.lights ? space.lights->power() : 1),
         accessor_(space.field.accessor()) {}
 
-  /// Nothing when the job was stopped meanwhile.
+  /// Integrates one pixel. Returns nothing when the job was stopped meanwhile.
   std::optional<PixelResult> integrate(int x, int y);
   const RayCounts& counts() const { return counts_; }
 
@@ -42,9 +42,10 @@ class MonteCarloPixel {
   const ReferenceSpace& space_;
   ReferenceOptions options_;
   GoOn goOn_;
-  double dense_;    // from here on cells have majorants of their own, 1/world unit
-  double densest_;  // extinction beyond this counts as this: tracking takes as many steps as the majorant is large
-  double power_;    // of all lights
+  double dense_;  // 1/world unit: in blocks with a majorant from here on each cell has its own majorant
+  // 1/world unit: extinction beyond this counts as this, since tracking takes as many steps as the majorant is large.
+  double densest_;
+  double power_;  // sum over all lights
   Field::Accessor accessor_;
   RayCounts counts_;
 };

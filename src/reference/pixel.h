@@ -9,15 +9,15 @@
 namespace umbrick {
 
 struct PixelResult {
-  glm::dvec3 light{0};     // Int T sigma_s V ds, to be multiplied by L_a
+  glm::dvec3 light{0};     // Int T sigma_s V ds, which the caller multiplies by L_a
   double opacity = 0;      // of the whole ray
-  double visibility = 0;   // V weighted by opacity
-  double depth = 0;        // weighted by opacity
-  glm::dvec4 variance{0};  // of the means: light, opacity
+  double visibility = 0;   // weighted by opacity
+  double depth = 0;        // depth along the view axis, weighted by opacity
+  glm::dvec4 variance{0};  // of the means of light (x, y, z) and opacity (w)
   bool converged = true;   // false: the standard error that was asked for was not reached
 };
 
-/// Asked now and then during a long pixel: false when the job is to stop.
+/// A function that is asked now and then during a long pixel. It returns false when the job is to stop.
 using GoOn = std::function<bool()>;
 
 struct RayCounts {

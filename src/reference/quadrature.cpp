@@ -61,8 +61,8 @@ QuadraturePixel::QuadraturePixel(const ReferenceSpace& space, const ReferenceOpt
       voxelEdge_(voxelEdge),
       accessor_(space.field.accessor()) {
   eyeOptions_.step = step;
-  // A part stands for the V at its centre: the error goes with the square of its optical depth.
-  // Without V only the albedo varies: three Gauss nodes have exp(-x) over 0.5 to 1e-8.
+  // A part stands for the V at its centre, so its error goes with the square of its optical depth. Without V only the
+  // albedo varies, and three Gauss nodes integrate exp(-x) over 0.5 to 1e-8.
   eyeOptions_.largestTau =
       !traitsOf(space.scene.model).occlusion ? 0.5 : std::clamp(2 * std::sqrt(options.tolerance), 1e-3, 0.1);
   eyeOptions_.darkest = std::min(1e-6, 0.01 * options.tolerance);
@@ -117,7 +117,8 @@ std::optional<PixelResult> QuadraturePixel::integrate(int x, int y) {
 
 QuadraturePixel::Arriving QuadraturePixel::arrivingAt(const IndexRay& ray, double t) {
   ++counts_.samples;
-  // V takes as long as it has directions; an answer to `no` ends the pixel, whose result does not count then.
+  // V takes time in proportion to its directions, so the job may be stopped here. That ends the pixel, whose result
+  // does not count then.
   if (!stopped_ && !goOn_()) stopped_ = true;
   Arriving sum;
   if (stopped_) return sum;
@@ -136,10 +137,10 @@ QuadraturePixel::Arriving QuadraturePixel::arrivingAt(const IndexRay& ray, doubl
   return sum;
 }
 
-// What arrives where the scattering of these parts has its centre.
+// Returns the light that arrives where the scattering of these parts has its centre.
 QuadraturePixel::Arriving QuadraturePixel::meanArriving(const IndexRay& ray, std::size_t begin, std::size_t end) {
   const Scatterer &first = before_[begin], &last = before_[end];
-  // Sums lose digits where there is little: the centre must stay inside.
+  // Sums lose digits where there is little, so the centre is kept inside.
   const double centre = (last.t - first.t) / (last.alpha - first.alpha);
   return arrivingAt(ray,
                     std::isfinite(centre) ? std::clamp(centre, parts_[begin].t, parts_[end - 1].t) : parts_[begin].t);
@@ -151,7 +152,7 @@ QuadraturePixel::Sum QuadraturePixel::weigh(std::size_t begin, std::size_t end, 
   return {arriving.light * (last.light - first.light), alpha * arriving.light, alpha * arriving.visibility};
 }
 
-// Halves by weight until the halves agree with the whole.
+// Halves the parts by weight until the two halves agree with the whole.
 QuadraturePixel::Sum QuadraturePixel::refine(const IndexRay& ray, std::size_t begin, std::size_t end,
                                              const Arriving& arriving, int depth) {
   const Sum whole = weigh(begin, end, arriving);
@@ -168,7 +169,7 @@ QuadraturePixel::Sum QuadraturePixel::refine(const IndexRay& ray, std::size_t be
   return refine(ray, begin, split, near, depth - 1) + refine(ray, split, end, far, depth - 1);
 }
 
-// Begins with stretches short enough that the first comparison means something.
+// Begins with stretches that are short enough for the first comparison to mean something.
 QuadraturePixel::Sum QuadraturePixel::integrateAdaptive(const IndexRay& ray) {
   Sum sum;
   std::size_t begin = 0;

@@ -13,7 +13,7 @@
 
 namespace umbrick {
 
-/// What both integrators look at.
+/// The medium, the rays and the light, which both integrators share.
 struct ReferenceSpace {
   const Field& field;
   const Classifier& classifier;
@@ -24,38 +24,38 @@ struct ReferenceSpace {
   const std::vector<LightDirection>& directions;  // of all models but emission and coneRay
 };
 
-/// The same light from all of the solid angle that the directions stand for.
+/// Returns light that is the same from all of the solid angle for which the directions stand.
 std::vector<LightDirection> evenLight(const std::vector<WeightedDirection>& directions);
 
-/// Optical depth along the ray, up to `limit` and a little more.
+/// Returns the optical depth along the ray, but stops counting a little beyond `limit`.
 double opticalDepth(const Field& field, Field::Accessor& accessor, const Classifier& classifier, const IndexRay& ray,
                     const Interval& part, double limit, std::uint64_t& cells);
 
-/// One per thread.
+/// Integrates pixels by quadrature. Each thread has an integrator of its own.
 class QuadraturePixel {
  public:
   /// @param step  world units; 0: adaptive
   QuadraturePixel(const ReferenceSpace& space, const ReferenceOptions& options, double step, double voxelEdge,
                   const GoOn& goOn);
 
-  /// Nothing when the job was stopped meanwhile.
+  /// Integrates one pixel. Returns nothing when the job was stopped meanwhile.
   std::optional<PixelResult> integrate(int x, int y);
   const RayCounts& counts() const { return counts_; }
 
  private:
   struct AimedLight {
-    glm::dvec3 index;  // direction
+    glm::dvec3 index;  // direction in index space
     glm::dvec3 radiance;
-    double share;  // of the power of all
+    double share;  // share of the power of all lights
   };
-  /// What arrives: of each colour, and the share V of the power.
+  /// The light that arrives at a point, by colour, and its share V of the power of all lights.
   struct Arriving {
     glm::dvec3 light{0};
     double visibility = 0;
   };
   struct Sum {
-    glm::dvec3 light{0};     // scattered
-    glm::dvec3 arriving{0};  // weighted by opacity
+    glm::dvec3 light{0};     // scattered light that reaches the eye
+    glm::dvec3 arriving{0};  // arriving light, weighted by opacity
     double visibility = 0;
     Sum operator+(const Sum& other) const {
       return {light + other.light, arriving + other.arriving, visibility + other.visibility};
@@ -78,9 +78,9 @@ class QuadraturePixel {
   EyeRayOptions eyeOptions_;
   Field::Accessor accessor_;
   std::vector<AimedLight> lights_;
-  double brightest_ = 1;  // component of the sum of their radiances
+  double brightest_ = 1;  // largest component of the sum of their radiances
   std::vector<Scatterer> parts_;
-  std::vector<Scatterer> before_;  // sums of the parts before each one; t weighted by alpha
+  std::vector<Scatterer> before_;  // sums over all parts before each one; t is weighted by alpha
   RayCounts counts_;
 };
 

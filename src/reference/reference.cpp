@@ -26,7 +26,7 @@
 namespace umbrick {
 namespace {
 
-constexpr int kTile = 8;  // pixels along the edge of what a thread takes at once
+constexpr int kTile = 8;  // pixels along the edge of a tile, which one thread takes at once
 
 template <class T>
 void checkAtLeast(const char* field, T value, T least) {
@@ -84,7 +84,8 @@ void store(const PixelResult& pixel, const ResolvedScene& scene, int x, int y, R
   for (int i = 0; i < 3; ++i) {
     picture.colour.at(x, y)[i] =
         static_cast<float>(pixel.light[i] * scene.ambient[i] + (1 - pixel.opacity) * behind[i]);
-    // A path either scatters or gets through: the two never covary upwards, so this bounds the sum from above.
+    // A path either scatters or gets through. The two never covary upwards, so this bounds the variance of the
+    // sum from above.
     picture.standardError.at(x, y)[i] = static_cast<float>(
         std::sqrt(pixel.variance[i] * scene.ambient[i] * scene.ambient[i] + pixel.variance[3] * behind[i] * behind[i]));
   }
@@ -95,7 +96,7 @@ void store(const PixelResult& pixel, const ResolvedScene& scene, int x, int y, R
       pixel.opacity > 0 ? static_cast<float>(pixel.depth / pixel.opacity) : std::numeric_limits<float>::infinity();
 }
 
-// Tells how far the work is, from one thread at a time, and whether to go on.
+// Reports how far the work is, from one thread at a time, and whether to go on.
 class Progress {
  public:
   Progress(const std::function<bool(double)>& report, std::size_t total) : report_(report), total_(total) {}
@@ -120,7 +121,7 @@ class Progress {
   std::mutex mutex_;
 };
 
-// All pixels, each tile by one thread. What a pixel is does not depend on who takes it.
+// Integrates all pixels, each tile in one thread. The result of a pixel does not depend on the thread that takes it.
 template <class MakeIntegrator>
 RayCounts integrateAll(const ResolvedScene& scene, const ReferenceOptions& options,
                        const MakeIntegrator& makeIntegrator, ReferencePicture& picture) {
@@ -133,7 +134,7 @@ RayCounts integrateAll(const ResolvedScene& scene, const ReferenceOptions& optio
   std::atomic<std::uint64_t> unconverged = 0;
   using Integrator = decltype(makeIntegrator(goOn));
   tbb::enumerable_thread_specific<Integrator> integrators([&] { return makeIntegrator(goOn); });
-  // More threads than cores are granted, too.
+  // More threads than there are cores are granted, too.
   std::optional<tbb::global_control> limit;
   if (options.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));

@@ -9,7 +9,7 @@ using namespace umbrick;
 
 namespace {
 
-// Soft and hard parts: a steep peak, a step and a slope.
+// A function with soft and hard parts: a steep peak, a step and a slope.
 TransferFunction variedTransfer() {
   return TransferFunction({{0.05, {{0.9, 0.3, 0.1}, 0}},
                            {0.4, {{0.9, 0.5, 0.2}, 0.15}},
@@ -20,7 +20,7 @@ TransferFunction variedTransfer() {
                            {0.8, {{1, 0.9, 0.8}, 5}}});
 }
 
-// Bilinear between lattice lines, opaque where the gradient is large.
+// A function that is bilinear between lattice lines, and opaque where the gradient is large.
 TransferFunction variedTransfer2d() {
   return TransferFunction({0.05, 0.5, 1}, {0, 0.05, 0.2},
                           {{{1, 0, 0}, 0},
@@ -34,7 +34,7 @@ TransferFunction variedTransfer2d() {
                            {{1, 0, 1}, 2}});
 }
 
-// Soft, sharp, listed ones and a map, tilted, of colours whose channels sum to about 1 each.
+// Lights that are soft, sharp, listed and a map, tilted, with colours whose channels sum to about 1 each.
 std::vector<LightSource> colouredLights() {
   return {{LightFrame::view, ConeLight{{1, 0.3, 1}, 0.5, {0.4, 0.1, 0.05}}},
           {LightFrame::view, ConeLight{{-0.5, 0.2, 1}, 0, {0.1, 0.2, 0.4}}},
@@ -54,7 +54,7 @@ std::vector<Case> cases() {
   for (const Model model : {Model::emission, Model::cone, Model::coneRay, Model::ambient, Model::lights})
     for (const bool parallel : {false, true})
       for (const bool crooked : {false, true}) {
-        // One property a time is enough for the slower combinations.
+        // For the slower combinations one property at a time is enough.
         if (parallel && crooked) continue;
         const glm::dmat4 transform = crooked ? crookedTransform() : glm::dmat4(1);
         const glm::dvec3 centre(transform * glm::dvec4(14, 14, 14, 1));
@@ -87,9 +87,9 @@ ReferenceOptions monteCarlo(int samples, std::uint64_t seed) {
 }  // namespace
 
 // The mean square of N independent normal deviates is 1 with a standard deviation of sqrt(2 / N). The channels of a
-// pixel say much the same, so N is about 288 of 144 pixels: 0.083, and four of them. What directions and tolerance
-// leave of the quadrature, some 5e-3, is a twentieth of the variance of 500 paths. A bias of one standard error would
-// double the mean.
+// pixel say much the same, so N is about 288 for 144 pixels. This gives 0.083, and the limit is four of them. The error
+// that directions and tolerance leave in the quadrature, some 5e-3, is a twentieth of the variance of 500 paths. A bias
+// of one standard error would double the mean.
 TEST_CASE("Quadrature and Monte Carlo agree within the standard error that Monte Carlo states", "[reference]") {
   for (const auto& [name, grid, scene] : cases()) {
     INFO(name);
@@ -104,7 +104,7 @@ TEST_CASE("Quadrature and Monte Carlo agree within the standard error that Monte
     for (std::size_t i = 0; i < exact.colour.pixels.size(); ++i) {
       const double error = random.standardError.pixels[i];
       const double difference = double(random.colour.pixels[i]) - double(exact.colour.pixels[i]);
-      // Of a rare event 500 paths may have seen none or too few to know how rare it is.
+      // Of a rare event, 500 paths may have seen none, or too few to know how rare it is.
       if (error < 2.0 / samples) {
         CHECK(std::abs(difference) < 12.0 / samples);
         continue;
@@ -117,13 +117,13 @@ TEST_CASE("Quadrature and Monte Carlo agree within the standard error that Monte
     REQUIRE(count > 200);
     INFO("mean square " << squares / count << " of " << count << ", bias " << bias / count);
     CHECK(std::abs(squares / count - 1) < 0.35);
-    // The mean over all pixels, four channels of which deviate together: four times the variance.
+    // This is the mean over all pixels. Their four channels deviate together, so its variance is four times as large.
     CHECK(std::abs(bias) / count < 4 * std::sqrt(4 * variance) / count);
   }
 }
 
 TEST_CASE("Pictures do not depend on threads, and random ones only on the seed", "[reference]") {
-  const Case made = cases()[3];  // cone, perspective
+  const Case made = cases()[3];  // model cone, perspective
   for (const Integrator integrator : {Integrator::quadrature, Integrator::monteCarlo}) {
     ReferenceOptions options = monteCarlo(40, 3);
     options.integrator = integrator;
@@ -152,12 +152,12 @@ TEST_CASE("The standard error asked for is reached, and no sooner than it must",
   for (const float error : fine.standardError.pixels) largest = std::max(largest, error);
   // The ambient light of 1.5 scales what the paths bring.
   CHECK(largest <= 1.5 * 0.01 * (1 + 1e-6));
-  // Half the error takes four times the paths, but for pixels that took the fewest that count at all.
+  // Half the error takes four times the paths, but for pixels that took the fewest paths that count at all.
   CHECK(fine.stats.eyeRays > 2 * coarse.stats.eyeRays);
   CHECK(fine.stats.eyeRays < 5 * coarse.stats.eyeRays);
 }
 
-// The standard error is that of the mean over seeds.
+// The standard error of a pixel is that of its mean over seeds.
 TEST_CASE("The stated standard error is the scatter of pictures of other seeds", "[reference]") {
   const Case made = cases()[3];
   const int seeds = 40;
@@ -180,7 +180,8 @@ TEST_CASE("The stated standard error is the scatter of pictures of other seeds",
     scatter += (squares[i] - sum[i] * sum[i] / seeds) / (seeds - 1);
     expected += stated[i];
   }
-  // A variance estimated from 39 degrees of freedom in each of some 100 independent pixels: 2.3 %; four of them.
+  // A variance that is estimated from 39 degrees of freedom in each of some 100 independent pixels is off by 2.3 %; the
+  // limit is four of them.
   CHECK(scatter == Approx(expected).epsilon(0.1));
 }
 
@@ -196,13 +197,13 @@ TEST_CASE("Skipping empty space changes no picture and visits less", "[reference
     const ReferencePicture skipped = renderReference(grid, scene, options);
     options.skipEmpty = false;
     const ReferencePicture visited = renderReference(grid, scene, options);
-    // The same cells in the same order: but for where a step along the ray is rounded.
+    // The same cells come in the same order, so only the rounding of steps along the ray differs.
     CHECK(maxDifference(skipped.colour, visited.colour) < 1e-6);
     CHECK(skipped.stats.cells * 4 < visited.stats.cells);
   }
 }
 
-// World units scale away: extinction by the inverse, lengths alike.
+// The unit of the world does not matter when extinction is scaled by the inverse and lengths alike.
 TEST_CASE("Huge, tiny and far transforms make the picture of the unit one", "[reference]") {
   const glm::dvec3 centre(14), eye(39, -8, 33);
   const auto made = [&](double scale, const glm::dvec3& offset, Model model) {
@@ -237,11 +238,12 @@ TEST_CASE("Voxels a million from the origin make the same picture", "[reference]
     options.directions = 16;
     pictures.push_back(renderReference(makeDense(glm::ivec3(28), origin), scene, options).colour);
   }
-  // Places of 1e6 voxels have a rounding of 1e-10; V of 16 directions jumps where a path touches a voxel's edge.
+  // Places of 1e6 voxels have a rounding of 1e-10. V of 16 directions jumps where a path touches a voxel's edge.
   CHECK(maxDifference(pictures[0], pictures[1]) < 1e-4);
 }
 
-// A ramp to an extinction that no step could track: opaque from where it begins, whoever integrates.
+// The function is a ramp to an extinction that no step could track. It is opaque from where it begins, for
+// either integrator.
 TEST_CASE("Media as solid as numbers allow are integrated by both", "[reference]") {
   const ScalarGrid grid = makeNoise({12, 12, 12});
   for (const double sigma_t : {1e6, 1e300}) {
@@ -261,7 +263,7 @@ TEST_CASE("Media as solid as numbers allow are integrated by both", "[reference]
         opaque += exact.colour.pixels[i] == 1 ? 1u : 0u;
       }
       CHECK(opaque > 20);
-      // Rays that graze a surface by less than 1e-4 of a voxel see it or not: none of these does.
+      // Rays that graze a surface by less than 1e-4 of a voxel may see it or not; none of these rays does so.
       CHECK(worst < 1e-3);
     }
   }

@@ -20,7 +20,7 @@ class BruteForce {
         covariant_(glm::transpose(glm::inverse(glm::dmat3(grid.indexToWorld())))),
         transfer_(transfer) {}
 
-  // Light and opacity of a ray, by the midpoint rule on steps of `step`, world units.
+  // Returns light and opacity of a ray, by the midpoint rule on steps of `step`, world units.
   glm::dvec4 integrate(const ViewRay& ray, double last, double step) {
     glm::dvec3 light(0);
     double transmittance = 1;
@@ -67,7 +67,7 @@ class BruteForce {
   const TransferFunction& transfer_;
 };
 
-// Random content that goes up to the very border of the active voxels.
+// Returns a grid with random content up to the very border of the active voxels.
 ScalarGrid randomGrid(std::mt19937& random, float background) {
   const glm::ivec3 dims(5 + static_cast<int>(uniform(random, 0, 5)), 4 + static_cast<int>(uniform(random, 0, 6)), 6);
   return makeFilled(
@@ -76,11 +76,11 @@ ScalarGrid randomGrid(std::mt19937& random, float background) {
       background);
 }
 
-// Values in [0, 100], nothing where empty space is.
+// Returns a function of values in [0, 100] that shows nothing where empty space is.
 TransferFunction randomFunction(std::mt19937& random, double background, bool twoD) {
   std::vector<double> values{background, background + 15 + 20 * uniform(random, 0, 1)}, gradients{0, 10, 40};
   values.push_back(values.back() + 30);
-  values.push_back(values.back());  // a step
+  values.push_back(values.back());  // two equal values make a step
   values.push_back(values.back() + 20);
   std::vector<TransferFunction::Point> points;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -92,7 +92,7 @@ TransferFunction randomFunction(std::mt19937& random, double background, bool tw
   for (std::size_t j = 0; j < gradients.size(); ++j)
     for (std::size_t i = 0; i < values.size(); ++i) {
       media.push_back(randomMedium(random));
-      // Gradients are seen also where the value is that of empty space, but not without a gradient.
+      // Gradients are seen also where the value is that of empty space, but only where there is a gradient.
       media.back().sigma_t *= i == 0 && j == 0 ? 0 : 0.2;
     }
   return TransferFunction(values, gradients, media);
@@ -128,8 +128,9 @@ TEST_CASE("The reference agrees with short steps through all of space on random 
         for (int c = 0; c < 4; ++c) largest = std::max(largest, std::abs(found.at(x, y)[c] - expected[c]));
       }
     INFO("scene " << trial << ", 2D " << twoD << ", largest opacity " << opacity);
-    // A step of the function is met up to half a step of the ray too soon or late, each of some twenty of them by an
-    // optical depth of up to 1 a voxel edge, at most 1/500 of which is a step.
+    // A step of the function is met up to half a step of the ray too soon or too late. A step of the ray is at
+    // most 1/500 of a voxel edge, the optical depth is up to 1 per voxel edge, and there are some twenty steps
+    // of the function.
     CHECK(largest < 2e-3);
   }
 }

@@ -11,7 +11,7 @@ namespace {
 
 const glm::dvec3 kAlbedo(0.9, 0.5, 0.2);
 const IndexBox kDomain{glm::ivec3(0), glm::ivec3(24)};
-// A picture holds single precision: half a unit in the last place of numbers near 1, twice for what it was added to.
+// A picture holds single precision: half a unit in the last place of numbers near 1, and the same again for the sum.
 constexpr double kRounding = 2 * kFloatRounding;
 
 struct View {
@@ -29,8 +29,8 @@ std::vector<View> viewsOf(const glm::dmat4& indexToWorld) {
           {"inside", perspectiveCamera(centre + glm::dvec3(2, -1, 3), centre + glm::dvec3(9, 5, 1), 1.4, 24)}};
 }
 
-// Largest difference of opacity and of colour over opacity times albedo, over all pixels.
-// @param opacity  of a ray, from which the depths in front of the eye follow
+// Returns the largest difference of opacity, and of colour over opacity times albedo, over all pixels.
+// @param opacity  that of a ray, from which the depths in front of the eye follow
 template <class Opacity>
 double worstOpacity(const ReferencePicture& picture, const Scene& scene, const Opacity& opacity) {
   double worst = 0;
@@ -53,7 +53,7 @@ TEST_CASE("A homogeneous box has the opacity of each ray's exact chord, from nex
         INFO(name << ", sigma_t " << sigma_t << ", crooked " << (transform != glm::dmat4(1)));
         Scene scene = plainScene(homogeneous(kAlbedo, sigma_t), camera, 1);
         const std::vector<ClipPlane> box = boxPlanes({glm::dvec3(kDomain.min), glm::dvec3(kDomain.max)}, transform);
-        // Background and voxels alike are the medium; the domain ends it.
+        // Background and voxels alike are the medium, which ends where the domain does.
         const ScalarGrid grid = fieldGrid(
             kDomain, [](const glm::dvec3&) { return 3.0; }, transform, 1);
         const auto chordOpacity = [&](const std::vector<ClipPlane>& planes) {
@@ -63,7 +63,7 @@ TEST_CASE("A homogeneous box has the opacity of each ray's exact chord, from nex
         };
         // The relative error of nearly transparent pixels is that of single precision, too.
         const double scale = std::min(1.0, sigma_t * 40);
-        // The ray leaves what it cannot see at 1e-6 of transmittance, one of the two stated bounds.
+        // The ray ends at a transmittance of 1e-6, one of the two stated bounds.
         CHECK(worstOpacity(renderReference(grid, scene), scene, chordOpacity(box)) < scale * (kRounding + 1e-6));
         std::vector<ClipPlane> planes = box;
         scene.clipPlanes = {glm::dvec4(0.3, -0.5, 0.8, -glm::dot(glm::dvec3(0.3, -0.5, 0.8), scene.camera.lookAt) + 2)};
@@ -75,7 +75,8 @@ TEST_CASE("A homogeneous box has the opacity of each ray's exact chord, from nex
       }
 }
 
-// A thousand cells of 1e-8 each: the opacity is that of their sum to 1e-6 of itself, roundings do not add up.
+// A thousand cells have an optical depth of 1e-8 each. The opacity is that of their sum to 1e-6 of itself, since
+// roundings do not add up.
 TEST_CASE("Next to nothing in very many cells keeps its digits", "[reference]") {
   for (const double sigma_t : {1e-8, 1.3e-8, 1.7e-9, 1e-4}) {
     const ScalarGrid grid = fieldGrid(
@@ -89,8 +90,8 @@ TEST_CASE("Next to nothing in very many cells keeps its digits", "[reference]") 
   }
 }
 
-// The squared distance from the centre is interpolated as itself plus f (1 - f) along each axis: 0 to 3/4. With half of
-// that taken off, the surface lies within 3/8 of a squared voxel of R^2, and chords' halves likewise.
+// Interpolation adds f (1 - f) along each axis to the squared distance from the centre: 0 to 3/4 in all. With half of
+// that taken off, the surface lies within 3/8 of a squared voxel of R^2, and so do the squares of half the chords.
 TEST_CASE("A homogeneous sphere has the opacity of its chords", "[reference]") {
   const double radius = 10, sigma_t = 0.09;
   const glm::dvec3 centre(12.3, 11.9, 12.1);
@@ -120,8 +121,8 @@ TEST_CASE("A homogeneous sphere has the opacity of its chords", "[reference]") {
   }
 }
 
-// Trilinear interpolation has a linear field exactly, and the depth of a linear extinction is that of the chord's
-// middle.
+// Trilinear interpolation reproduces a linear field exactly, and the optical depth of a linear extinction is that of
+// the chord's middle.
 TEST_CASE("A linear ramp of extinction has its exact optical depth", "[reference]") {
   for (const glm::dmat4& transform : {glm::dmat4(1), crookedTransform()})
     for (const auto& [name, camera] : viewsOf(transform)) {
@@ -142,14 +143,14 @@ TEST_CASE("A linear ramp of extinction has its exact optical depth", "[reference
     }
 }
 
-// Steps of the transfer function on a linear field are exact planes, wherever they lie between voxels.
+// On a linear field the steps of the transfer function are exact planes, wherever they lie between voxels.
 TEST_CASE("Two slabs blend in order, at their exact thickness", "[reference]") {
   const TwoSlabs slabs;
   const ScalarGrid grid = fieldGrid(kDomain, [](const glm::dvec3& p) { return p.z; });
   for (const bool above : {false, true}) {
     const Camera camera = orthographicCamera({12, 9, above ? 60 : -50}, {12, 12, 12}, 8, 16);
     Scene scene = plainScene(slabs.transfer, camera, 1);
-    scene.clipBox = Box{glm::dvec3(1), glm::dvec3(23)};  // beyond, values fall back to the background's
+    scene.clipBox = Box{glm::dvec3(1), glm::dvec3(23)};  // beyond it, values fall back to the background's
     scene.ambient = {2, 0.5, 1};
     scene.background = glm::dvec3(0.25, 3, 0.125);
     const ReferencePicture picture = renderReference(grid, scene);
@@ -157,7 +158,7 @@ TEST_CASE("Two slabs blend in order, at their exact thickness", "[reference]") {
     const glm::dvec3 light = slabs.light(stretch, above);
     for (int c = 0; c < 3; ++c) {
       const double expected = light[c] * scene.ambient[c] + slabs.transmittance(stretch) * (*scene.background)[c];
-      // Values of voxels are whole numbers: nothing but the picture's own rounding is left.
+      // The values of voxels are whole numbers, so only the picture's own rounding is left.
       for (const int pixel : {0, 7, 15})
         CHECK(std::abs(picture.colour.at(pixel, pixel)[c] - expected) < kRounding * std::max(1.0, expected));
     }
@@ -165,14 +166,14 @@ TEST_CASE("Two slabs blend in order, at their exact thickness", "[reference]") {
   }
 }
 
-// The depth at which the mean photon of an exponential profile scatters, for a slab that is opaque: 1 / sigma_t below.
+// In an opaque slab with an exponential profile the mean photon scatters at a depth of 1 / sigma_t below the surface.
 TEST_CASE("Depth is the mean of what is seen", "[reference]") {
   const double sigma_t = 2;
   const ScalarGrid grid = fieldGrid(
       kDomain, [](const glm::dvec3&) { return 1.0; }, glm::dmat4(1), 1);
   Scene scene = plainScene(homogeneous(kAlbedo, sigma_t), orthographicCamera({12, 12, 50}, {12, 12, 0}, 8, 4), 1);
   const ReferencePicture picture = renderReference(grid, scene);
-  // Rays end at a transmittance of 1e-6; what is left out lies 7 units deep, 33 from the eye.
+  // Rays end at a transmittance of 1e-6. What is left out lies 7 units deep, 33 from the eye.
   CHECK(*picture.depth.at(2, 2) == Approx(50 - 24 + 1 / sigma_t).margin(1e-6 * 34 + 26 * kRounding));
   scene.camera = orthographicCamera({100, 12, 50}, {100, 12, 0}, 8, 4);
   CHECK(std::isinf(*renderReference(grid, scene).depth.at(2, 2)));

@@ -10,7 +10,7 @@ using namespace umbrick;
 
 namespace {
 
-// Soft balls over each other: what they hide of a cone has edges.
+// Returns soft balls in front of each other, so that what they hide of a cone has edges.
 ScalarGrid balls() { return makeSparse(glm::ivec3(0), 3, 40, 64); }
 Scene ballScene(int size) {
   Scene scene = plainScene(TransferFunction({{0.1, {glm::dvec3(1), 0}}, {0.2, {glm::dvec3(1), 4}}}),
@@ -21,7 +21,7 @@ Scene ballScene(int size) {
 
 }  // namespace
 
-// V is taken at one place per step, the centre of its scattering: second order where V is smooth.
+// V is taken at one place per step, the centre of its scattering. This is of second order where V is smooth.
 TEST_CASE("V converges with the given step at second order", "[reference]") {
   const ScalarGrid grid = smoothGrid(1);
   const Scene scene = smoothScene(Model::cone, 10);
@@ -50,19 +50,19 @@ TEST_CASE("The error stays near the tolerance that is asked for", "[reference]")
   for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
     options.tolerance = tolerance;
     const ReferencePicture picture = renderReference(grid, scene, options);
-    // It is that of a stretch; a ray has some ten that scatter, of either sign.
+    // The tolerance is that of a stretch. A ray has some ten stretches that scatter, with errors of either sign.
     CHECK(rmsDifference(picture.colour, exact.colour) < 3 * tolerance);
     CHECK(picture.stats.samples < exact.stats.samples);
   }
 }
 
-// Where the medium is smooth rings at Gauss nodes are better than any power; where edges cross the cone, a set of K
-// directions has about sqrt(K) along each edge of each stratum of 1 / K: the error falls as K^(-3/4).
+// Where the medium is smooth, rings at Gauss nodes are better than any power. Where edges cross the cone, each edge
+// cuts about sqrt(K) of the K strata of share 1 / K, so the error falls as K^(-3/4).
 TEST_CASE("V converges with the number of directions", "[reference]") {
   const std::vector<double> counts{8, 32, 128, 512};
   const auto errorsOf = [&](const ScalarGrid& grid, const Scene& scene) {
     ReferenceOptions options;
-    options.step = 4;  // the same places for every count
+    options.step = 4;  // voxels; the same places for every count
     options.directions = 8192;
     const ReferencePicture exact = renderReference(grid, scene, options);
     std::vector<double> errors;
@@ -92,14 +92,14 @@ TEST_CASE("Pictures converge with the voxel size at second order", "[reference]"
     const Image exact = render(0.25);
     const std::vector<double> sizes{3, 1.5, 1};
     std::vector<double> errors;
-    // What is left of the finest one is a sixteenth of the last error.
+    // The error of the finest picture, with which the others are compared, is a sixteenth of the last error.
     for (const double h : sizes) errors.push_back(rmsDifference(render(h), exact));
     INFO(errors[0] << ' ' << errors[1] << ' ' << errors[2]);
     CHECK(observedOrder(sizes, errors) == Approx(2).margin(0.3));
   }
 }
 
-// A pixel is the ray through its centre; between pixels a picture is what linear interpolation makes of it.
+// A pixel is the ray through its centre, and between pixels a picture is what linear interpolation makes of it.
 TEST_CASE("Pictures converge with the pixel size at second order", "[reference]") {
   const ScalarGrid grid = smoothGrid(1);
   Scene scene = smoothScene(Model::emission, 128);
@@ -115,7 +115,7 @@ TEST_CASE("Pictures converge with the pixel size at second order", "[reference]"
   CHECK(observedOrder(sizes, errors) == Approx(2).margin(0.3));
 }
 
-// Twice the paths, half the variance.
+// With twice the paths there is half the variance.
 TEST_CASE("Monte Carlo converges with the square root of its paths", "[reference]") {
   const ScalarGrid grid = balls();
   const Scene scene = ballScene(10);

@@ -17,7 +17,7 @@ LightSource cone(LightFrame frame, const glm::dvec3& axis, double degrees, const
   return {frame, ConeLight{axis, degrees * std::numbers::pi / 180, radiance}};
 }
 
-// Everything that the model may look at: a dense field, a view that no axis is aligned with.
+// Returns a scene in which the model has everything to look at: a dense field, and a view that no axis is aligned with.
 Scene denseScene(const std::vector<LightSource>& lights) {
   const TransferFunction transfer({{0.05, {{0.9, 0.3, 0.1}, 0}}, {0.8, {{1, 0.9, 0.8}, 1}}});
   Scene scene = plainScene(transfer, perspectiveCamera({39, -8, 33}, {14, 14, 14}, 0.9, 8), 1);
@@ -33,7 +33,7 @@ double largest(const Image& image) {
   return most;
 }
 
-// Steps of a given length, so that stretches do not depend on the light.
+// Steps have a given length, so that stretches do not depend on the light.
 ReferenceOptions steps(int directions) {
   ReferenceOptions options;
   options.directions = directions;
@@ -58,7 +58,7 @@ TEST_CASE("A cone of light around the view axis is the model cone", "[reference]
   }
 }
 
-// Light adds up: exactly, where each source has the same directions by itself as together with others.
+// Light adds up. This is exact where each source has the same directions by itself as together with others.
 TEST_CASE("The picture of several lights is the sum of theirs", "[reference]") {
   const std::vector<LightSource> lights{
       cone(LightFrame::view, {1, 0, 1}, 0, {2, 0.1, 0.4}),
@@ -78,15 +78,15 @@ TEST_CASE("The picture of several lights is the sum of theirs", "[reference]") {
     power += own;
   }
   for (float& value : visibility.pixels) value /= static_cast<float>(power);
-  for (std::size_t i = 3; i < sum.pixels.size(); i += 4) sum.pixels[i] /= 3;  // opacity is everyone's
-  // Four pictures in single precision, of radiances up to 4.
+  for (std::size_t i = 3; i < sum.pixels.size(); i += 4) sum.pixels[i] /= 3;  // the opacity is that of each picture
+  // The limit is for four pictures in single precision, with radiances up to 4.
   CHECK(largest(together.colour) > 1);
   CHECK(maxDifference(together.colour, sum) < 4 * 4 * kFloatRounding);
   CHECK(maxDifference(together.visibility, visibility) < 4 * 2 * kFloatRounding);
 }
 
-// Of 600 directions of soft lights a pixel's share is off by about 1/600 of what edges of shadows move it by; together
-// and alone they differ in number and place.
+// Of 600 directions of soft lights, a pixel's share is off by about 1/600 of what edges of shadows move it by. Lights
+// together and alone have different numbers and places of directions.
 TEST_CASE("Soft lights add up as far as their directions reach", "[reference]") {
   const LightSource a = cone(LightFrame::view, {1, 0, 1}, 40, {1, 0.1, 0.4}),
                     b = cone(LightFrame::world, {1, -1, 1}, 25, {0.1, 0.7, 0.4});
@@ -97,9 +97,9 @@ TEST_CASE("Soft lights add up as far as their directions reach", "[reference]") 
     if (i % 4 != 3) CHECK(std::abs(both.colour.pixels[i] - one.colour.pixels[i] - other.colour.pixels[i]) < 1e-3);
 }
 
-// At depth t of a slab of extinction sigma light that is tilted by an angle of cosine c has passed exp(-sigma t / c)
-// and what it scatters loses exp(-sigma t) more on its way to the eye: a slab of thickness L gives (1 - exp(-sigma L (1
-// + 1/c))) / (1 + 1/c), and what lies behind it is dimmed on both ways.
+// Sigma is the extinction of a slab, and c the cosine of the angle by which the light is tilted. At depth t the light
+// has passed exp(-sigma t / c), and what it scatters loses exp(-sigma t) more on its way to the eye. So a slab of
+// thickness L gives (1 - exp(-sigma L (1 + 1/c))) / (1 + 1/c), and what lies behind it is dimmed on both ways.
 TEST_CASE("A sharp tilted light passes two slabs by their thickness over the cosine", "[reference]") {
   const TwoSlabs slabs;
   const ScalarGrid grid = fieldGrid({glm::ivec3(0), glm::ivec3(40, 24, 24)}, [](const glm::dvec3& p) { return p.z; });
@@ -110,14 +110,15 @@ TEST_CASE("A sharp tilted light passes two slabs by their thickness over the cos
   const glm::dvec3 radiance(2, 0.5, 1);
   for (const double degrees : {0.0, 30.0, 60.0}) {
     const double angle = degrees * std::numbers::pi / 180, stretch = 1 + 1 / std::cos(angle);
-    // In the world and, as the camera looks along -z with y up, in the view: the same direction.
+    // The light is given in the world and in the view. As the camera looks along -z with y up, the
+    // direction is the same.
     for (const LightFrame frame : {LightFrame::world, LightFrame::view}) {
       scene.lights = {cone(frame, {std::sin(angle), 0, std::cos(angle)}, 0, radiance)};
       const glm::dvec3 expected = slabs.light(stretch, true) / stretch * radiance;
       INFO(degrees << " degrees: " << expected.x);
       const ReferencePicture smooth = renderReference(grid, scene, quadrature(1));
       for (int c = 0; c < 3; ++c)
-        // Two slabs of a few stretches each, each to 1e-5 of the light.
+        // There are two slabs of a few stretches each, and each stretch is off by 1e-5 of the light.
         CHECK(std::abs(smooth.colour.at(0, 0)[c] - expected[c]) < 1e-4 * 2);
       const ReferencePicture random = renderReference(grid, scene, monteCarlo(40'000));
       for (int c = 0; c < 3; ++c)
@@ -126,7 +127,8 @@ TEST_CASE("A sharp tilted light passes two slabs by their thickness over the cos
   }
 }
 
-// As the half-plane of the cone: what a cone that is tilted towards the roof's edge has beyond it.
+// This is as in the test of the cone's half-plane. Beyond the roof's edge lies a part of a cone that is
+// tilted towards it.
 TEST_CASE("An opaque half-plane hides its share of a tilted cone", "[reference]") {
   const ScalarGrid grid = floorAndRoof();
   const double a = 9, edge = std::atan(a / 11);
@@ -138,7 +140,7 @@ TEST_CASE("An opaque half-plane hides its share of a tilted cone", "[reference]"
       const double expected = 1 - shareBeyond(aperture, edge - radians);
       INFO("tilt " << tilt << ", theta " << theta << ": " << expected);
       const ReferencePicture picture = renderReference(grid, scene, quadrature(4000));
-      // As there; and the floor's own depth along a path of 85 degrees at most.
+      // The first term is as in that test, and the second the floor's own depth along a path of 85 degrees at most.
       CHECK(std::abs(meanVisibility(picture) - expected) < 0.5 / std::sqrt(4000.0) + 0.0015);
       const float* pixel = picture.colour.at(0, 0);
       CHECK(pixel[1] == Approx(0.5 * pixel[0]).epsilon(1e-6));
@@ -146,23 +148,23 @@ TEST_CASE("An opaque half-plane hides its share of a tilted cone", "[reference]"
     }
 }
 
-// The closed form of the cone in a half-space as its angle goes to 90 degrees: 1 - ln 2 of the light of half a sphere,
-// of which an isotropic phase function scatters half.
+// The closed form of the cone in a half-space, as its angle goes to 90 degrees, is 1 - ln 2 of the light of half a
+// sphere. An isotropic phase function scatters half of it.
 TEST_CASE("A constant environment lights a half-space as half of the sphere does", "[reference]") {
   const ScalarGrid grid = makeVoxels({{glm::ivec3(-4000, -4000, -39), 1}, {glm::ivec3(4000, 4000, -1), 1}}, 1);
   Scene scene = lookingDownAt(homogeneous({0.8, 0.5, 0.3}, 0.7), Model::lights, 0, 0);
   const glm::dvec3 radiance(1, 3, 2);
   scene.lights = {environmentOf(7, 3, radiance, false)};
   const glm::dvec3 expected = (1 - std::log(2.0)) / 2 * glm::dvec3(0.8, 0.5, 0.3) * radiance;
-  // Parts of the hemisphere stand for directions of their centre; 1000 are a 25th of it across, and light that grazes
-  // the surface is of little use: half of a 1000th.
+  // Parts of the hemisphere stand for the direction of their centre. 1000 parts are a 25th of it across, and light that
+  // grazes the surface is of little use, so the error is half of a 1000th.
   const ReferencePicture smooth = renderReference(grid, scene, quadrature(1000));
   const ReferencePicture random = renderReference(grid, scene, monteCarlo(200'000));
   for (int c = 0; c < 3; ++c) {
     CHECK(smooth.colour.at(0, 0)[c] == Approx(expected[c]).epsilon(2e-3));
     CHECK(std::abs(random.colour.at(0, 0)[c] - expected[c]) < 4 * random.standardError.at(0, 0)[c]);
   }
-  // Beyond 89.9 degrees is a 570th of the hemisphere, all of it grazing.
+  // Beyond 89.9 degrees there is a 570th of the hemisphere, all of it grazing.
   scene.lights = {cone(LightFrame::view, {0, 0, 1}, 89.9, 0.5 * radiance)};
   const ReferencePicture wide = renderReference(grid, scene, quadrature(1000));
   for (int c = 0; c < 3; ++c)
@@ -172,7 +174,7 @@ TEST_CASE("A constant environment lights a half-space as half of the sphere does
 TEST_CASE("Each light has its own colour in its own shadow", "[reference]") {
   const ScalarGrid grid = floorAndRoof();
   Scene scene = lookingDownAt(floorAndRoofTransfer(), Model::lights, 3, 0);
-  // The roof is to the right, its edge at 39 degrees: red is open, blue is not.
+  // The roof is to the right, with its edge at 39 degrees: red light is open, blue light is not.
   scene.lights = {cone(LightFrame::view, {-1, 0, 1}, 0, {3, 0, 0}), cone(LightFrame::view, {1, 0, 1}, 0, {0, 0, 1})};
   for (const ReferenceOptions& options : {quadrature(2), monteCarlo(400'000)}) {
     const ReferencePicture picture = renderReference(grid, scene, options);
@@ -183,7 +185,7 @@ TEST_CASE("Each light has its own colour in its own shadow", "[reference]") {
       CHECK(red == Approx(3).epsilon(2 * kFloorDepth));
       CHECK(seen == Approx(0.75).epsilon(2 * kFloorDepth));
     } else {
-      // Some 40 of 400 000 paths meet the floor, each of them red or blue: that says little but the ratio.
+      // Some 40 of 400 000 paths meet the floor, each of them red or blue. That says little more than the ratio.
       REQUIRE(pixel[3] > 0);
       CHECK(red == Approx(4 * seen).epsilon(1e-5));
     }
@@ -199,7 +201,7 @@ TEST_CASE("What lies behind the eye does not shade lights", "[reference]") {
   scene.clipPlanes = {ClipPlane(forward, -glm::dot(forward, scene.camera.eye))};
   const ReferencePicture cut = renderReference(denseGrid(), scene, steps(20));
   CHECK(largest(whole.colour) > 0.1);
-  CHECK(maxDifference(whole.colour, cut.colour) < 1e-6);  // rays are clipped twice, each to rounding
+  CHECK(maxDifference(whole.colour, cut.colour) < 1e-6);  // rays are clipped twice, each time to rounding
 }
 
 TEST_CASE("A given list of directions takes the place of the light's own", "[reference]") {
@@ -213,7 +215,7 @@ TEST_CASE("A given list of directions takes the place of the light's own", "[ref
     const ReferencePicture given = renderReference(denseGrid(), scene, options);
     CHECK(maxDifference(own.colour, given.colour) == 0);
     CHECK(maxDifference(own.visibility, given.visibility) == 0);
-    // The mean of two sets is the picture of their union.
+    // The mean of the pictures of two sets is the picture of their union.
     const auto first = lightSamples(scene, 0, 6, 1), second = lightSamples(scene, 6, 6, 1);
     options.lights = first;
     const ReferencePicture a = renderReference(denseGrid(), scene, options);
@@ -227,7 +229,8 @@ TEST_CASE("A given list of directions takes the place of the light's own", "[ref
     for (std::size_t i = 0; i < mean.pixels.size(); ++i)
       mean.pixels[i] = 0.5f * (a.colour.pixels[i] + b.colour.pixels[i]);
     CHECK(maxDifference(both.colour, mean) < 4 * kFloatRounding);
-    // Paths choose among them by power: one in 16 000 pixels is off by four standard errors, of 192.
+    // Paths choose among the directions by power. The limit is four standard errors: of 16 000 pixels one is off by
+    // more, and there are 192.
     ReferenceOptions paths = monteCarlo(4000);
     paths.lights = options.lights;
     const ReferencePicture random = renderReference(denseGrid(), scene, paths);
@@ -249,7 +252,7 @@ TEST_CASE("Lights that are switched off give black, with nothing undefined", "[r
     for (std::size_t i = 0; i < picture.colour.pixels.size(); ++i)
       if (i % 4 != 3) CHECK(picture.colour.pixels[i] == 0);
     CHECK(largest(picture.visibility) == 0);
-    CHECK(largest(picture.colour) > 0.1);  // opacity
+    CHECK(largest(picture.colour) > 0.1);  // the largest is the opacity
   }
 }
 

@@ -13,8 +13,8 @@
 
 namespace umbrick {
 
-/// An environment map of the view, of up to `radiance` in each channel: constant, or with every pixel of its own
-/// colour.
+/// Returns an environment map of the view with up to `radiance` in each channel: constant, or each pixel with
+/// its own colour.
 inline LightSource environmentOf(int width, int height, const glm::dvec3& radiance, bool varied) {
   Image image(width, height, 3);
   for (int y = 0; y < height; ++y)

@@ -33,12 +33,12 @@ inline double meanVisibility(const ReferencePicture& picture) {
   return visible / alpha;
 }
 
-// A floor thin enough to cast no shadow on itself, in layer z = 4, below an opaque roof in layers around z = 14 that
-// begins at x = 12 and ends at x = far: a cone of 85 degrees reaches 114 to the side.
+// The floor is in layer z = 4 and thin enough to cast no shadow on itself. The opaque roof above it is in layers around
+// z = 14, begins at x = 12 and ends at x = far. A cone of 85 degrees reaches 114 to the side.
 inline constexpr double kFloorDepth = 1e-4;  // optical depth, straight through
 inline ScalarGrid floorAndRoof(int far = 150) {
   const openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(0);
-  // Value 1e6 from x = 13 on, so that it passes 1 at x = 12.000001.
+  // The value is 1e6 from x = 13 on, so that it passes 1 at x = 12.000001.
   grid->denseFill({openvdb::Coord(13, -far, 14), openvdb::Coord(far, far, 14)}, 1e6f);
   grid->denseFill({openvdb::Coord(0, -16, 4), openvdb::Coord(11, 16, 4)}, -1);
   return makeGrid(grid);
@@ -49,7 +49,7 @@ inline TransferFunction floorAndRoofTransfer() {
 }
 
 inline Scene lookingDownAt(const TransferFunction& transfer, Model model, double x, double theta) {
-  // One pixel of no extent: the ray through its centre.
+  // One pixel of no extent is the ray through its centre.
   Camera camera = orthographicCamera({x, 0, 40}, {x, 0, 0}, 1, 1);
   camera.up = {0, 1, 0};
   Scene scene = plainScene(transfer, camera, 1);
