@@ -74,7 +74,7 @@ TEST_CASE("Grids are selected by name, by index, or as the only scalar one", "[g
   CHECK(valueOf("") == 7);
 }
 
-TEST_CASE("Only scalar grids are read as scalars, and the message names the type of others", "[grid]") {
+TEST_CASE("Only scalar grids are read as scalars, and the message names the type", "[grid]") {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "g.vdb";
   writeAny(path, {gridOf<openvdb::Vec3SGrid>("v", openvdb::Vec3s(1)), gridOf<openvdb::MaskGrid>("m", true),
