@@ -48,7 +48,7 @@ TEST_CASE("Directions of a cone lie in it, share it and balance around its axis"
 
 // The integrand is smooth on the cone: what a homogeneous medium of unit depth does to light, exp(-1 / cos). By
 // substitution the closed form is an exponential integral; 64 Gauss nodes in the cosine have it to rounding.
-TEST_CASE("The mean over a cone converges faster than any power of the rings", "[optics]") {
+TEST_CASE("The mean over a cone converges faster than any power of the rings", "[optics][slow]") {
   const double aperture = 1.0, cosine = std::cos(aperture);
   double exact = 0;
   for (const auto& [position, weight] : gaussLegendre(64))

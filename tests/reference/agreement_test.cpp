@@ -90,7 +90,7 @@ ReferenceOptions monteCarlo(int samples, std::uint64_t seed) {
 // pixel say much the same, so N is about 288 for 144 pixels. This gives 0.083, and the limit is four of them. The error
 // that directions and tolerance leave in the quadrature, some 5e-3, is a twentieth of the variance of 500 paths. A bias
 // of one standard error would double the mean.
-TEST_CASE("Quadrature and Monte Carlo agree within the standard error that Monte Carlo states", "[reference]") {
+TEST_CASE("Quadrature and Monte Carlo agree within the standard error that Monte Carlo states", "[reference][slow]") {
   for (const auto& [name, grid, scene] : cases()) {
     INFO(name);
     ReferenceOptions options;
@@ -158,7 +158,7 @@ TEST_CASE("The standard error asked for is reached, and no sooner than it must",
 }
 
 // The standard error of a pixel is that of its mean over seeds.
-TEST_CASE("The stated standard error is the scatter of pictures of other seeds", "[reference]") {
+TEST_CASE("The stated standard error is the scatter of pictures of other seeds", "[reference][slow]") {
   const Case made = cases()[3];
   const int seeds = 40;
   std::vector<double> sum, squares, stated;

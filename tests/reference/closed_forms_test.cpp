@@ -92,7 +92,7 @@ TEST_CASE("Next to nothing in very many cells keeps its digits", "[reference]") 
 
 // Interpolation adds f (1 - f) along each axis to the squared distance from the centre: 0 to 3/4 in all. With half of
 // that taken off, the surface lies within 3/8 of a squared voxel of R^2, and so do the squares of half the chords.
-TEST_CASE("A homogeneous sphere has the opacity of its chords", "[reference]") {
+TEST_CASE("A homogeneous sphere has the opacity of its chords", "[reference][slow]") {
   const double radius = 10, sigma_t = 0.09;
   const glm::dvec3 centre(12.3, 11.9, 12.1);
   const ScalarGrid grid = fieldGrid(
@@ -144,7 +144,7 @@ TEST_CASE("A linear ramp of extinction has its exact optical depth", "[reference
 }
 
 // On a linear field the steps of the transfer function are exact planes, wherever they lie between voxels.
-TEST_CASE("Two slabs blend in order, at their exact thickness", "[reference]") {
+TEST_CASE("Two slabs blend in order, at their exact thickness", "[reference][slow]") {
   const TwoSlabs slabs;
   const ScalarGrid grid = fieldGrid(kDomain, [](const glm::dvec3& p) { return p.z; });
   for (const bool above : {false, true}) {

@@ -22,7 +22,7 @@ Scene ballScene(int size) {
 }  // namespace
 
 // V is taken at one place per step, the centre of its scattering. This is of second order where V is smooth.
-TEST_CASE("V converges with the given step at second order", "[reference]") {
+TEST_CASE("V converges with the given step at second order", "[reference][slow]") {
   const ScalarGrid grid = smoothGrid(1);
   const Scene scene = smoothScene(Model::cone, 10);
   ReferenceOptions options;
@@ -58,7 +58,7 @@ TEST_CASE("The error stays near the tolerance that is asked for", "[reference]")
 
 // Where the medium is smooth, rings at Gauss nodes are better than any power. Where edges cross the cone, each edge
 // cuts about sqrt(K) of the K strata of share 1 / K, so the error falls as K^(-3/4).
-TEST_CASE("V converges with the number of directions", "[reference]") {
+TEST_CASE("V converges with the number of directions", "[reference][slow]") {
   const std::vector<double> counts{8, 32, 128, 512};
   const auto errorsOf = [&](const ScalarGrid& grid, const Scene& scene) {
     ReferenceOptions options;
@@ -81,7 +81,7 @@ TEST_CASE("V converges with the number of directions", "[reference]") {
 }
 
 // Interpolation replaces a smooth field by one that is h^2 / 8 of its curvature away.
-TEST_CASE("Pictures converge with the voxel size at second order", "[reference]") {
+TEST_CASE("Pictures converge with the voxel size at second order", "[reference][slow]") {
   for (const Model model : {Model::emission, Model::cone, Model::ambient}) {
     INFO(modelName(model));
     const Scene scene = smoothScene(model, 8);
@@ -100,7 +100,7 @@ TEST_CASE("Pictures converge with the voxel size at second order", "[reference]"
 }
 
 // A pixel is the ray through its centre, and between pixels a picture is what linear interpolation makes of it.
-TEST_CASE("Pictures converge with the pixel size at second order", "[reference]") {
+TEST_CASE("Pictures converge with the pixel size at second order", "[reference][slow]") {
   const ScalarGrid grid = smoothGrid(1);
   Scene scene = smoothScene(Model::emission, 128);
   scene.camera.fov = 0.4;
@@ -116,7 +116,7 @@ TEST_CASE("Pictures converge with the pixel size at second order", "[reference]"
 }
 
 // With twice the paths there is half the variance.
-TEST_CASE("Monte Carlo converges with the square root of its paths", "[reference]") {
+TEST_CASE("Monte Carlo converges with the square root of its paths", "[reference][slow]") {
   const ScalarGrid grid = balls();
   const Scene scene = ballScene(10);
   ReferenceOptions options;

@@ -87,7 +87,7 @@ TEST_CASE("The picture of several lights is the sum of theirs", "[reference]") {
 
 // Of 600 directions of soft lights, a pixel's share is off by about 1/600 of what edges of shadows move it by. Lights
 // together and alone have different numbers and places of directions.
-TEST_CASE("Soft lights add up as far as their directions reach", "[reference]") {
+TEST_CASE("Soft lights add up as far as their directions reach", "[reference][slow]") {
   const LightSource a = cone(LightFrame::view, {1, 0, 1}, 40, {1, 0.1, 0.4}),
                     b = cone(LightFrame::world, {1, -1, 1}, 25, {0.1, 0.7, 0.4});
   const ReferencePicture both = renderReference(denseGrid(), denseScene({a, b}), steps(1200));
@@ -129,7 +129,7 @@ TEST_CASE("A sharp tilted light passes two slabs by their thickness over the cos
 
 // This is as in the test of the cone's half-plane. Beyond the roof's edge lies a part of a cone that is
 // tilted towards it.
-TEST_CASE("An opaque half-plane hides its share of a tilted cone", "[reference]") {
+TEST_CASE("An opaque half-plane hides its share of a tilted cone", "[reference][slow]") {
   const ScalarGrid grid = floorAndRoof();
   const double a = 9, edge = std::atan(a / 11);
   for (const double tilt : {-40.0, 20.0, 38.0})

@@ -13,7 +13,7 @@ using namespace umbrick;
 // layer. At x = 12 - a this plane is at atan(a / 11) from the vertical. The floor has a thickness of its own: its light
 // comes from heights spread by 1/sqrt(6) around z = 4. This changes the angle to second order, by less than (0.4 /
 // 11)^2 of itself.
-TEST_CASE("An opaque half-plane hides its share of the cone", "[reference]") {
+TEST_CASE("An opaque half-plane hides its share of the cone", "[reference][slow]") {
   const ScalarGrid grid = floorAndRoof();
   for (const double theta : {20.0, 60.0, 85.0})
     for (const double a : {1.0, 4.0, 9.0}) {
@@ -27,7 +27,7 @@ TEST_CASE("An opaque half-plane hides its share of the cone", "[reference]") {
     }
 }
 
-TEST_CASE("An opaque half-plane hides its share of the sphere", "[reference]") {
+TEST_CASE("An opaque half-plane hides its share of the sphere", "[reference][slow]") {
   const int far = 400;
   const ScalarGrid grid = floorAndRoof(far);
   for (const double a : {1.0, 4.0, 9.0}) {

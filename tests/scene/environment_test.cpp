@@ -183,7 +183,7 @@ TEST_CASE("The median cut keeps all of the light", "[scene]") {
     }
 }
 
-TEST_CASE("The median cut converges, and its rotations average to a better one", "[scene]") {
+TEST_CASE("The median cut converges, and its rotations average to a better one", "[scene][slow]") {
   LightSource source = environment(96, 48, varied, LightFrame::world);
   const Scene scene = sceneWith({source});
   const glm::dvec3 axis = towardsViewer(scene);
@@ -212,7 +212,7 @@ TEST_CASE("The median cut converges, and its rotations average to a better one",
   CHECK(relative(mean, exact) < single);
 }
 
-TEST_CASE("Samples of a map have its mean over seeds, and converge faster than random ones", "[scene]") {
+TEST_CASE("Samples of a map have its mean over seeds, and converge faster than random ones", "[scene][slow]") {
   LightSource source = environment(32, 16, varied, LightFrame::world);
   mapOf(source).up = {0.2, 0.9, -0.4};
   const Scene scene = sceneWith({source});

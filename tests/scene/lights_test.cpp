@@ -161,7 +161,7 @@ TEST_CASE("A light of the view moves with the camera, one of the world stays", "
 // One set of n points is off by less than a random one, and sets that follow each other fill its gaps: a random union
 // of 2^j sets has an error of 2^(-j/2) of the first's. The points of R2 are of discrepancy log(n)^2 / n at best; over
 // seven doublings that asks for an order of 0.7 at least, with the mean of eight seeds to smooth what single ones do.
-TEST_CASE("Samples that follow each other converge faster than random ones", "[scene]") {
+TEST_CASE("Samples that follow each other converge faster than random ones", "[scene][slow]") {
   const Scene scene = sceneWith({cone({0.5, 0.2, 1}, 50, {1, 0.5, 0.2}), cone({-1, 0, 1}, 10, {0.1, 0.2, 0.9})});
   const auto f = throughSlab(towardsViewer(scene));
   const double exact = appliedChannel(lightDirections(scene, 20'000), f);

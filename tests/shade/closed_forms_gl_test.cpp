@@ -16,7 +16,7 @@ const IndexBox kDomain{glm::ivec3(0), glm::ivec3(24)};
 // The surface is where the interpolated square of the distance passes R^2: within 3/8 of a squared voxel. A ramp of
 // 20 squared voxels stands for the step, which a table of 1024 bins over 1100 of them has to 1.1. Slabs in which the
 // ramp bends are off by the bend of the squared distance, d^2 / 4.
-TEST_CASE("A homogeneous sphere has the opacity of its chords, as slices", "[shade][gl]") {
+TEST_CASE("A homogeneous sphere has the opacity of its chords, as slices", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const double radius = 10, sigma_t = 0.09, d = 0.25;
@@ -57,7 +57,7 @@ TEST_CASE("A homogeneous sphere has the opacity of its chords, as slices", "[sha
 
 // Steps of the transfer function on a linear field are planes. The table ends each of them within a bin of it, here 24
 // units of 1023, and a table's integral is linear where it should bend.
-TEST_CASE("Two slabs blend in order, as slices of any spacing", "[shade][gl]") {
+TEST_CASE("Two slabs blend in order, as slices of any spacing", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const TwoSlabs slabs;
@@ -82,7 +82,7 @@ TEST_CASE("Two slabs blend in order, as slices of any spacing", "[shade][gl]") {
 // great circle cuts off (see the tests of the reference). The repeated mean of dos is a random walk instead: after m
 // slices its spread is normal with m times the variance of a step, and V = Phi(a / deviation). Both are closed forms;
 // the renderer must have the second one, and how far that is from the first is the method's error.
-TEST_CASE("Below an opaque half-plane dos has the light of a random walk, not of the cone", "[shade][gl]") {
+TEST_CASE("Below an opaque half-plane dos has the light of a random walk, not of the cone", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   // Roof in layer z = 24 from x = 1 on, floor in layer z = 4. Slabs are sampled at their middles, one of them exactly

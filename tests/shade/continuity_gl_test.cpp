@@ -163,7 +163,7 @@ void checkJumps(Model model, int size, int every) {
 
 }  // namespace
 
-TEST_CASE("A camera that moves in small steps changes emission as little as the reference", "[shade][gl]") {
+TEST_CASE("A camera that moves in small steps changes emission as little as the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   for (const Path& path : paths(24)) {
@@ -174,7 +174,7 @@ TEST_CASE("A camera that moves in small steps changes emission as little as the 
 
 // Shadows of dos are narrower than those of the cone, sqrt(d / L) as wide at a distance L: their edges move over a
 // pixel in less time, for those of near occluders in half of it.
-TEST_CASE("A camera that moves in small steps changes occlusion as little as the reference", "[shade][gl]") {
+TEST_CASE("A camera that moves in small steps changes occlusion as little as the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   for (const Path& path : paths(16)) {
@@ -185,7 +185,9 @@ TEST_CASE("A camera that moves in small steps changes occlusion as little as the
 
 // With early rejection a pixel may jump by the transmittance at which it is left. The light that tiles and regions
 // leave out is 1e-5 to 3e-5 (see screen_region.h, light_tiles.cpp).
-TEST_CASE("No step of the camera is so small that emission jumps", "[shade][gl]") {
+TEST_CASE("No step of the camera is so small that emission jumps", "[shade][gl][slow]") {
   checkJumps(Model::emission, 24, 8);
 }
-TEST_CASE("No step of the camera is so small that occlusion jumps", "[shade][gl]") { checkJumps(Model::cone, 40, 22); }
+TEST_CASE("No step of the camera is so small that occlusion jumps", "[shade][gl][slow]") {
+  checkJumps(Model::cone, 40, 22);
+}

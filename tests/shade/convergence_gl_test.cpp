@@ -22,7 +22,7 @@ Image exactPicture(const ScalarGrid& grid, const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("Emission converges to the reference at second order in the slice distance", "[shade][gl]") {
+TEST_CASE("Emission converges to the reference at second order in the slice distance", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = smoothGrid(1);
@@ -53,7 +53,7 @@ TEST_CASE("Emission converges to the reference at second order in the slice dist
     }
 }
 
-TEST_CASE("Pictures of slices converge with the voxel size and the pixel size at second order", "[shade][gl]") {
+TEST_CASE("Pictures of slices converge with the voxel size and the pixel size at second order", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   Scene scene = smoothScene(Model::emission, 16);
@@ -80,7 +80,7 @@ TEST_CASE("Pictures of slices converge with the voxel size and the pixel size at
 }
 
 // With an aperture of 0 dos is the model itself. V of a slab is that at its front: first order.
-TEST_CASE("Without an aperture dos converges to the reference at first order", "[shade][gl]") {
+TEST_CASE("Without an aperture dos converges to the reference at first order", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = smoothGrid(1);
@@ -102,7 +102,7 @@ TEST_CASE("Without an aperture dos converges to the reference at first order", "
 // falls with d, until the linear interpolation of the buffer, which adds a variance of f (1 - f) squared pixels per
 // step of a fraction f of a pixel, keeps it at sqrt(L tan(theta) pixel / 2) or so. Either way the picture does not
 // become the cone's: its error falls by less and less, where that of emission, on the same scene, goes on.
-TEST_CASE("With an aperture dos does not converge to the cone: its error levels off", "[shade][gl]") {
+TEST_CASE("With an aperture dos does not converge to the cone: its error levels off", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();

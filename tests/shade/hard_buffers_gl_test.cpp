@@ -74,7 +74,7 @@ TEST_CASE("A sweep of 10 000 slices adds up to that of 100", "[shade][gl]") {
   }
 }
 
-TEST_CASE("Light that 10 000 slices have carried is that of the equations", "[shade][gl]") {
+TEST_CASE("Light that 10 000 slices have carried is that of the equations", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   for (const double whole : {0.05, 2.3})
@@ -92,7 +92,7 @@ TEST_CASE("Light that 10 000 slices have carried is that of the equations", "[sh
 // The bound is that of SamplingOptions::bits. A slab's light, opacity and transmittance are rounded, what is blended is
 // rounded again: an error of half a step each time. Where roundings are as likely up as down they add up as a walk,
 // sqrt(N) steps.
-TEST_CASE("16 bits stay within a step and a half per slice", "[shade][gl]") {
+TEST_CASE("16 bits stay within a step and a half per slice", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   for (const Model model : {Model::emission, Model::cone})

@@ -56,7 +56,7 @@ TEST_CASE("A near distance through the volume cuts it, light included, as the re
 
 // At 1 degree rays are nearly parallel and 57 times as far away as the picture is high; at 150 degrees those of the
 // corners are 5.4 times as long per slice as the central one, which a slab of one voxel's depth has to reach through.
-TEST_CASE("Fields of view of 1 and 150 degrees match the reference", "[shade][gl]") {
+TEST_CASE("Fields of view of 1 and 150 degrees match the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({30, 30, 30});

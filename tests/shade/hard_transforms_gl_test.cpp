@@ -64,7 +64,7 @@ TEST_CASE("Huge and tiny worlds look like one of unit size", "[shade][gl]") {
     }
 }
 
-TEST_CASE("Grids of the smallest voxels that OpenVDB takes and of huge ones match the reference", "[shade][gl]") {
+TEST_CASE("Grids of the smallest voxels that OpenVDB takes and of huge ones match the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid unit = makeFilled({24, 24, 24}, {0, 0, 0}, smallBlobs);
@@ -76,7 +76,7 @@ TEST_CASE("Grids of the smallest voxels that OpenVDB takes and of huge ones matc
 }
 
 // The apron and the slabs' reach follow from the axes, so that each of these needs other ones.
-TEST_CASE("Rotated, anisotropic, sheared and mirrored grids match the reference", "[shade][gl]") {
+TEST_CASE("Rotated, anisotropic, sheared and mirrored grids match the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, smallBlobs);
@@ -152,7 +152,7 @@ TEST_CASE("A grid 1e6 voxels from the origin looks like one at the origin", "[sh
 
 // Noise: each plane of voxels differs from the next as much as can be. Slices through the planes, or half-way between
 // them; rays along the planes, too, at centres of voxels and at faces between bricks.
-TEST_CASE("Views along planes of the grid, slices on planes of voxels match the reference", "[shade][gl]") {
+TEST_CASE("Views along planes of the grid, slices on planes of voxels match the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeNoise({20, 20, 20}, {0, 0, 0});

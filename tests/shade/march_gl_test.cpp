@@ -65,7 +65,7 @@ Reference marchPicture(const FieldBricks& volume, const Scene& scene, int steps)
 
 // Of four spacings, each half the one before, the root mean square error must fall by 4 each time. Slabs that clip
 // planes cut differ from one spacing to the next, which leaves the order a little to chance.
-TEST_CASE("A smooth field converges to a march in double precision at second order", "[shade][gl]") {
+TEST_CASE("A smooth field converges to a march in double precision at second order", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const glm::dvec3 centre = kMediumIndex.centre();
@@ -96,7 +96,7 @@ TEST_CASE("A smooth field converges to a march in double precision at second ord
 }
 
 // The pre-integrated table holds a peak narrower than a slab's change of value; a point sample misses it.
-TEST_CASE("A thin shell of a steep field is seen by pre-integration at any phase of the slices", "[shade][gl]") {
+TEST_CASE("A thin shell of a steep field is seen by pre-integration at any phase of the slices", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   // value = z / 40 crosses a peak of width 0.02 (0.8 voxels): tau = area of the peak times 40.

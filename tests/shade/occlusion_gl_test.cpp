@@ -44,7 +44,7 @@ TEST_CASE("Two passes a slice and multiple render targets agree to the last bit"
 
 // Differences are of single-precision coordinates: 6e-8 of an image of 40 pixels moves a lookup by 2e-6 pixels, where
 // neighbours differ by up to 0.1, on each of some 50 slices.
-TEST_CASE("The occlusion sweep agrees with one in double precision", "[shade][gl]") {
+TEST_CASE("The occlusion sweep agrees with one in double precision", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   for (const Camera& camera : blobCameras())

@@ -40,7 +40,7 @@ Scene refined(Scene scene, double spacing) {
 // itself: errors of a texel's size, first order for each slice, which average out as far as slices differ. The slab's
 // own shadow takes one mean path for all directions, first order as well, the more the directions differ. Measured when
 // this was written, over these spacings: 1.8 for K = 1, 1.67 at 57 degrees, 1.13 at 80.
-TEST_CASE("Light by ordinates converges to that of the same directions", "[shade][gl]") {
+TEST_CASE("Light by ordinates converges to that of the same directions", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = smoothGrid(1);
@@ -77,7 +77,7 @@ TEST_CASE("Light by ordinates converges to that of the same directions", "[shade
 // dos levels off at 0.075 (see convergence_gl_test); with 1024 slices it has 0.084 at 60 degrees and 0.079 at 80. By
 // ordinates, 128 slices have with 16 directions a seventh of that, with 8 less than a quarter, most of which is that of
 // 8 directions instead of the cone, whatever renders them.
-TEST_CASE("Light by ordinates converges to the cone where dos does not", "[shade][gl]") {
+TEST_CASE("Light by ordinates converges to the cone where dos does not", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();

@@ -50,7 +50,7 @@ constexpr double kPictureRounding = 2e-5;
 
 }  // namespace
 
-TEST_CASE("Light by ordinates agrees with a sweep in double precision", "[shade][gl]") {
+TEST_CASE("Light by ordinates agrees with a sweep in double precision", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   for (const Camera& camera : blobCameras())
@@ -87,7 +87,7 @@ TEST_CASE("Light by ordinates agrees with a sweep in double precision", "[shade]
 //   d_e / (d_e + d_k) (1 - exp(-sigma_t L (d_e + d_k)))     d_e, d_k: lengths per depth of the eye's path and the
 //   light's
 // into each pixel, however it is cut into slabs. Behind two clip planes, or, with the eye inside, from the eye on.
-TEST_CASE("A homogeneous layer under one direction has its closed form at any slice distance", "[shade][gl]") {
+TEST_CASE("A homogeneous layer under one direction has its closed form at any slice distance", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const double sigma_t = 0.11;
@@ -170,7 +170,7 @@ TEST_CASE("In a medium wider than the image each direction falls along its own p
       }
 }
 
-TEST_CASE("Two slabs under one direction, as the light of each says", "[shade][gl]") {
+TEST_CASE("Two slabs under one direction, as the light of each says", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const TwoSlabs slabs;
@@ -235,7 +235,7 @@ TEST_CASE("What is off the screen casts its shadow", "[shade][gl]") {
 }
 
 // As shareBeyond says; see closed_forms_gl_test for the scene and for what dos makes of it.
-TEST_CASE("Below an opaque half-plane ordinates have the light of the cone", "[shade][gl]") {
+TEST_CASE("Below an opaque half-plane ordinates have the light of the cone", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto field = [](const glm::ivec3& i) { return i.z == 24 && i.x >= 1 ? 1.0 : i.z == 4 ? -1.0 : 0.0; };
@@ -290,7 +290,7 @@ TEST_CASE("Clipping an occluder away lights what is behind it, by ordinates as w
 
 // Slices only multiply what is on the lattice, which is the same whatever bricks there are, so that only the roundings
 // of texture coordinates differ. The volume has a wide gap that culling leaves out, also of the slices.
-TEST_CASE("Bricks, culling, pools and textures change nothing of light by ordinates", "[shade][gl]") {
+TEST_CASE("Bricks, culling, pools and textures change nothing of light by ordinates", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto far = [](const glm::ivec3& i) { return std::max(blobs(i), blobs(i + glm::ivec3(60, -11, 70))); };
@@ -422,7 +422,7 @@ TEST_CASE("Pictures of lights add up to the picture of all of them", "[shade][gl
 
 // A window is rounded to half of 1/65535 each time that a slice multiplies it, so that after N of them it is off by N
 // times that at most: less than SamplingOptions::bits promises.
-TEST_CASE("Windows of 16 bits stay within half a step per slice", "[shade][gl]") {
+TEST_CASE("Windows of 16 bits stay within half a step per slice", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   for (const Camera& camera : blobCameras())

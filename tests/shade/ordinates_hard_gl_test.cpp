@@ -110,7 +110,7 @@ TEST_CASE("Media as solid as numbers allow are lit in front and dark behind, at 
 
 // Drift: a window is multiplied 10 000 times. Single precision rounds each time by 6e-8 of it; 16 bits by half of
 // 1/65535, at worst always the same way, and then light does not fall at all when a slab takes less than half a step.
-TEST_CASE("Windows that 10 000 slices have multiplied are off by half a step per slice at most", "[shade][gl]") {
+TEST_CASE("Windows that 10 000 slices have multiplied are off by half a step per slice at most", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const double depth = 20;
@@ -142,7 +142,7 @@ TEST_CASE("Windows that 10 000 slices have multiplied are off by half a step per
 
 // Of 24 directions in 89.9 degrees the steepest move by 9 to 44 units per unit of depth, and meet the medium once in as
 // many slabs: too rarely for an order before slabs are a tenth as thick. Measured: 2.9 times the change is left.
-TEST_CASE("Apertures of 0 and 89.9 degrees, one direction and many, match the reference", "[shade][gl]") {
+TEST_CASE("Apertures of 0 and 89.9 degrees, one direction and many, match the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, smallBlobs);
@@ -230,7 +230,7 @@ TEST_CASE("A grid 1e6 voxels from the origin, by ordinates, looks like one at th
     }
 }
 
-TEST_CASE("Grids in any place and shape, by ordinates, match the reference", "[shade][gl]") {
+TEST_CASE("Grids in any place and shape, by ordinates, match the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, smallBlobs);
@@ -256,7 +256,7 @@ TEST_CASE("Grids in any place and shape, by ordinates, match the reference", "[s
   }
 }
 
-TEST_CASE("A camera in the medium and a wide field of view, by ordinates, match the reference", "[shade][gl]") {
+TEST_CASE("A camera in the medium and a wide field of view, by ordinates, match the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({20, 20, 20});
@@ -413,7 +413,7 @@ TEST_CASE("Lights without radiance and maps that are dark in front give opacity 
 //
 // Lights of the world turn as the camera moves: then one path after another is rounded to another texel in one slice
 // after another. Each jumps by a share of the light of one slab.
-TEST_CASE("No step of the camera is so small that light by ordinates jumps", "[shade][gl]") {
+TEST_CASE("No step of the camera is so small that light by ordinates jumps", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeFilled({24, 24, 24}, {0, 0, 0}, smallBlobs);
@@ -473,7 +473,7 @@ TEST_CASE("No step of the camera is so small that light by ordinates jumps", "[s
 // to one; larger texels see it in some phases too thick and in others not at all, on average over phases as thick as
 // it is. It leaks then, on average the more the larger a texel is and at worst all of the light, which is why scale 0
 // takes texels of a voxel unless slabs are larger.
-TEST_CASE("A wall thinner than a texel of the windows leaks as the test says", "[shade][gl]") {
+TEST_CASE("A wall thinner than a texel of the windows leaks as the test says", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto field = [](const glm::ivec3& i) { return i.z == 4 || (i.x == 16 && i.z > 8 && i.z < 40) ? 1.0 : 0.0; };

@@ -206,7 +206,7 @@ TEST_CASE("The same seed gives the same picture to the bit, another seed another
 // ten, and is off by a quarter in one of three pictures, hardly ever by a factor of two. Of 12 pictures it is known to
 // a third of that; measured: 0.92 to 0.97 of what is found. The error falls with the power 0.7 of the passes.
 TEST_CASE("The standard error is that of the mean, which falls faster than with the root of the passes",
-          "[shade][gl]") {
+          "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();
@@ -252,7 +252,7 @@ Scene qualityScene(Quality quality, int pixels) {
 // Pixels of 1.8 and 0.9 voxels. Where texels followed pixels, `high` had slabs of 1.25 voxels and texels of 1.8 in the
 // smaller picture, and an estimate that was too low.
 TEST_CASE("Better quality is nearer to the reference at any size and estimates how near, within a factor of two",
-          "[shade][gl]") {
+          "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();

@@ -49,7 +49,7 @@ std::vector<double> sweep(const std::vector<ScreenRegion>& covered, const std::v
 
 // All that bricks read must be what a sweep of whole images gives, but for what a walk carries farther than kWalkReach
 // deviations: 3e-5.
-TEST_CASE("Outside of its region occlusion is 1 or is read no more", "[shade]") {
+TEST_CASE("Outside of its region occlusion is 1 or is read no more", "[shade][slow]") {
   std::mt19937 random(11);
   const auto uniform = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
   double worst = 0, smallest = 1;

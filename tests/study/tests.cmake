@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-umbrick_tests(study earlier_study_test.cpp page_test.cpp plot_script_test.cpp statistics_test.cpp
+umbrick_tests(study SLOW earlier_study_test.cpp page_test.cpp plot_script_test.cpp statistics_test.cpp
               study_findings_test.cpp study_plan_test.cpp study_record_test.cpp study_timing_test.cpp OPENVDB
               study_gl_test.cpp)
 # All but the study itself is internal.

@@ -33,15 +33,15 @@ void checkScenes(std::uint64_t part) {
 }  // namespace
 
 TEST_CASE("Random scenes match the reference and their variants, part 0", "[fuzz]") { checkScenes(0); }
-TEST_CASE("Random scenes match the reference and their variants, part 1", "[fuzz]") { checkScenes(1); }
-TEST_CASE("Random scenes match the reference and their variants, part 2", "[fuzz]") { checkScenes(2); }
-TEST_CASE("Random scenes match the reference and their variants, part 3", "[fuzz]") { checkScenes(3); }
-TEST_CASE("Random scenes match the reference and their variants, part 4", "[fuzz]") { checkScenes(4); }
-TEST_CASE("Random scenes match the reference and their variants, part 5", "[fuzz]") { checkScenes(5); }
-TEST_CASE("Random scenes match the reference and their variants, part 6", "[fuzz]") { checkScenes(6); }
-TEST_CASE("Random scenes match the reference and their variants, part 7", "[fuzz]") { checkScenes(7); }
-TEST_CASE("Random scenes match the reference and their variants, part 8", "[fuzz]") { checkScenes(8); }
-TEST_CASE("Random scenes match the reference and their variants, part 9", "[fuzz]") { checkScenes(9); }
+TEST_CASE("Random scenes match the reference and their variants, part 1", "[fuzz][slow]") { checkScenes(1); }
+TEST_CASE("Random scenes match the reference and their variants, part 2", "[fuzz][slow]") { checkScenes(2); }
+TEST_CASE("Random scenes match the reference and their variants, part 3", "[fuzz][slow]") { checkScenes(3); }
+TEST_CASE("Random scenes match the reference and their variants, part 4", "[fuzz][slow]") { checkScenes(4); }
+TEST_CASE("Random scenes match the reference and their variants, part 5", "[fuzz][slow]") { checkScenes(5); }
+TEST_CASE("Random scenes match the reference and their variants, part 6", "[fuzz][slow]") { checkScenes(6); }
+TEST_CASE("Random scenes match the reference and their variants, part 7", "[fuzz][slow]") { checkScenes(7); }
+TEST_CASE("Random scenes match the reference and their variants, part 8", "[fuzz][slow]") { checkScenes(8); }
+TEST_CASE("Random scenes match the reference and their variants, part 9", "[fuzz][slow]") { checkScenes(9); }
 
 TEST_CASE("A seed makes the same scene again, and another one another scene", "[fuzz]") {
   for (const SceneKind kind : {SceneKind::emission, SceneKind::occlusion, SceneKind::lights, SceneKind::any}) {
