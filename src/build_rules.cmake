@@ -1,5 +1,16 @@
-# Rules that every target shares: warnings, sanitizers, rooms, embedded text.
+# Rules that every target shares: ccache, warnings, sanitizers, rooms, embedded text.
 # SPDX-License-Identifier: Apache-2.0
+
+# Compiles by way of ccache, if it is installed. It keeps what uses a precompiled header only if it may overlook when that
+# was made, and if the compiler names the header in preprocessed text.
+macro(umbrick_use_ccache)
+  find_program(CCACHE ccache)
+  if(CCACHE)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+        CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE})
+    add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  endif()
+endmacro()
 
 # Flags of every target of the project, kept off its users.
 function(umbrick_flags target)

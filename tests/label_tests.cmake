@@ -2,6 +2,7 @@
 #   cmake -DPROGRAM=... -DPREFIX=... -Dslow=SPEC -Dgl=SPEC -DOUTPUT=... -P label_tests.cmake
 # A SPEC says in Catch's words which tests have the label: [tag], or [#file] for the tests of file.cpp. Catch's module can
 # set labels too, but only on all that one call lists: each combination of labels would be a list of its own.
+# SPDX-License-Identifier: Apache-2.0
 cmake_minimum_required(VERSION 3.25)
 set(all "")
 foreach(label slow gl)
