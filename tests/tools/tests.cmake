@@ -6,4 +6,7 @@ if(UMBRICK_TOOLS)
               reference_test.cpp)
   target_link_libraries(umbrick_tools_tests PRIVATE ZLIB::ZLIB nlohmann_json::nlohmann_json)
   add_dependencies(umbrick_tools_tests umbrick_tool)
+
+  add_test(NAME "tools: tools/README.md quotes what --help prints"
+           COMMAND ${PROJECT_SOURCE_DIR}/tools/make_readme --check $<TARGET_FILE:umbrick_tool>)
 endif()
