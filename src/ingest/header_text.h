@@ -36,6 +36,10 @@ struct NamePattern {
 /// Nothing when `text` has not exactly one %d, %4d or %04d.
 std::optional<NamePattern> namePattern(std::string_view text);
 
+/// Whether the value of a field for data files is LIST, as in "LIST 2D": the names follow, one a line. A file may be
+/// called list.raw.
+bool announcesList(std::string_view value);
+
 /// The names from `first` to `last`; empty when a number or the pattern is none or there would be a million files.
 std::vector<std::string> numberedNames(std::string_view pattern, std::string_view first, std::string_view last,
                                        std::string_view step);

@@ -66,7 +66,7 @@ class MetaHeaderReader {
       const std::string key(trimmed(std::string_view(text).substr(0, sign)));
       fields_[key] = std::string(trimmed(std::string_view(text).substr(sign + 1)));
       if (key != "ElementDataFile") continue;
-      if (!lower(fields_[key]).starts_with("list")) return;
+      if (!announcesList(fields_[key])) return;
       while (line(text))
         if (!trimmed(text).empty()) list_.emplace_back(trimmed(text));
       return;
@@ -197,7 +197,7 @@ class MetaHeaderReader {
     const std::string name = value("ElementDataFile");
     const std::vector<std::string> parts = words(name);
     std::vector<std::string> names;
-    if (lower(name).starts_with("list")) {
+    if (announcesList(name)) {
       names = list_;
     } else if (parts.size() >= 3 && parts[0].find('%') != std::string::npos) {
       names = numberedNames(parts[0], parts[1], parts[2], parts.size() > 3 ? parts[3] : "1");

@@ -93,7 +93,7 @@ class NrrdHeaderReader {
       if (field == "centerings") field = "centers";
       if (!fields_.emplace(field, std::string(trimmed(std::string_view(text).substr(colon + 1)))).second)
         fail(field, "the field once", text);
-      if (field == "datafile" && lower(value(field)).starts_with("list")) {
+      if (field == "datafile" && announcesList(value(field))) {
         while (line(text))
           if (!trimmed(text).empty()) list_.emplace_back(trimmed(text));
         return;
@@ -197,7 +197,7 @@ class NrrdHeaderReader {
     if (!fields_.contains("datafile")) return;
     std::vector<std::string> names;
     const std::vector<std::string> parts = words(value("datafile"));
-    if (!parts.empty() && lower(parts[0]) == "list") {
+    if (announcesList(value("datafile"))) {
       names = list_;
     } else if (parts.size() >= 4 && parts[0].find('%') != std::string::npos) {
       names = numberedNames(parts[0], parts[1], parts[2], parts[3]);

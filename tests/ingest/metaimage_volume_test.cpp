@@ -59,6 +59,13 @@ TEST_CASE("MetaImage voxels of every kind of storage are the same", "[ingest]") 
   CHECK(file.read() == kFloats);
 }
 
+TEST_CASE("A MetaImage data file may be called list", "[ingest]") {
+  const MetaFile file;
+  file.beside("list_1.raw", bytesOf(kValues));
+  file.write(kMetaStart + "ElementDataFile = list_1.raw\n");
+  CHECK(file.read() == kFloats);
+}
+
 TEST_CASE("MetaImage geometry: a row of TransformMatrix is an axis of the image, units become mm", "[ingest]") {
   const MetaFile file;
   file.write(kMetaStart +

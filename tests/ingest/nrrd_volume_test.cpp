@@ -84,6 +84,14 @@ TEST_CASE("NRRD data may lie in other files", "[ingest]") {
   CHECK_THROWS_WITH(file.read(), Contains("data file: expected a pattern"));
 }
 
+TEST_CASE("A NRRD data file may be called list, and the fields behind its name count", "[ingest]") {
+  const NrrdFolder file;
+  file.beside("list_1.raw", bytesOf(kValues));
+  file.write(kNrrdStart + "endian: little\nencoding: raw\ndata file: list_1.raw\nspacings: 2 3 4\n");
+  CHECK(file.read() == kFloats);
+  CHECK(openNrrd(file.path)->info().indexToWorld == glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1));
+}
+
 TEST_CASE("NRRD geometry is taken as the file states it", "[ingest]") {
   const NrrdFolder file;
   const std::string start = kNrrdStart + "endian: little\nencoding: raw\n", data = "\n" + bytesOf(kValues);
