@@ -77,11 +77,6 @@ std::string NamePattern::name(std::int64_t number) const {
   return before + text + after;
 }
 
-bool announcesList(std::string_view value) {
-  const std::vector<std::string> parts = words(value);
-  return !parts.empty() && lower(parts[0]) == "list";
-}
-
 std::vector<std::string> numberedNames(std::string_view pattern, std::string_view firstText, std::string_view lastText,
                                        std::string_view stepText) {
   const auto parsed = namePattern(pattern);

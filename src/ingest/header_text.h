@@ -1,6 +1,7 @@
 // Pieces that headers written as text have in common.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -26,6 +27,13 @@ std::string shortened(std::string_view text);
 [[noreturn]] void failField(const std::filesystem::path& path, const std::string& field, const std::string& expected,
                             std::string_view found);
 
+/// The value beside `name` in a table of pairs, or nothing.
+template <class Table>
+auto valueNamed(const Table& table, std::string_view name) {
+  const auto row = std::find_if(table.begin(), table.end(), [&](const auto& each) { return each.first == name; });
+  return row == table.end() ? std::nullopt : std::optional(row->second);
+}
+
 /// A file name with one number in it: "slice%03d.raw". Patterns come from files, so printf never sees them.
 struct NamePattern {
   std::string before, after;
@@ -35,10 +43,6 @@ struct NamePattern {
 };
 /// Nothing when `text` has not exactly one %d, %4d or %04d.
 std::optional<NamePattern> namePattern(std::string_view text);
-
-/// Whether the value of a field for data files is LIST, as in "LIST 2D": the names follow, one a line. A file may be
-/// called list.raw.
-bool announcesList(std::string_view value);
 
 /// The names from `first` to `last`; empty when a number or the pattern is none or there would be a million files.
 std::vector<std::string> numberedNames(std::string_view pattern, std::string_view first, std::string_view last,

@@ -12,6 +12,7 @@
 
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
+#include "ingest/place.h"
 #include "ingest/provenance.h"
 #include "ingest/slice_image.h"
 #include "ingest/streams/byte_stream.h"

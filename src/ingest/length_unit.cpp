@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/length_unit.h"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -18,8 +17,7 @@ std::optional<double> millimetresPer(std::string_view unit) {
       {"nanometer", 1e-6}, {"inch", 25.4},     {"pm", 1e-9},
   }};
   const std::string name = lower(unit);
-  const auto row = std::find_if(kUnits.begin(), kUnits.end(), [&](const auto& each) { return each.first == name; });
-  return row == kUnits.end() ? std::nullopt : std::optional(row->second);
+  return valueNamed(kUnits, name);
 }
 
 std::string spaceName(std::string_view name) {

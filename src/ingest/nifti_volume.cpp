@@ -10,6 +10,7 @@
 
 #include "ingest/header_text.h"
 #include "ingest/nifti_header.h"
+#include "ingest/place.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
 #include "umbrick/core/error.h"
@@ -103,8 +104,7 @@ void place(const NiftiHeader& header, VolumeInfo& info) {
   if (field != "pixdim") info.metadata["space"] = "RAS";
   if (header.spaceUnit >= 1 && header.spaceUnit <= 3) info.metadata["length_unit"] = "mm";
   const double millimetres = header.spaceUnit == 1 ? 1000 : header.spaceUnit == 3 ? 1e-3 : 1;
-  for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 3; ++row) m[column][row] *= millimetres;
+  scaleWorld(m, glm::dvec3(millimetres));
   checkPlace(info, field);
 }
 

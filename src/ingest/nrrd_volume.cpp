@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <functional>
 #include <memory>
 #include <vector>
 
+#include "ingest/data_files.h"
 #include "ingest/nrrd_header.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
@@ -34,22 +34,13 @@ std::int64_t skipLines(const fs::path& path, std::int64_t offset, std::int64_t l
   return offset;
 }
 
-// The voxels of one file as plain bytes.
-std::unique_ptr<ByteStream> openPart(const NrrdHeader& header, const fs::path& path, std::int64_t offset,
-                                     std::int64_t voxelBytesHere) {
-  const std::int64_t size = checkedFileSize(path);
-  if (size < 0) throw IoError(path.string() + ": expected a file, found a pipe or device");
+// The voxels of one file, a share of all, as plain bytes.
+std::unique_ptr<ByteStream> openNrrdShare(const NrrdHeader& header, const fs::path& path, std::int64_t offset,
+                                          std::int64_t voxelBytesHere) {
+  dataFileSize(path);
   offset = skipLines(path, offset, header.lineSkip);
-  const bool raw = header.encoding == NrrdEncoding::raw;
-  if (raw) {
-    if (header.byteSkip < 0) offset = std::max(offset, size - voxelBytesHere);
-    offset += std::min(std::max<std::int64_t>(header.byteSkip, 0), size);
-    if (size - offset != voxelBytesHere)
-      throw IoError(path.string() + ": expected " + std::to_string(voxelBytesHere) + " bytes of " +
-                    std::string(voxelTypeName(header.type)) + " voxels, found " +
-                    std::to_string(std::max<std::int64_t>(size - offset, 0)));
-    return openPlain(path, offset);
-  }
+  if (header.encoding == NrrdEncoding::raw)
+    return openPlainShare(path, offset, header.byteSkip, voxelBytesHere, header.type);
   Packing packing = Packing::none;
   if (header.encoding == NrrdEncoding::gzip) packing = Packing::gzip;
   if (header.encoding == NrrdEncoding::bzip2) packing = Packing::bzip2;
@@ -71,38 +62,23 @@ std::unique_ptr<ByteStream> openPart(const NrrdHeader& header, const fs::path& p
 
 std::unique_ptr<VoxelSource> openNrrd(const fs::path& path) {
   const std::int64_t headerFileBytes = checkedFileSize(path);
-  const auto shared = std::make_shared<const NrrdHeader>(readNrrdHeader(path));
-  const NrrdHeader& header = *shared;
+  const auto header = std::make_shared<const NrrdHeader>(readNrrdHeader(path));
   VolumeInfo info;
   info.name = path.string();
-  info.dims = header.dims;
-  info.type = header.type;
-  info.indexToWorld = header.indexToWorld;
-  info.metadata = header.metadata;
+  info.dims = header->dims;
+  info.type = header->type;
+  info.indexToWorld = header->indexToWorld;
+  info.metadata = header->metadata;
   addProvenance(info, path, "NRRD");
   info.fileBytes = std::max<std::int64_t>(headerFileBytes, 0);
 
-  // Several files hold equal shares.
-  const std::int64_t total = *volumeBytes(info.dims, info.type);
-  const auto count = static_cast<std::int64_t>(std::max<std::size_t>(header.dataFiles.size(), 1));
-  if (total / voxelBytes(info.type) % count != 0)
-    throw IoError(info.name + ": data file: expected files of equal size, found " + std::to_string(count) +
-                  " files for " + describeBytes(info));
-  std::vector<std::function<std::unique_ptr<ByteStream>()>> parts;
-  const auto addPart = [&](const fs::path& file, std::int64_t offset) {
-    const auto open = [shared, file, offset, share = total / count] { return openPart(*shared, file, offset, share); };
-    open();  // a missing or short file is told before the first voxel is read
-    parts.push_back(open);
-  };
-  if (header.dataFiles.empty()) addPart(path, header.bytes);
-  for (const fs::path& file : header.dataFiles) {
-    addPart(file, 0);
-    info.fileBytes += checkedFileSize(file);
-  }
-  const bool text = header.encoding == NrrdEncoding::text;
-  const std::endian endian = text ? std::endian::native : header.bigEndian ? std::endian::big : std::endian::little;
-  return std::make_unique<DenseSource>(std::move(info), VoxelLayout{header.type, endian, 0},
-                                       joinStreams(std::move(parts)), "");
+  auto bytes = openDataFiles(info, "data file", path, header->bytes, header->dataFiles,
+                             [header](const fs::path& file, std::int64_t offset, std::int64_t share) {
+                               return openNrrdShare(*header, file, offset, share);
+                             });
+  const bool text = header->encoding == NrrdEncoding::text;
+  const std::endian endian = text ? std::endian::native : header->bigEndian ? std::endian::big : std::endian::little;
+  return std::make_unique<DenseSource>(std::move(info), VoxelLayout{header->type, endian, 0}, std::move(bytes), "");
 }
 
 }  // namespace umbrick

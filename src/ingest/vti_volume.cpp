@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ingest/header_text.h"
+#include "ingest/place.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
 #include "ingest/streams/text_stream.h"

@@ -10,6 +10,7 @@
 
 #include "ingest/dicom/dicom_file.h"
 #include "ingest/header_text.h"
+#include "ingest/place.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/byte_stream.h"
 #include "ingest/streams/dense_source.h"

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/data_files.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ingest/header_text.h"
+#include "ingest/streams/dense_source.h"
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace fs = std::filesystem;
+
+bool announcesList(std::string_view value) {
+  const std::vector<std::string> parts = words(value);
+  return !parts.empty() && lower(parts[0]) == "list";
+}
+
+std::vector<fs::path> dataFiles(const HeaderFields& fields, const DataFileField& field,
+                                const std::vector<std::string>& list) {
+  const std::string value = fields.value(field.key);
+  const std::vector<std::string> parts = words(value);
+  std::vector<std::string> names{value};
+  if (announcesList(value)) {
+    names = list;
+  } else if (parts.size() >= (field.stepMayBeMissing ? 3 : 4) && parts[0].find('%') != std::string::npos) {
+    names = numberedNames(parts[0], parts[1], parts[2], parts.size() > 3 ? parts[3] : "1");
+    if (names.empty()) fields.fail(field.title, "a pattern with one %d or %03d, then first, last and step", value);
+  }
+  if (!names.empty() && names.front().empty()) names.clear();
+  std::vector<fs::path> files;
+  for (const std::string& name : names) files.push_back(fields.path().parent_path() / name);
+  return files;
+}
+
+std::unique_ptr<ByteStream> openDataFiles(VolumeInfo& info, const std::string& fieldTitle, const fs::path& header,
+                                          std::int64_t headerBytes, const std::vector<fs::path>& files,
+                                          const OpenShare& open) {
+  const std::int64_t total = *volumeBytes(info.dims, info.type);
+  const auto count = static_cast<std::int64_t>(std::max<std::size_t>(files.size(), 1));
+  if (total / voxelBytes(info.type) % count != 0)
+    throw IoError(info.name + ": " + fieldTitle + ": expected files of equal size, found " + std::to_string(count) +
+                  " files for " + describeBytes(info));
+  std::vector<std::function<std::unique_ptr<ByteStream>()>> shares;
+  const auto add = [&](const fs::path& file, std::int64_t offset) {
+    shares.push_back([open, file, offset, bytes = total / count] { return open(file, offset, bytes); });
+    shares.back()();
+  };
+  if (files.empty()) add(header, headerBytes);
+  for (const fs::path& file : files) {
+    add(file, 0);
+    info.fileBytes += checkedFileSize(file);
+  }
+  return joinStreams(std::move(shares));
+}
+
+std::int64_t dataFileSize(const fs::path& path) {
+  const std::int64_t size = checkedFileSize(path);
+  if (size < 0) throw IoError(path.string() + ": expected a file, found a pipe or device");
+  return size;
+}
+
+std::unique_ptr<ByteStream> openPlainShare(const fs::path& path, std::int64_t offset, std::int64_t skip,
+                                           std::int64_t bytes, VoxelType type) {
+  const std::int64_t size = dataFileSize(path);
+  offset = skip < 0 ? std::max(offset, size - bytes) : offset + std::min(skip, size);
+  if (size - offset != bytes)
+    throw IoError(path.string() + ": expected " + std::to_string(bytes) + " bytes of " +
+                  std::string(voxelTypeName(type)) + " voxels, found " +
+                  std::to_string(std::max<std::int64_t>(size - offset, 0)));
+  return openPlain(path, offset);
+}
+
+}  // namespace umbrick

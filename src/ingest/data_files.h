@@ -1,0 +1,56 @@
+// The files that hold the voxels of a volume whose header names them, or the header's own file: equal shares in order.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ingest/header_fields.h"
+#include "ingest/streams/byte_stream.h"
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+/// Whether the value of a field for data files is LIST, as in "LIST 2D": the names follow, one a line. A file may be
+/// called list.raw.
+bool announcesList(std::string_view value);
+
+/// How a format spells the names of its data files.
+struct DataFileField {
+  std::string key, title;         // of the field, and what messages call it
+  bool stepMayBeMissing = false;  // of "slice%03d.raw 1 20 1", whose last number is the step
+};
+
+/// The data files, beside the header: `list` after LIST, or those of a pattern with first, last and step, or the one of
+/// that name. Empty where there is no name. @throw IoError  a pattern that is none
+std::vector<std::filesystem::path> dataFiles(const HeaderFields& fields, const DataFileField& field,
+                                             const std::vector<std::string>& list);
+
+/// One share of the voxels as plain bytes.
+/// @param offset  where the share begins in the file, but for what the header says to skip
+/// @param bytes   of voxels in each share
+using OpenShare =
+    std::function<std::unique_ptr<ByteStream>(const std::filesystem::path&, std::int64_t offset, std::int64_t bytes)>;
+
+/// The shares, joined. Each is opened at once and again when its turn comes: a missing or short file is told before the
+/// first voxel is read. Adds the sizes of `files` to info.fileBytes.
+/// @param files        empty: the voxels follow the header in its own file
+/// @param headerBytes  of the header
+/// @throw IoError      as `open` does, or voxels that are no multiple of the files
+std::unique_ptr<ByteStream> openDataFiles(VolumeInfo& info, const std::string& fieldTitle,
+                                          const std::filesystem::path& header, std::int64_t headerBytes,
+                                          const std::vector<std::filesystem::path>& files, const OpenShare& open);
+
+/// The size of a share's file. @throw IoError  missing, a directory, a pipe or device
+std::int64_t dataFileSize(const std::filesystem::path& path);
+
+/// A share of voxels that are stored as they are.
+/// @param skip  bytes after `offset`; -1: the voxels are the last bytes of the file
+/// @throw IoError  the file does not end with the last voxel
+std::unique_ptr<ByteStream> openPlainShare(const std::filesystem::path& path, std::int64_t offset, std::int64_t skip,
+                                           std::int64_t bytes, VoxelType type);
+
+}  // namespace umbrick

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingest/nrrd_axes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "ingest/header_text.h"
+#include "ingest/length_unit.h"
+#include "ingest/place.h"
+#include "ingest/streams/dense_source.h"
+
+namespace umbrick {
+namespace {
+
+constexpr std::size_t kNrrdMaxAxes = 16;
+
+struct Axis {
+  std::int64_t size = 0;
+  double spacing = 1;
+  std::optional<double> min;
+  bool cell = false;                    // cell-centred: `min` is the edge of the first voxel
+  std::optional<glm::dvec3> direction;  // of space
+  bool spatial = true;
+  std::string unit;
+};
+
+// "(1, 0, 0) none (0,1,0)": blanks may stand inside the brackets.
+std::vector<std::string> vectors(std::string_view text) {
+  std::string packed;
+  int depth = 0;
+  for (const char c : text) {
+    depth += (c == '(') - (c == ')');
+    if (depth > 0 && (c == ' ' || c == '\t')) continue;
+    packed += c;
+    if (c == ')') packed += ' ';
+  }
+  return words(packed);
+}
+
+class NrrdAxesReader {
+ public:
+  NrrdAxesReader(const HeaderFields& fields, NrrdHeader& header) : fields_(fields), header_(header) {}
+
+  void read() {
+    const std::vector<Axis> axes = readAxes();
+    for (std::size_t i = 0; i < axes.size(); ++i) header_.dims[static_cast<int>(i)] = axes[i].size;
+    if (!volumeBytes(header_.dims, header_.type))
+      fields_.fail("sizes", "less than 2^63 bytes in all", fields_.value("sizes"));
+    if (axes[0].direction)
+      placeByDirections(axes);
+    else
+      placeBySpacings(axes);
+    toMillimetres(axes);
+  }
+
+ private:
+  std::vector<Axis> readAxes() const {
+    const auto dimension = integer(fields_.required("dimension"));
+    if (!dimension || *dimension < 1 || *dimension > static_cast<std::int64_t>(kNrrdMaxAxes))
+      fields_.fail("dimension", "1 to " + std::to_string(kNrrdMaxAxes), fields_.value("dimension"));
+    std::vector<Axis> axes(static_cast<std::size_t>(*dimension));
+    fields_.required("sizes");
+    const std::vector<std::string> sizes = fields_.list("sizes", axes.size());
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      const auto size = integer(sizes[i]);
+      if (!size || *size < 1 || *size > std::numeric_limits<std::int32_t>::max())
+        fields_.fail("sizes", "numbers from 1 to 2147483647", fields_.value("sizes"));
+      axes[i].size = *size;
+    }
+    readSpacings(axes);
+    readDirections(axes);
+    readKinds(axes);
+    return volumeAxes(std::move(axes));
+  }
+
+  void readKinds(std::vector<Axis>& axes) const {
+    if (!fields_.has("kinds")) return;
+    const std::vector<std::string> kinds = fields_.list("kinds", axes.size());
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      const std::string kind = lower(kinds[i]);
+      if (kind != "domain" && kind != "space" && kind != "???" && kind != "none" && kind != "scalar" && kind != "stub")
+        axes[i].spatial = false;
+    }
+  }
+
+  // Axes of size 1 that are not of space, or too many, go; the others must be those of a volume.
+  std::vector<Axis> volumeAxes(std::vector<Axis> axes) const {
+    std::erase_if(axes, [](const Axis& axis) { return !axis.spatial && axis.size == 1; });
+    for (std::size_t i = axes.size(); i-- > 0 && axes.size() > 3;)
+      if (axes[i].size == 1) axes.erase(axes.begin() + static_cast<std::ptrdiff_t>(i));
+    for (const Axis& axis : axes)
+      if (!axis.spatial)
+        fields_.fail("sizes",
+                     "one component per voxel (an axis of time or of components has " + std::to_string(axis.size) + ")",
+                     fields_.value("sizes"));
+    if (axes.size() < 2 || axes.size() > 3)
+      fields_.fail("sizes", "a volume of two or three axes", fields_.value("sizes"));
+    return axes;
+  }
+
+  void readSpacings(std::vector<Axis>& axes) const {
+    eachAxis("units", axes, [](Axis& axis, const std::string& text) { axis.unit = text; });
+    eachAxis("spacings", axes, [&](Axis& axis, const std::string& text) {
+      const auto spacing = known("spacings", text);
+      if (spacing && !(*spacing > 0)) failNumber("spacings");
+      axis.spacing = spacing.value_or(1);
+    });
+    eachAxis("axismins", axes, [&](Axis& axis, const std::string& text) { axis.min = known("axismins", text); });
+    eachAxis("centers", axes, [](Axis& axis, const std::string& text) { axis.cell = lower(text) == "cell"; });
+  }
+
+  template <class Take>
+  void eachAxis(const char* field, std::vector<Axis>& axes, const Take& take) const {
+    if (!fields_.has(field)) return;
+    const std::vector<std::string> values = fields_.list(field, axes.size());
+    for (std::size_t i = 0; i < axes.size(); ++i) take(axes[i], values[i]);
+  }
+
+  // Nothing for nan, which is the format's way to say that a number is not known.
+  std::optional<double> known(const std::string& field, const std::string& text) const {
+    const auto parsed = number(text);
+    if (parsed && std::isnan(*parsed)) return std::nullopt;
+    if (!parsed || !std::isfinite(*parsed)) failNumber(field);
+    return parsed;
+  }
+
+  [[noreturn]] void failNumber(const std::string& field) const {
+    fields_.fail(field, field == "spacings" ? "positive finite numbers, or nan where unknown" : "finite numbers",
+                 fields_.value(field));
+  }
+
+  void readDirections(std::vector<Axis>& axes) const {
+    if (!fields_.has("spacedirections")) return;
+    const int dimension = spaceDimension();
+    if (dimension == 0) fields_.fail("space", "the field, or space dimension, beside space directions", "");
+    const std::vector<std::string> texts = vectors(fields_.value("spacedirections"));
+    if (texts.size() != axes.size())
+      fields_.fail("space directions", std::to_string(axes.size()) + " vectors", fields_.value("spacedirections"));
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      axes[i].direction = vector("space directions", texts[i], dimension);
+      axes[i].spatial = axes[i].direction.has_value();
+    }
+  }
+
+  int spaceDimension() const {
+    const std::string space = lower(fields_.value("space"));
+    if (space.empty()) {
+      const auto dimension = fields_.has("spacedimension") ? integer(fields_.value("spacedimension")) : std::nullopt;
+      if (!dimension) return 0;
+      if (*dimension < 2 || *dimension > 3) fields_.fail("space dimension", "2 or 3", fields_.value("spacedimension"));
+      return static_cast<int>(*dimension);
+    }
+    if (space.find("time") != std::string::npos || (space.size() == 4 && space.ends_with('t')))
+      fields_.fail("space", "a space of three dimensions", space);
+    return 3;
+  }
+
+  // "(a,b,c)" or "none"
+  std::optional<glm::dvec3> vector(const std::string& field, std::string_view text, int dimension) const {
+    if (text == "none") return std::nullopt;
+    glm::dvec3 out(0);
+    std::string_view rest = text;
+    const bool enclosed = rest.size() >= 2 && rest.front() == '(' && rest.back() == ')';
+    if (enclosed) rest = rest.substr(1, rest.size() - 2);
+    for (int i = 0; i < dimension; ++i) {
+      const std::size_t comma = std::min(rest.find(','), rest.size());
+      const auto part = number(trimmed(rest.substr(0, comma)));
+      const bool last = i + 1 == dimension;
+      if (!enclosed || !part || !std::isfinite(*part) || (comma == rest.size()) != last)
+        fields_.fail(field, "a vector of " + std::to_string(dimension) + " finite numbers, like (0,0,1)", text);
+      out[i] = *part;
+      rest.remove_prefix(last ? comma : comma + 1);
+    }
+    return out;
+  }
+
+  void placeByDirections(const std::vector<Axis>& axes) const {
+    glm::dmat4& m = header_.indexToWorld;
+    for (std::size_t i = 0; i < axes.size(); ++i) m[static_cast<int>(i)] = glm::dvec4(*axes[i].direction, 0);
+    if (axes.size() == 2) {
+      // One slice: as thick as its pixels are wide, along the normal.
+      const glm::dvec3 normal = glm::cross(*axes[0].direction, *axes[1].direction);
+      const double area = glm::length(normal);
+      m[2] = glm::dvec4(area > 0 ? normal / std::sqrt(area) : normal, 0);
+    }
+    if (!spansSpace(m)) fields_.fail("space directions", "independent directions", fields_.value("spacedirections"));
+    if (fields_.has("spaceorigin")) {
+      const std::vector<std::string> texts = vectors(fields_.value("spaceorigin"));
+      const auto origin = texts.size() == 1 ? vector("space origin", texts[0], spaceDimension()) : std::nullopt;
+      if (!origin) fields_.fail("space origin", "one vector", fields_.value("spaceorigin"));
+      m[3] = glm::dvec4(*origin, 1);
+    }
+  }
+
+  void placeBySpacings(const std::vector<Axis>& axes) const {
+    glm::dmat4& m = header_.indexToWorld;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      const int axis = static_cast<int>(i);
+      m[axis][axis] = axes[i].spacing;
+      if (axes[i].min) m[3][axis] = *axes[i].min + (axes[i].cell ? 0.5 * axes[i].spacing : 0.0);
+    }
+  }
+
+  // Units of space scale the axes of the world; without a space those of the file's axes do.
+  void toMillimetres(const std::vector<Axis>& axes) const {
+    std::vector<std::string> units;
+    if (axes[0].direction)
+      units = words(fields_.value("spaceunits"));
+    else
+      for (const Axis& axis : axes) units.push_back(axis.unit);
+    if (units.empty() || units.size() > 3) return;
+    glm::dvec3 factor(1);
+    for (std::size_t i = 0; i < units.size(); ++i) {
+      const auto millimetres = millimetresPer(units[i]);
+      if (!millimetres) return;  // unknown: left as it is
+      factor[static_cast<int>(i)] = *millimetres;
+    }
+    scaleWorld(header_.indexToWorld, factor);
+    header_.metadata["length_unit"] = "mm";
+  }
+
+  const HeaderFields& fields_;
+  NrrdHeader& header_;
+};
+
+}  // namespace
+
+void readNrrdAxes(const HeaderFields& fields, NrrdHeader& header) { NrrdAxesReader(fields, header).read(); }
+
+}  // namespace umbrick
