@@ -242,6 +242,60 @@ TEST_CASE("Slots are recycled and bricks stay what they are", "[atlas][gl]") {
   CHECK(compare(context->gl(), atlas, volume).value == 0);
 }
 
+TEST_CASE("A pool that grows keeps what it holds, by copies on the GPU where the budget has room", "[atlas][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const FieldBricks volume(scattered, {glm::ivec3(0), glm::ivec3(47)}, {});
+  REQUIRE(volume.bricks.size() == 216);
+  const std::uint64_t slotBytes = volume.layout.voxels() * 4;
+  for (const bool roomy : {true, false})
+    for (const int textureEdge : {0, 40}) {
+      INFO("room for two pools " << roomy << ", textures of " << textureEdge);
+      AtlasOptions options;
+      options.budgetBytes = (roomy ? 500 : 216) * slotBytes;
+      options.maxTextureEdge = textureEdge;
+      BrickAtlas atlas(*context, volume, options);
+      atlas.append(volume.bricks);
+      CHECK(atlas.slots() == 0);
+      std::vector<std::int32_t> few(40);
+      std::iota(few.begin(), few.end(), 100);
+      atlas.reserve(atlas.slotsFor(few));
+      CHECK(atlas.slots() == 40);
+      atlas.require(few);
+      CHECK(atlas.uploadedBricks() == 40);
+      for (const std::int32_t brick : {101, 105, 139}) atlas.release(brick);
+      atlas.reserve(216);
+      CHECK(atlas.slots() == 216);
+      for (const std::int32_t brick : few)
+        if (roomy) CHECK(atlas.isResident(brick) == (brick != 101 && brick != 105 && brick != 139));
+      CHECK(compare(context->gl(), atlas, volume).value == 0);
+      atlas.require(allOf(atlas));
+      CHECK(atlas.uploadedBricks() == (roomy ? 216u + 3u : 216u + 40u));
+      CHECK(compare(context->gl(), atlas, volume).value == 0);
+    }
+}
+
+TEST_CASE("Bricks that were required longest ago make room", "[atlas][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const FieldBricks volume(scattered, {glm::ivec3(0), glm::ivec3(47)}, {});
+  AtlasOptions options;
+  options.budgetBytes = 10 * volume.layout.voxels() * 4;
+  BrickAtlas atlas(*context, volume, volume.bricks, options);
+  REQUIRE(atlas.slots() == 10);
+  const auto require = [&](std::vector<std::int32_t> bricks) { atlas.require(bricks); };
+  require({0, 1, 2, 3, 4});
+  require({5, 6, 7, 8, 9});
+  require({0, 2});
+  require({10, 11, 12});  // 1, 3 and 4 leave
+  for (const std::int32_t brick : {0, 2, 5, 6, 7, 8, 9, 10, 11, 12}) CHECK(atlas.isResident(brick));
+  for (const std::int32_t brick : {1, 3, 4}) CHECK_FALSE(atlas.isResident(brick));
+  CHECK(compare(context->gl(), atlas, volume).value == 0);
+  CHECK_THROWS_AS(require({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}), InvalidArgument);
+  CHECK(atlas.isResident(12));
+  CHECK(compare(context->gl(), atlas, volume).value == 0);
+}
+
 TEST_CASE("What does not fit is refused with what is needed and what there is", "[atlas][gl]") {
   const auto context = testContext();
   if (!context) return;
