@@ -11,6 +11,8 @@
 namespace umbrick {
 namespace {
 
+// Beside a handler of the rest (`const auto&`), one of a pointer takes exactly that type: from `double*` the rest is
+// nearer than `const double*`.
 template <class... Handlers>
 struct Overload : Handlers... {
   using Handlers::operator()...;
@@ -89,11 +91,11 @@ std::string jsonText(const FieldPlace& place) {
 
 std::string messageText(const FieldPlace& place) {
   return std::visit(
-      Overload{[](const double* value) { return print(*value); },
+      Overload{[](double* value) { return print(*value); },
                [](const Angle& angle) { return printDegrees(*angle.radians); },
                [](const Choice& choice) { return "'" + std::string(choice.get()) + "'"; },
-               [](const glm::dvec3* value) { return print(*value); },
-               [](const std::optional<glm::dvec3>* value) { return *value ? print(**value) : std::string("none"); },
+               [](glm::dvec3* value) { return print(*value); },
+               [](std::optional<glm::dvec3>* value) { return *value ? print(**value) : std::string("none"); },
                [](const PixelSize& size) { return std::to_string(*size.width) + " x " + std::to_string(*size.height); },
                [&](const auto&) { return jsonText(place); }},
       place);
@@ -135,10 +137,9 @@ std::string defaultText(const SceneField& field) {
   Defaults defaults;
   const FieldPlace place = defaults.place(field);
   return std::visit(
-      Overload{[](const bool*) { return std::string(); },
-               [](const Choice& choice) { return std::string(choice.get()); },
-               [](const glm::dvec3* value) { return spaced(*value); },
-               [](const std::optional<glm::dvec3>* value) { return *value ? spaced(**value) : std::string("none"); },
+      Overload{[](bool*) { return std::string(); }, [](const Choice& choice) { return std::string(choice.get()); },
+               [](glm::dvec3* value) { return spaced(*value); },
+               [](std::optional<glm::dvec3>* value) { return *value ? spaced(**value) : std::string("none"); },
                [](const PixelSize& size) { return std::to_string(*size.width) + "x" + std::to_string(*size.height); },
                [&](const auto&) { return jsonText(place); }},
       place);
