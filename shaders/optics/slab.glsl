@@ -2,9 +2,6 @@
 // sigma_t in 1/world unit, lengths in world units.
 // SPDX-License-Identifier: Apache-2.0
 
-// Share of radiance that survives a segment of constant sigma_t. PBR 4th ed., Eq. 11.5.
-float transmittance(float sigma_t, float ds) { return exp(-sigma_t * ds); }
-
 // (1 - exp(-x)) / x for x >= 0, 1 at x = 0: the mean transmittance over a segment of optical depth x, so a slab scatters
 // sigma_s ds slabFactor(sigma_t ds). The difference would cancel for a small x: there it is the Taylor series, whose
 // first term left out is below 2e-7 of the result at 0.5. Relative error below 1e-6 for every x.

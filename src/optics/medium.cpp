@@ -5,8 +5,7 @@
 #include <cmath>
 
 namespace umbrick {
-using std::cos, std::exp, std::log, std::max, std::sin, std::sqrt, std::tan;
-#include "optics/cone.glsl"
+using std::exp, std::log, std::max, std::sqrt;
 #include "optics/ramp.glsl"
 #include "optics/slab.glsl"
 }  // namespace umbrick

@@ -154,9 +154,10 @@ std::string helpText(const SceneField& field) {
   const bool bounded = std::isfinite(field.range.low) && std::isfinite(field.range.high);
   if (whole || (bounded && (std::holds_alternative<double*>(place) || std::holds_alternative<Angle>(place))))
     text += ", " + rangeText(field);
-  const std::string usual = defaultText(field);
-  if (!usual.empty()) text += " [" + usual + std::string(field.otherwise) + "]";
-  return text;
+  // A field that scenes have only sometimes has no default but what `otherwise` says.
+  const std::string usual = std::holds_alternative<std::monostate>(place) ? std::string() : defaultText(field);
+  const std::string shown = usual + std::string(field.otherwise);
+  return shown.empty() ? text : text + " [" + shown + "]";
 }
 
 }  // namespace umbrick

@@ -3,10 +3,22 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "umbrick/core/error.h"
 
 namespace umbrick {
+
+std::vector<ClipPlane> boxPlanes(const Box& box, const glm::dmat4& toWorld) {
+  const glm::dmat4 inverse = glm::inverse(toWorld);
+  std::vector<ClipPlane> planes;
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::dvec4 coordinate(inverse[0][axis], inverse[1][axis], inverse[2][axis], inverse[3][axis]);
+    planes.push_back(coordinate - glm::dvec4(0, 0, 0, box.min[axis]));
+    planes.push_back(glm::dvec4(0, 0, 0, box.max[axis]) - coordinate);
+  }
+  return planes;
+}
 
 double shortestVoxelEdge(const glm::dmat4& indexToWorld) {
   return std::min({glm::length(glm::dvec3(indexToWorld[0])), glm::length(glm::dvec3(indexToWorld[1])),

@@ -21,30 +21,6 @@
 namespace umbrick {
 namespace {
 
-// Half-spaces that keep the inside of a world box.
-void appendBoxPlanes(std::vector<ClipPlane>& planes, const Box& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    ClipPlane low(0), high(0);
-    low[axis] = 1;
-    low.w = -box.min[axis];
-    high[axis] = -1;
-    high.w = box.max[axis];
-    planes.push_back(low);
-    planes.push_back(high);
-  }
-}
-
-// Half-spaces that keep the inside of a box of index coordinates, in world units like all planes: their distances are
-// those of the camera's.
-void appendIndexBoxPlanes(std::vector<ClipPlane>& planes, const IndexBox& box, const glm::dmat4& indexToWorld) {
-  const glm::dmat4 toIndex = glm::inverse(indexToWorld);
-  for (int axis = 0; axis < 3; ++axis) {
-    const glm::dvec4 coordinate(toIndex[0][axis], toIndex[1][axis], toIndex[2][axis], toIndex[3][axis]);
-    planes.push_back(coordinate - glm::dvec4(0, 0, 0, box.min[axis]));
-    planes.push_back(glm::dvec4(0, 0, 0, box.max[axis]) - coordinate);
-  }
-}
-
 // The atlas's numbers of the bricks to draw.
 std::vector<std::int32_t> visibleBricks(ResidentVolume& resident, const TransferLookup& transfer, bool culling,
                                         bool backgroundVisible) {
@@ -258,6 +234,16 @@ class SliceRenderer::Implementation {
       throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
   }
 
+  static void append(std::vector<ClipPlane>& planes, const std::vector<ClipPlane>& more) {
+    planes.insert(planes.end(), more.begin(), more.end());
+  }
+
+  // Where the medium ends, in world units like all planes: their distances are those of the camera's.
+  std::vector<ClipPlane> mediumPlanes(const ResolvedScene& scene) const {
+    const IndexBox box = mediumBox(scene.transfer, volume_.domain);
+    return boxPlanes({glm::dvec3(box.min), glm::dvec3(box.max)}, volume_.indexToWorld);
+  }
+
   void checkReach(const IndexView& view, const ResolvedScene& scene) const {
     const glm::dvec3 reach = slabReach(view, scene.sampling.spacing);
     if (std::max({reach.x, reach.y, reach.z}) > volume_.layout.apron - 0.5 + 1e-6)
@@ -268,9 +254,8 @@ class SliceRenderer::Implementation {
   std::vector<glm::dvec4> viewPlanes(const ResolvedScene& scene) const {
     const Camera& camera = scene.camera;
     std::vector<ClipPlane> planes = scene.clipPlanes;
-    if (scene.clipBox) appendBoxPlanes(planes, *scene.clipBox);
-    if (backgroundVisible_)
-      appendIndexBoxPlanes(planes, mediumBox(scene.transfer, volume_.domain), volume_.indexToWorld);
+    if (scene.clipBox) append(planes, boxPlanes(*scene.clipBox));
+    if (backgroundVisible_) append(planes, mediumPlanes(scene));
     for (ClipPlane& plane : planes) plane = planeInView(plane, camera);
     if (camera.nearDistance > 0) planes.emplace_back(0, 0, 1, -camera.nearDistance);
     return planes;
@@ -280,9 +265,7 @@ class SliceRenderer::Implementation {
   std::vector<glm::dvec4> viewBounds(const ResolvedScene& scene, std::vector<glm::dvec4> planes) const {
     const Camera& camera = scene.camera;
     if (backgroundVisible_ || volume_.domain.empty()) return planes;
-    std::vector<ClipPlane> box;
-    appendIndexBoxPlanes(box, mediumBox(scene.transfer, volume_.domain), volume_.indexToWorld);
-    for (const ClipPlane& plane : box) planes.push_back(planeInView(plane, camera));
+    for (const ClipPlane& plane : mediumPlanes(scene)) planes.push_back(planeInView(plane, camera));
     return planes;
   }
 

@@ -5,8 +5,6 @@
 
 namespace umbrick {
 
-/// Returns exp(-sigma_t ds).
-float transmittance(float sigma_t, float ds);
 /// Returns (1 - exp(-x)) / x, and 1 at x = 0; the relative error is below 1e-6 for x >= 0.
 float slabFactor(float x);
 /// Returns 1 - exp(-x) without cancellation; the relative error is below 1e-6 for x >= 0.
@@ -14,12 +12,5 @@ float oneMinusExp(float x);
 /// Returns the mean place, as a share from the front, of what a piece of linear extinction and constant albedo scatters
 /// to the eye. It is off by less than 0.009. @param alpha  opacity: oneMinusExp(tau)
 float scatteringCentroid(float sigma_front, float sigma_back, float tau, float alpha);
-
-/// Returns the solid angle of a cone of half-angle `aperture`, sr.
-float coneSolidAngle(float aperture);
-/// Returns the uniform phase function on the cone, in 1/sr. @pre aperture in (0, pi/2)
-float conePhase(float cosAngle, float aperture);
-/// Returns ds tan(aperture), the radius of the cone's footprint. Schott et al. 2009, Eq. 11
-float coneRadius(float ds, float aperture);
 
 }  // namespace umbrick

@@ -4,6 +4,7 @@
 #include <glm/mat4x4.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "umbrick/core/box.h"
 #include "umbrick/scene/scene.h"
@@ -36,6 +37,10 @@ void validateScene(const ResolvedScene& scene);
 
 /// As printScene(unresolved(scene)).
 std::string printScene(const ResolvedScene& scene);
+
+/// Half-spaces that keep the inside of a box, world units.
+/// @param toWorld  of the box's coordinates; affine
+std::vector<ClipPlane> boxPlanes(const Box& box, const glm::dmat4& toWorld = glm::dmat4(1));
 
 /// Length of a voxel's shortest edge, world units.
 double shortestVoxelEdge(const glm::dmat4& indexToWorld);

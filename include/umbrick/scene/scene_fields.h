@@ -94,7 +94,7 @@ struct SceneField {
   FieldPlace (*place)(Scene&);
   FieldRange range = {};
   std::optional<Method> onlyOf = {};  // the method of occlusion that looks at it, where the other does not
-  std::string_view otherwise = {};    // what help says of the default where it is more than the value: "0: chosen"
+  std::string_view otherwise = {};    // what help says behind the default: ": chosen by itself"
 
   /// "occlusion", "footprint"; the section of a field of the scene itself is empty.
   std::string_view section() const;
