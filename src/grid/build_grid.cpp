@@ -68,7 +68,7 @@ BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options) {
 
   SlabBuilder builder(info.dims, rule);
   SparseTally tally;
-  Slab slab(source), next(source);
+  VoxelSlab slab(source), next(source);
   built.report.conversionError = slab.read(0, atOnce);
   while (slab.slices() > 0) {
     // The next voxel slab is read while the leaves of this one are built.

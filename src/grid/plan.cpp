@@ -176,7 +176,7 @@ GridPlan planGrid(VoxelSource& source, const BuildOptions& options, const PlanOp
 
   SlabBuilder builder(info.dims, rule);
   SparseTally tally;
-  Slab slab(source);
+  VoxelSlab slab(source);
   NodeCensus census;
   std::vector<Layer> layers;
   std::int64_t position = 0;

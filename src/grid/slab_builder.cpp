@@ -82,7 +82,7 @@ void checkSlabFits(const VolumeInfo& info, std::int64_t slices) {
   throw IoError(text.str());
 }
 
-double Slab::read(std::int64_t firstSlice, std::int64_t atMost) {
+double VoxelSlab::read(std::int64_t firstSlice, std::int64_t atMost) {
   const glm::i64vec3& dims = source_.info().dims;
   firstSlice_ = firstSlice;
   slices_ = std::clamp<std::int64_t>(dims.z - firstSlice, 0, atMost);
@@ -104,7 +104,7 @@ SlabBuilder::SlabBuilder(const glm::i64vec3& dims, const SparseRule& rule)
       leavesX_((dims.x + kLeafEdge - 1) / kLeafEdge),
       leavesY_((dims.y + kLeafEdge - 1) / kLeafEdge) {}
 
-SparseTally SlabBuilder::addTo(openvdb::FloatTree& tree, const Slab& slab) {
+SparseTally SlabBuilder::addTo(openvdb::FloatTree& tree, const VoxelSlab& slab) {
   places_.clear();
   places_.resize(static_cast<std::size_t>(leavesX_ * leavesY_ * ((slab.slices() + kLeafEdge - 1) / kLeafEdge)));
   const SparseTally tally = [&] {
@@ -131,7 +131,7 @@ SparseTally SlabBuilder::addTo(openvdb::FloatTree& tree, const Slab& slab) {
 }
 
 template <class T>
-SparseTally SlabBuilder::build(const Slab& slab) {
+SparseTally SlabBuilder::build(const VoxelSlab& slab) {
   const T* voxels = slab.voxels<T>();
   const std::optional<T> background = storedBackground<T>(rule_.background());
   const std::optional<RowTest<T>> test = background ? std::optional(RowTest<T>(*background)) : std::nullopt;
@@ -164,7 +164,7 @@ SparseTally SlabBuilder::build(const Slab& slab) {
 }
 
 template <class T>
-SlabBuilder::Place SlabBuilder::buildLeaf(const T* slabVoxels, const Slab& slab, const openvdb::Coord& at,
+SlabBuilder::Place SlabBuilder::buildLeaf(const T* slabVoxels, const VoxelSlab& slab, const openvdb::Coord& at,
                                           SparseTally& tally) const {
   LeafVoxels voxels;
   const auto nx = static_cast<int>(std::min<std::int64_t>(kLeafEdge, dims_.x - at.x()));
@@ -192,7 +192,7 @@ SlabBuilder::Place SlabBuilder::buildLeaf(const T* slabVoxels, const Slab& slab,
   return place;
 }
 
-openvdb::Coord SlabBuilder::origin(std::size_t place, const Slab& slab) const {
+openvdb::Coord SlabBuilder::origin(std::size_t place, const VoxelSlab& slab) const {
   const auto i = static_cast<std::int64_t>(place);
   return openvdb::Coord(static_cast<int>(i % leavesX_ * kLeafEdge),
                         static_cast<int>(i / leavesX_ % leavesY_ * kLeafEdge),

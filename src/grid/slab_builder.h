@@ -22,9 +22,9 @@ void checkSlabFits(const VolumeInfo& info, std::int64_t slices);
 
 /// One or more layers of leaves: the slices [firstSlice, firstSlice + slices), x fastest. Voxels are as the source
 /// stores them where it can tell, else they are floats. The memory is kept from one slab to the next.
-class Slab {
+class VoxelSlab {
  public:
-  explicit Slab(VoxelSource& source) : source_(source), type_(source.storedType().value_or(VoxelType::f32)) {}
+  explicit VoxelSlab(VoxelSource& source) : source_(source), type_(source.storedType().value_or(VoxelType::f32)) {}
 
   /// @param atMost  number of slices; fewer are read at the end of the volume, none behind it
   /// @return the largest error of the conversion to float
@@ -32,7 +32,7 @@ class Slab {
   double read(std::int64_t firstSlice, std::int64_t atMost);
 
   /// Exchanges the voxels with another slab of the same source.
-  void swap(Slab& other) {
+  void swap(VoxelSlab& other) {
     std::swap(firstSlice_, other.firstSlice_);
     std::swap(slices_, other.slices_);
     std::swap(bytes_, other.bytes_);
@@ -61,7 +61,7 @@ class SlabBuilder {
   SlabBuilder(const glm::i64vec3& dims, const SparseRule& rule);
 
   /// Builds the leaves of a slab and adds them to the tree.
-  SparseTally addTo(openvdb::FloatTree& tree, const Slab& slab);
+  SparseTally addTo(openvdb::FloatTree& tree, const VoxelSlab& slab);
 
  private:
   // What stands in the place of one leaf; with neither it is background.
@@ -71,10 +71,10 @@ class SlabBuilder {
   };
 
   template <class T>
-  SparseTally build(const Slab& slab);
+  SparseTally build(const VoxelSlab& slab);
   template <class T>
-  Place buildLeaf(const T* voxels, const Slab& slab, const openvdb::Coord& at, SparseTally& tally) const;
-  openvdb::Coord origin(std::size_t place, const Slab& slab) const;
+  Place buildLeaf(const T* voxels, const VoxelSlab& slab, const openvdb::Coord& at, SparseTally& tally) const;
+  openvdb::Coord origin(std::size_t place, const VoxelSlab& slab) const;
 
   glm::i64vec3 dims_;
   const SparseRule& rule_;
