@@ -21,7 +21,7 @@ TransferFunction softMedium() {
   return TransferFunction({{0.3, {{0.9, 0.5, 0.2}, 0}}, {0.7, {{0.2, 0.6, 0.9}, 0.2}}, {1.5, {{1, 1, 1}, 0.6}}});
 }
 
-Scene sceneFor(const ScalarGrid& grid, const TransferFunction& transfer, int width = 64, int height = 64) {
+ResolvedScene sceneFor(const ScalarGrid& grid, const TransferFunction& transfer, int width = 64, int height = 64) {
   Scene scene;
   scene.transfer = transfer;
   scene.camera.width = width;
@@ -38,14 +38,15 @@ std::string print(const std::vector<InvariantResult>& results) {
   return text.str();
 }
 
-void checkAllHold(const GlContext& context, const ScalarGrid& grid, const Scene& scene, const CheckOptions& options) {
+void checkAllHold(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
+                  const CheckOptions& options) {
   const std::vector<InvariantResult> results = checkInvariants(context, grid, scene, options);
   INFO(print(results));
   for (const InvariantResult& result : results) {
     CHECK(result.passed);
     // What looks at nothing always passes: each must have been measured, but for borders that a background hides.
     const float background = brickGrid(grid)->background;
-    if (result.invariant != 7 || scene.transfer->isTransparent({background, background})) CHECK(result.samples > 0);
+    if (result.invariant != 7 || scene.transfer.isTransparent({background, background})) CHECK(result.samples > 0);
   }
 }
 
@@ -77,7 +78,7 @@ using BricksFault = std::function<void(FaultyBricks&)>;
 std::vector<InvariantResult> checkFaulty(const GlContext& context, const BricksFault& fault,
                                          const BricksFault& pieceFault = {}) {
   const ScalarGrid grid = makeDense({30, 30, 30}, {3, -7, 1});
-  Scene scene = sceneFor(grid, softMedium());
+  ResolvedScene scene = sceneFor(grid, softMedium());
   scene.bricks.interior = 8;
   CheckOptions options;
   options.edges = {8};
@@ -118,10 +119,10 @@ TEST_CASE("All invariants hold on noise, whose neighbouring voxels differ by as 
   const ScalarGrid grid = makeNoise({30, 26, 34}, {1, -40, -3});
   CheckOptions options;
   options.edges = {8, 16};
-  Scene scene = sceneFor(grid, softMedium(), 61, 48);
+  ResolvedScene scene = sceneFor(grid, softMedium(), 61, 48);
   scene.sampling.quadrature = Quadrature::midpoint;
-  scene.occlusion.passes = 2;
-  scene.occlusion.algorithm = 2;
+  scene.occlusion.dos.passes = 2;
+  scene.occlusion.dos.algorithm = 2;
   options.probedSlices = 12;
   checkAllHold(*context, grid, scene, options);
 }
@@ -168,9 +169,9 @@ TEST_CASE("All invariants hold for light by ordinates", "[check]") {
   if (!context) return;
   for (const ScalarGrid& grid :
        {makeDense({30, 26, 34}, {1, -40, -3}), withTransform(makeSparse({-40, 0, 9}, 5, 5, 56), crookedTransform())}) {
-    Scene scene = sceneFor(grid, softMedium(), 48, 40);
+    ResolvedScene scene = sceneFor(grid, softMedium(), 48, 40);
     scene.method = Method::ordinates;
-    scene.occlusion.directions = 6;
+    scene.occlusion.ordinates.directions = 6;
     scene.occlusion.aperture = 1.2;
     scene.bricks.interior = 8;
     CheckOptions options;
@@ -200,7 +201,7 @@ TEST_CASE("Culling keeps bricks whose lowest value is at a falling step", "[chec
   const TransferFunction falling({{0, dense}, {1, dense}, {1, nothing}, {3, nothing}});
   CheckOptions options;
   options.edges = {8};
-  const Scene scene = sceneFor(grid, falling);
+  const ResolvedScene scene = sceneFor(grid, falling);
   options.views = {{"the scene's camera", scene.camera, 0}};
   const auto results = checkInvariants(*context, grid, scene, options);
   INFO(print(results));
@@ -250,7 +251,7 @@ TEST_CASE("A brick that is missing is found, by its shadow of ordinates as well"
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({30, 30, 30}, {3, -7, 1});
-  Scene scene = sceneFor(grid, softMedium());
+  ResolvedScene scene = sceneFor(grid, softMedium());
   scene.method = Method::ordinates;
   scene.bricks.interior = 8;
   CheckOptions options;
@@ -357,7 +358,7 @@ TEST_CASE("What cannot be checked is said", "[check]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({10, 10, 10});
-  Scene scene = sceneFor(grid, softMedium());
+  ResolvedScene scene = sceneFor(grid, softMedium());
   CHECK_THROWS_AS(checkViews(makeVoxels({}), scene), InvalidArgument);
   CheckOptions options;
   options.edges = {12};

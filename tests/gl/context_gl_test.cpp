@@ -59,8 +59,8 @@ Image samplePicture(const GlContext& context) {
   scene.camera.lookAt = {12, 12, 12};
   scene.camera.width = scene.camera.height = 48;
   scene.sampling.spacing = 0.5;
-  scene.sampling.spacingInVoxels = false;
-  return SliceRenderer(context, volume, scene).render().colour;
+  scene.spacingUnit = SpacingUnit::world;
+  return SliceRenderer(context, volume, resolveScene(scene, {}, glm::dmat4(1))).render().colour;
 }
 
 double maxDifference(const Image& a, const Image& b) {

@@ -46,7 +46,7 @@ std::vector<LightSource> colouredLights() {
 struct Case {
   std::string name;
   ScalarGrid grid;
-  Scene scene;
+  ResolvedScene scene;
 };
 
 std::vector<Case> cases() {
@@ -61,7 +61,7 @@ std::vector<Case> cases() {
         const glm::dvec3 eye = centre + glm::dvec3(25, -22, 19);
         const Camera camera =
             parallel ? orthographicCamera(eye, centre, 36, 12) : perspectiveCamera(eye, centre, 0.9, 12);
-        Scene scene = plainScene(parallel ? variedTransfer2d() : variedTransfer(), camera, 1);
+        ResolvedScene scene = plainScene(parallel ? variedTransfer2d() : variedTransfer(), camera, 1);
         scene.model = model;
         scene.occlusion.aperture = 1.2;
         scene.ambient = {1.5, 1, 0.5};
@@ -189,8 +189,8 @@ TEST_CASE("Skipping empty space changes no picture and visits less", "[reference
   const ScalarGrid grid = makeSparse();
   const glm::dvec3 centre(100);
   for (const Model model : {Model::emission, Model::cone}) {
-    Scene scene = plainScene(TransferFunction({{0.02, {{0.9, 0.5, 0.2}, 0}}, {1, {{0.3, 0.8, 0.6}, 1}}}),
-                             perspectiveCamera(centre + glm::dvec3(150, -140, 130), centre, 0.9, 12), 1);
+    ResolvedScene scene = plainScene(TransferFunction({{0.02, {{0.9, 0.5, 0.2}, 0}}, {1, {{0.3, 0.8, 0.6}, 1}}}),
+                                     perspectiveCamera(centre + glm::dvec3(150, -140, 130), centre, 0.9, 12), 1);
     scene.model = model;
     ReferenceOptions options;
     options.directions = 16;
@@ -210,7 +210,7 @@ TEST_CASE("Huge, tiny and far transforms make the picture of the unit one", "[re
     glm::dmat4 transform = glm::dmat4(scale);
     transform[3] = glm::dvec4(offset, 1);
     const auto world = [&](const glm::dvec3& p) { return scale * p + offset; };
-    Scene scene =
+    ResolvedScene scene =
         plainScene(variedTransfer().scaled(1 / scale), perspectiveCamera(world(eye), world(centre), 0.9, 10), scale);
     scene.model = model;
     ReferenceOptions options;
@@ -232,7 +232,7 @@ TEST_CASE("Voxels a million from the origin make the same picture", "[reference]
   std::vector<Image> pictures;
   for (const glm::ivec3& origin : {glm::ivec3(0), glm::ivec3(1000000, -1000000, 1000000)}) {
     const glm::dvec3 offset(origin);
-    Scene scene = plainScene(variedTransfer(), perspectiveCamera(eye + offset, centre + offset, 0.9, 10), 1);
+    ResolvedScene scene = plainScene(variedTransfer(), perspectiveCamera(eye + offset, centre + offset, 0.9, 10), 1);
     scene.model = Model::cone;
     ReferenceOptions options;
     options.directions = 16;
@@ -247,8 +247,8 @@ TEST_CASE("Voxels a million from the origin make the same picture", "[reference]
 TEST_CASE("Media as solid as numbers allow are integrated by both", "[reference]") {
   const ScalarGrid grid = makeNoise({12, 12, 12});
   for (const double sigma_t : {1e6, 1e300}) {
-    Scene scene = plainScene(TransferFunction({{0.5, {{1, 0.5, 0.2}, 0}}, {1, {{1, 0.5, 0.2}, sigma_t}}}),
-                             orthographicCamera({30, 25, 40}, {6, 6, 6}, 24, 12), 1);
+    ResolvedScene scene = plainScene(TransferFunction({{0.5, {{1, 0.5, 0.2}, 0}}, {1, {{1, 0.5, 0.2}, sigma_t}}}),
+                                     orthographicCamera({30, 25, 40}, {6, 6, 6}, 24, 12), 1);
     for (const Model model : {Model::emission, Model::cone}) {
       scene.model = model;
       ReferenceOptions options;
@@ -277,7 +277,7 @@ TEST_CASE("Voxels near the limits of 32-bit indices are integrated or refused", 
         std::pair(limit, false), std::pair(-limit + 15, false)}) {
     INFO(x);
     const glm::dvec3 at(x, 0, 0);
-    const Scene scene = plainScene(variedTransfer(), orthographicCamera(at + glm::dvec3(0, 0, 9), at, 3, 8), 1);
+    const ResolvedScene scene = plainScene(variedTransfer(), orthographicCamera(at + glm::dvec3(0, 0, 9), at, 3, 8), 1);
     std::string complaint;
     double alpha = 0;
     try {
@@ -319,9 +319,9 @@ TEST_CASE("A job that is stopped says how far it came and keeps what it has", "[
 
 TEST_CASE("Impossible requests are refused with the field and its value", "[reference]") {
   const Case made = cases()[0];
-  const auto complaint = [&](const std::function<void(ReferenceOptions&, Scene&)>& change) {
+  const auto complaint = [&](const std::function<void(ReferenceOptions&, ResolvedScene&)>& change) {
     ReferenceOptions options;
-    Scene scene = made.scene;
+    ResolvedScene scene = made.scene;
     change(options, scene);
     try {
       renderReference(made.grid, scene, options);
@@ -331,12 +331,12 @@ TEST_CASE("Impossible requests are refused with the field and its value", "[refe
     return std::string("accepted");
   };
   using Catch::Contains;
-  CHECK_THAT(complaint([](ReferenceOptions& o, Scene&) { o.step = -1; }), Contains("step") && Contains("-1"));
-  CHECK_THAT(complaint([](ReferenceOptions& o, Scene&) { o.tolerance = 0; }), Contains("tolerance") && Contains("0"));
-  CHECK_THAT(complaint([](ReferenceOptions& o, Scene&) { o.directions = 0; }), Contains("directions"));
-  CHECK_THAT(complaint([](ReferenceOptions& o, Scene&) { o.samples = 1; }), Contains("samples"));
-  CHECK_THAT(complaint([](ReferenceOptions& o, Scene&) { o.standardError = std::nan(""); }),
+  CHECK_THAT(complaint([](ReferenceOptions& o, ResolvedScene&) { o.step = -1; }), Contains("step") && Contains("-1"));
+  CHECK_THAT(complaint([](ReferenceOptions& o, ResolvedScene&) { o.tolerance = 0; }),
+             Contains("tolerance") && Contains("0"));
+  CHECK_THAT(complaint([](ReferenceOptions& o, ResolvedScene&) { o.directions = 0; }), Contains("directions"));
+  CHECK_THAT(complaint([](ReferenceOptions& o, ResolvedScene&) { o.samples = 1; }), Contains("samples"));
+  CHECK_THAT(complaint([](ReferenceOptions& o, ResolvedScene&) { o.standardError = std::nan(""); }),
              Contains("standard error"));
-  CHECK_THAT(complaint([](ReferenceOptions&, Scene& s) { s.transfer.reset(); }), Contains("not resolved"));
-  CHECK_THAT(complaint([](ReferenceOptions&, Scene& s) { s.camera.fov = 4; }), Contains("fov"));
+  CHECK_THAT(complaint([](ReferenceOptions&, ResolvedScene& s) { s.camera.fov = 4; }), Contains("fov"));
 }

@@ -114,7 +114,7 @@ TEST_CASE("The reference agrees with short steps through all of space on random 
     camera.width = camera.height = 5;
     camera.projection = trial % 5 < 2 ? Projection::orthographic : Projection::perspective;
     camera = orbitCamera(bounds, 0.3 + trial, 0.4 * std::sin(trial), camera);
-    const Scene scene = plainScene(transfer, camera, 0.5);
+    const ResolvedScene scene = plainScene(transfer, camera, 0.5);
     ReferenceOptions options;
     options.tolerance = 1e-6;
     const Image found = renderReference(grid, scene, options).colour;

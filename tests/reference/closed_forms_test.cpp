@@ -32,7 +32,7 @@ std::vector<View> viewsOf(const glm::dmat4& indexToWorld) {
 // Returns the largest difference of opacity, and of colour over opacity times albedo, over all pixels.
 // @param opacity  that of a ray, from which the depths in front of the eye follow
 template <class Opacity>
-double worstOpacity(const ReferencePicture& picture, const Scene& scene, const Opacity& opacity) {
+double worstOpacity(const ReferencePicture& picture, const ResolvedScene& scene, const Opacity& opacity) {
   double worst = 0;
   for (int y = 0; y < picture.colour.height; ++y)
     for (int x = 0; x < picture.colour.width; ++x) {
@@ -51,7 +51,7 @@ TEST_CASE("A homogeneous box has the opacity of each ray's exact chord, from nex
     for (const auto& [name, camera] : viewsOf(transform))
       for (const double sigma_t : {1e-8, 0.07, 1e4}) {
         INFO(name << ", sigma_t " << sigma_t << ", crooked " << (transform != glm::dmat4(1)));
-        Scene scene = plainScene(homogeneous(kAlbedo, sigma_t), camera, 1);
+        ResolvedScene scene = plainScene(homogeneous(kAlbedo, sigma_t), camera, 1);
         const std::vector<ClipPlane> box = boxPlanes({glm::dvec3(kDomain.min), glm::dvec3(kDomain.max)}, transform);
         // Background and voxels alike are the medium, which ends where the domain does.
         const ScalarGrid grid = fieldGrid(
@@ -81,7 +81,8 @@ TEST_CASE("Next to nothing in very many cells keeps its digits", "[reference]") 
   for (const double sigma_t : {1e-8, 1.3e-8, 1.7e-9, 1e-4}) {
     const ScalarGrid grid = fieldGrid(
         {glm::ivec3(0), glm::ivec3(4, 4, 1000)}, [](const glm::dvec3&) { return 1.0; }, glm::dmat4(1), 1);
-    const Scene scene = plainScene(homogeneous(kAlbedo, sigma_t), orthographicCamera({2, 2, 1100}, {2, 2, 0}, 1, 1), 1);
+    const ResolvedScene scene =
+        plainScene(homogeneous(kAlbedo, sigma_t), orthographicCamera({2, 2, 1100}, {2, 2, 0}, 1, 1), 1);
     const ReferencePicture picture = renderReference(grid, scene);
     CHECK(picture.stats.cells >= 1000);
     const double alpha = -std::expm1(-sigma_t * 1000);
@@ -100,7 +101,7 @@ TEST_CASE("A homogeneous sphere has the opacity of its chords", "[reference][slo
       glm::dmat4(1), -1000);
   for (const auto& [name, camera] : viewsOf(glm::dmat4(1))) {
     INFO(name);
-    const Scene scene = plainScene(solidAbove(kAlbedo, sigma_t), camera, 1);
+    const ResolvedScene scene = plainScene(solidAbove(kAlbedo, sigma_t), camera, 1);
     const ReferencePicture picture = renderReference(grid, scene);
     double worst = 0;
     for (int y = 0; y < camera.height; ++y)
@@ -128,7 +129,7 @@ TEST_CASE("A linear ramp of extinction has its exact optical depth", "[reference
     for (const auto& [name, camera] : viewsOf(transform)) {
       INFO(name << ", crooked " << (transform != glm::dmat4(1)));
       const auto value = [](const glm::dvec3& p) { return 0.05 + glm::dot(p, glm::dvec3(0.011, 0.004, 0.013)); };
-      Scene scene = plainScene(TransferFunction({{0, {kAlbedo, 0}}, {1, {kAlbedo, 0.1}}}), camera, 1);
+      ResolvedScene scene = plainScene(TransferFunction({{0, {kAlbedo, 0}}, {1, {kAlbedo, 0.1}}}), camera, 1);
       const Box inner{glm::dvec3(2.3, 3.1, 2.7), glm::dvec3(20.6, 21.9, 22.2)};
       scene.clipPlanes = boxPlanes(inner, transform);
       const glm::dmat4 toIndex = glm::inverse(transform);
@@ -149,7 +150,7 @@ TEST_CASE("Two slabs blend in order, at their exact thickness", "[reference][slo
   const ScalarGrid grid = fieldGrid(kDomain, [](const glm::dvec3& p) { return p.z; });
   for (const bool above : {false, true}) {
     const Camera camera = orthographicCamera({12, 9, above ? 60 : -50}, {12, 12, 12}, 8, 16);
-    Scene scene = plainScene(slabs.transfer, camera, 1);
+    ResolvedScene scene = plainScene(slabs.transfer, camera, 1);
     scene.clipBox = Box{glm::dvec3(1), glm::dvec3(23)};  // beyond it, values fall back to the background's
     scene.ambient = {2, 0.5, 1};
     scene.background = glm::dvec3(0.25, 3, 0.125);
@@ -171,7 +172,8 @@ TEST_CASE("Depth is the mean of what is seen", "[reference]") {
   const double sigma_t = 2;
   const ScalarGrid grid = fieldGrid(
       kDomain, [](const glm::dvec3&) { return 1.0; }, glm::dmat4(1), 1);
-  Scene scene = plainScene(homogeneous(kAlbedo, sigma_t), orthographicCamera({12, 12, 50}, {12, 12, 0}, 8, 4), 1);
+  ResolvedScene scene =
+      plainScene(homogeneous(kAlbedo, sigma_t), orthographicCamera({12, 12, 50}, {12, 12, 0}, 8, 4), 1);
   const ReferencePicture picture = renderReference(grid, scene);
   // Rays end at a transmittance of 1e-6. What is left out lies 7 units deep, 33 from the eye.
   CHECK(*picture.depth.at(2, 2) == Approx(50 - 24 + 1 / sigma_t).margin(1e-6 * 34 + 26 * kRounding));

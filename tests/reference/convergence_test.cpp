@@ -12,9 +12,9 @@ namespace {
 
 // Returns soft balls in front of each other, so that what they hide of a cone has edges.
 ScalarGrid balls() { return makeSparse(glm::ivec3(0), 3, 40, 64); }
-Scene ballScene(int size) {
-  Scene scene = plainScene(TransferFunction({{0.1, {glm::dvec3(1), 0}}, {0.2, {glm::dvec3(1), 4}}}),
-                           perspectiveCamera({110, -60, 100}, {32, 32, 32}, 0.7, size), 1);
+ResolvedScene ballScene(int size) {
+  ResolvedScene scene = plainScene(TransferFunction({{0.1, {glm::dvec3(1), 0}}, {0.2, {glm::dvec3(1), 4}}}),
+                                   perspectiveCamera({110, -60, 100}, {32, 32, 32}, 0.7, size), 1);
   scene.model = Model::cone;
   return scene;
 }
@@ -24,7 +24,7 @@ Scene ballScene(int size) {
 // V is taken at one place per step, the centre of its scattering. This is of second order where V is smooth.
 TEST_CASE("V converges with the given step at second order", "[reference][slow]") {
   const ScalarGrid grid = smoothGrid(1);
-  const Scene scene = smoothScene(Model::cone, 10);
+  const ResolvedScene scene = smoothScene(Model::cone, 10);
   ReferenceOptions options;
   options.directions = 24;
   options.tolerance = 1e-6;
@@ -42,7 +42,7 @@ TEST_CASE("V converges with the given step at second order", "[reference][slow]"
 
 TEST_CASE("The error stays near the tolerance that is asked for", "[reference]") {
   const ScalarGrid grid = balls();
-  const Scene scene = ballScene(10);
+  const ResolvedScene scene = ballScene(10);
   ReferenceOptions options;
   options.directions = 64;
   options.tolerance = 1e-6;
@@ -60,7 +60,7 @@ TEST_CASE("The error stays near the tolerance that is asked for", "[reference]")
 // cuts about sqrt(K) of the K strata of share 1 / K, so the error falls as K^(-3/4).
 TEST_CASE("V converges with the number of directions", "[reference][slow]") {
   const std::vector<double> counts{8, 32, 128, 512};
-  const auto errorsOf = [&](const ScalarGrid& grid, const Scene& scene) {
+  const auto errorsOf = [&](const ScalarGrid& grid, const ResolvedScene& scene) {
     ReferenceOptions options;
     options.step = 4;  // voxels; the same places for every count
     options.directions = 8192;
@@ -84,7 +84,7 @@ TEST_CASE("V converges with the number of directions", "[reference][slow]") {
 TEST_CASE("Pictures converge with the voxel size at second order", "[reference][slow]") {
   for (const Model model : {Model::emission, Model::cone, Model::ambient}) {
     INFO(modelName(model));
-    const Scene scene = smoothScene(model, 8);
+    const ResolvedScene scene = smoothScene(model, 8);
     ReferenceOptions options;
     options.directions = 24;
     options.tolerance = 1e-5;
@@ -102,7 +102,7 @@ TEST_CASE("Pictures converge with the voxel size at second order", "[reference][
 // A pixel is the ray through its centre, and between pixels a picture is what linear interpolation makes of it.
 TEST_CASE("Pictures converge with the pixel size at second order", "[reference][slow]") {
   const ScalarGrid grid = smoothGrid(1);
-  Scene scene = smoothScene(Model::emission, 128);
+  ResolvedScene scene = smoothScene(Model::emission, 128);
   scene.camera.fov = 0.4;
   const Image exact = renderReference(grid, scene).colour;
   std::vector<double> sizes, errors;
@@ -118,7 +118,7 @@ TEST_CASE("Pictures converge with the pixel size at second order", "[reference][
 // With twice the paths there is half the variance.
 TEST_CASE("Monte Carlo converges with the square root of its paths", "[reference][slow]") {
   const ScalarGrid grid = balls();
-  const Scene scene = ballScene(10);
+  const ResolvedScene scene = ballScene(10);
   ReferenceOptions options;
   options.directions = 4096;
   const ReferencePicture exact = renderReference(grid, scene, options);

@@ -18,9 +18,9 @@ LightSource cone(LightFrame frame, const glm::dvec3& axis, double degrees, const
 }
 
 // Returns a scene in which the model has everything to look at: a dense field, and a view that no axis is aligned with.
-Scene denseScene(const std::vector<LightSource>& lights) {
+ResolvedScene denseScene(const std::vector<LightSource>& lights) {
   const TransferFunction transfer({{0.05, {{0.9, 0.3, 0.1}, 0}}, {0.8, {{1, 0.9, 0.8}, 1}}});
-  Scene scene = plainScene(transfer, perspectiveCamera({39, -8, 33}, {14, 14, 14}, 0.9, 8), 1);
+  ResolvedScene scene = plainScene(transfer, perspectiveCamera({39, -8, 33}, {14, 14, 14}, 0.9, 8), 1);
   scene.model = Model::lights;
   scene.lights = lights;
   return scene;
@@ -44,8 +44,8 @@ ReferenceOptions steps(int directions) {
 }  // namespace
 
 TEST_CASE("A cone of light around the view axis is the model cone", "[reference]") {
-  Scene scene = denseScene({cone(LightFrame::view, {0, 0, 1}, 50)});
-  Scene same = scene;
+  ResolvedScene scene = denseScene({cone(LightFrame::view, {0, 0, 1}, 50)});
+  ResolvedScene same = scene;
   same.model = Model::cone;
   same.occlusion.aperture = 50 * std::numbers::pi / 180;
   for (const ReferenceOptions& options : {quadrature(24), monteCarlo(50)}) {
@@ -68,7 +68,7 @@ TEST_CASE("The picture of several lights is the sum of theirs", "[reference]") {
   Image sum(8, 8), visibility(8, 8, 1);
   double power = 0;
   for (const LightSource& light : lights) {
-    const Scene scene = denseScene({light});
+    const ResolvedScene scene = denseScene({light});
     double own = 0;
     for (const LightDirection& d : lightDirections(scene, 1)) own += (d.radiance.r + d.radiance.g + d.radiance.b) / 3;
     const ReferencePicture alone = renderReference(denseGrid(), scene, steps(8));
@@ -103,7 +103,7 @@ TEST_CASE("Soft lights add up as far as their directions reach", "[reference][sl
 TEST_CASE("A sharp tilted light passes two slabs by their thickness over the cosine", "[reference]") {
   const TwoSlabs slabs;
   const ScalarGrid grid = fieldGrid({glm::ivec3(0), glm::ivec3(40, 24, 24)}, [](const glm::dvec3& p) { return p.z; });
-  Scene scene = plainScene(slabs.transfer, orthographicCamera({12, 12, 60}, {12, 12, 12}, 1, 2), 1);
+  ResolvedScene scene = plainScene(slabs.transfer, orthographicCamera({12, 12, 60}, {12, 12, 12}, 1, 2), 1);
   scene.camera.up = {0, 1, 0};
   scene.clipBox = Box{glm::dvec3(1), glm::dvec3(39, 23, 23)};
   scene.model = Model::lights;
@@ -134,7 +134,7 @@ TEST_CASE("An opaque half-plane hides its share of a tilted cone", "[reference][
   const double a = 9, edge = std::atan(a / 11);
   for (const double tilt : {-40.0, 20.0, 38.0})
     for (const double theta : {0.0, 10.0, 45.0}) {
-      Scene scene = lookingDownAt(floorAndRoofTransfer(), Model::lights, 12 - a, 0);
+      ResolvedScene scene = lookingDownAt(floorAndRoofTransfer(), Model::lights, 12 - a, 0);
       const double radians = tilt * std::numbers::pi / 180, aperture = theta * std::numbers::pi / 180;
       scene.lights = {cone(LightFrame::world, {std::sin(radians), 0, std::cos(radians)}, theta, {1, 0.5, 0.25})};
       const double expected = 1 - shareBeyond(aperture, edge - radians);
@@ -152,7 +152,7 @@ TEST_CASE("An opaque half-plane hides its share of a tilted cone", "[reference][
 // sphere. An isotropic phase function scatters half of it.
 TEST_CASE("A constant environment lights a half-space as half of the sphere does", "[reference]") {
   const ScalarGrid grid = makeVoxels({{glm::ivec3(-4000, -4000, -39), 1}, {glm::ivec3(4000, 4000, -1), 1}}, 1);
-  Scene scene = lookingDownAt(homogeneous({0.8, 0.5, 0.3}, 0.7), Model::lights, 0, 0);
+  ResolvedScene scene = lookingDownAt(homogeneous({0.8, 0.5, 0.3}, 0.7), Model::lights, 0, 0);
   const glm::dvec3 radiance(1, 3, 2);
   scene.lights = {environmentOf(7, 3, radiance, false)};
   const glm::dvec3 expected = (1 - std::log(2.0)) / 2 * glm::dvec3(0.8, 0.5, 0.3) * radiance;
@@ -173,7 +173,7 @@ TEST_CASE("A constant environment lights a half-space as half of the sphere does
 
 TEST_CASE("Each light has its own colour in its own shadow", "[reference]") {
   const ScalarGrid grid = floorAndRoof();
-  Scene scene = lookingDownAt(floorAndRoofTransfer(), Model::lights, 3, 0);
+  ResolvedScene scene = lookingDownAt(floorAndRoofTransfer(), Model::lights, 3, 0);
   // The roof is to the right, with its edge at 39 degrees: red light is open, blue light is not.
   scene.lights = {cone(LightFrame::view, {-1, 0, 1}, 0, {3, 0, 0}), cone(LightFrame::view, {1, 0, 1}, 0, {0, 0, 1})};
   for (const ReferenceOptions& options : {quadrature(2), monteCarlo(400'000)}) {
@@ -193,7 +193,7 @@ TEST_CASE("Each light has its own colour in its own shadow", "[reference]") {
 }
 
 TEST_CASE("What lies behind the eye does not shade lights", "[reference]") {
-  Scene scene = denseScene({cone(LightFrame::view, {1, 0, 1}, 30), cone(LightFrame::view, {0, 1, 3}, 0)});
+  ResolvedScene scene = denseScene({cone(LightFrame::view, {1, 0, 1}, 30), cone(LightFrame::view, {0, 1, 3}, 0)});
   scene.camera = perspectiveCamera({15, 13, 14}, {14, 14, 3}, 1.2, 6);
   scene.model = Model::lights;
   const ReferencePicture whole = renderReference(denseGrid(), scene, steps(20));
@@ -206,7 +206,7 @@ TEST_CASE("What lies behind the eye does not shade lights", "[reference]") {
 
 TEST_CASE("A given list of directions takes the place of the light's own", "[reference]") {
   for (const Model model : {Model::cone, Model::lights}) {
-    Scene scene = denseScene({cone(LightFrame::view, {1, 0, 1}, 40, {1, 0.1, 0.4})});
+    ResolvedScene scene = denseScene({cone(LightFrame::view, {1, 0, 1}, 40, {1, 0.1, 0.4})});
     scene.model = model;
     ReferenceOptions options = steps(12);
     const ReferencePicture own = renderReference(denseGrid(), scene, options);
@@ -257,7 +257,7 @@ TEST_CASE("Lights that are switched off give black, with nothing undefined", "[r
 }
 
 TEST_CASE("The reference refuses lights that it cannot take", "[reference]") {
-  Scene scene = denseScene({cone(LightFrame::world, {-25, 22, -19}, 5)});
+  ResolvedScene scene = denseScene({cone(LightFrame::world, {-25, 22, -19}, 5)});
   const auto refused = [&](const ReferenceOptions& options) {
     return complaint<InvalidArgument>([&] { renderReference(denseGrid(), scene, options); });
   };

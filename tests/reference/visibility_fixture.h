@@ -48,11 +48,11 @@ inline TransferFunction floorAndRoofTransfer() {
   return TransferFunction({{-1, {kWhite, kFloorDepth}}, {0, {kWhite, 0}}, {1, {kWhite, 0}}, {1, {kWhite, 1e3}}});
 }
 
-inline Scene lookingDownAt(const TransferFunction& transfer, Model model, double x, double theta) {
+inline ResolvedScene lookingDownAt(const TransferFunction& transfer, Model model, double x, double theta) {
   // One pixel of no extent is the ray through its centre.
   Camera camera = orthographicCamera({x, 0, 40}, {x, 0, 0}, 1, 1);
   camera.up = {0, 1, 0};
-  Scene scene = plainScene(transfer, camera, 1);
+  ResolvedScene scene = plainScene(transfer, camera, 1);
   scene.model = model;
   scene.occlusion.aperture = theta;
   return scene;

@@ -18,7 +18,7 @@ TEST_CASE("An opaque half-plane hides its share of the cone", "[reference][slow]
   for (const double theta : {20.0, 60.0, 85.0})
     for (const double a : {1.0, 4.0, 9.0}) {
       const double aperture = theta * std::numbers::pi / 180, edge = std::atan(a / 11);
-      const Scene scene = lookingDownAt(floorAndRoofTransfer(), Model::cone, 12 - a, aperture);
+      const ResolvedScene scene = lookingDownAt(floorAndRoofTransfer(), Model::cone, 12 - a, aperture);
       const double expected = 1 - shareBeyond(aperture, edge);
       INFO("theta " << theta << ", " << a << " from the edge: " << expected);
       // A set of K directions is about sqrt(K) of them across, and those on the edge count whole or not at all.
@@ -31,7 +31,7 @@ TEST_CASE("An opaque half-plane hides its share of the sphere", "[reference][slo
   const int far = 400;
   const ScalarGrid grid = floorAndRoof(far);
   for (const double a : {1.0, 4.0, 9.0}) {
-    const Scene scene = lookingDownAt(floorAndRoofTransfer(), Model::ambient, 12 - a, 1);
+    const ResolvedScene scene = lookingDownAt(floorAndRoofTransfer(), Model::ambient, 12 - a, 1);
     // The share is that of the upper half. Below the far end of the roof, 10 high, half a belt of the sphere
     // stays open at most.
     const double expected = 1 - 0.5 * shareBeyond(std::numbers::pi / 2, std::atan(a / 11));
@@ -48,7 +48,7 @@ TEST_CASE("An opaque half-plane hides its share of the sphere", "[reference][slo
 TEST_CASE("The cone around the view ray tilts with it", "[reference]") {
   const ScalarGrid grid = floorAndRoof();
   const double tilt = 25 * std::numbers::pi / 180, aperture = 60 * std::numbers::pi / 180, a = 4;
-  Scene scene = lookingDownAt(floorAndRoofTransfer(), Model::coneRay, 12 - a, aperture);
+  ResolvedScene scene = lookingDownAt(floorAndRoofTransfer(), Model::coneRay, 12 - a, aperture);
   const glm::dvec3 point(12 - a, 0, 4), towardsEye(-std::sin(tilt), 0, std::cos(tilt));
   scene.camera.eye = point + 30.0 * towardsEye;
   scene.camera.lookAt = point;
@@ -86,7 +86,7 @@ TEST_CASE("Inside a homogeneous half-space the cone has its closed form", "[refe
   const ScalarGrid grid = makeVoxels({{glm::ivec3(-2000, -2000, -39), 1}, {glm::ivec3(2000, 2000, -1), 1}}, 1);
   for (const double theta : {0.0, 20.0, 60.0, 85.0}) {
     const double aperture = theta * std::numbers::pi / 180, cosine = std::cos(aperture);
-    const Scene scene = lookingDownAt(homogeneous({0.8, 0.5, 0.3}, sigma_t), Model::cone, 0, aperture);
+    const ResolvedScene scene = lookingDownAt(homogeneous({0.8, 0.5, 0.3}, sigma_t), Model::cone, 0, aperture);
     const double expected = theta > 0 ? 1 - std::log(2 / (1 + cosine)) / (1 - cosine) : 0.5;
     INFO("theta " << theta << ": " << expected);
     const ReferencePicture smooth = renderReference(grid, scene, quadrature(100));
@@ -124,7 +124,7 @@ TEST_CASE("At the centre of a homogeneous ball the sphere of directions has its 
   CHECK(visibility(0) == Approx(std::exp(-sigma_t * R)).epsilon(1e-12));
   const double expected =
       integral(-core, core, [&](double t) { return std::exp(-sigma_t * (R + t)) * sigma_t * visibility(std::abs(t)); });
-  const Scene scene = lookingDownAt(transfer, Model::ambient, 0.21, 1);
+  const ResolvedScene scene = lookingDownAt(transfer, Model::ambient, 0.21, 1);
   // The core's surface lies within 3/8 of a squared voxel of 25, which shortens or lengthens the ray by 1.5 % at most.
   // For this ray, at x = 0.21 and y = 0, the excess is 0.17 + f (1 - f) in z, which is 0.375 - 0.17 off where z is
   // between 0 and 3/4.
@@ -138,7 +138,7 @@ TEST_CASE("At the centre of a homogeneous ball the sphere of directions has its 
 TEST_CASE("Without a medium in the way all light arrives, with an opaque one none", "[reference]") {
   const ScalarGrid grid = floorAndRoof();
   for (const Model model : {Model::cone, Model::coneRay, Model::ambient}) {
-    Scene scene = lookingDownAt(floorAndRoofTransfer(), model, 4, 1);
+    ResolvedScene scene = lookingDownAt(floorAndRoofTransfer(), model, 4, 1);
     scene.clipPlanes = {{0, 0, -1, 9}};  // takes the roof off
     // The floor shades itself by its own depth, along a slanted path, at most in the whole upper half.
     CHECK(meanVisibility(renderReference(grid, scene, quadrature(200))) == Approx(1).epsilon(100 * kFloorDepth));

@@ -51,7 +51,7 @@ glm::dvec3 varied(double u, double v) {
 
 // The sum over a map of pixels, each cut into parts, of what is in front: no part of the code under test. Each pixel's
 // edge towards the plane is off by a part of it at most.
-glm::dvec3 bruteForce(const Scene& scene, const std::function<double(const glm::dvec3&)>& f, int parts) {
+glm::dvec3 bruteForce(const ResolvedScene& scene, const std::function<double(const glm::dvec3&)>& f, int parts) {
   const auto& light = std::get<EnvironmentLight>(scene.lights[0].light);
   const CameraFrame frame = cameraFrame(scene.camera);
   const auto toWorld = [&](const glm::dvec3& v) {
@@ -83,7 +83,7 @@ double relative(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a
 TEST_CASE("A map is seen from its centre: up, front and to the right of it", "[scene]") {
   // Small pixels of a map of 64 x 32 around places that are known; in the view the middle is towards the viewer.
   const auto towards = [](const LightSource& source) {
-    const Scene scene = sceneWith({source});
+    const ResolvedScene scene = sceneWith({source});
     const auto list = lightDirections(scene, 1);
     REQUIRE(list.size() == 1);
     const CameraFrame frame = cameraFrame(scene.camera);
@@ -119,9 +119,8 @@ TEST_CASE("Without a frame's angles said, view and world agree at azimuth 0 and 
         R"({"model": "lights", "light": {"sources": [{"type": "environment", "file": "sky.exr", "frame": ")" + frame +
             "\"}]}}",
         "s.json", folder.path());
-    scene.camera = orbitCamera({glm::dvec3(-1), glm::dvec3(1)}, 0, 0, scene.camera);
-    scene.orbit.reset();
-    return lightDirections(scene, 30);
+    scene.transfer = loadTransferFunction("smoke");
+    return lightDirections(resolveScene(scene, {glm::dvec3(-1), glm::dvec3(1)}, glm::dmat4(1)), 30);
   };
   const auto view = parse("view"), world = parse("world");
   REQUIRE(view.size() == world.size());
@@ -138,7 +137,7 @@ TEST_CASE("Of a constant map the front half is the hemisphere, however it is tur
     mapOf(source).up = up;
     mapOf(source).front = {0.3, 0.2, 0.9};
     mapOf(source).scale = 3;
-    const Scene scene = sceneWith({source});
+    const ResolvedScene scene = sceneWith({source});
     const glm::dvec3 n = towardsViewer(scene);
     // Half of the sphere, by the midpoints of strips that the viewer's plane cuts.
     CHECK(relative(total(lightDirections(scene, 2000)), 1.5 * glm::dvec3(2, 1, 0.5)) < 2e-4);
@@ -163,7 +162,7 @@ TEST_CASE("Of a constant map the front half is the hemisphere, however it is tur
 TEST_CASE("The median cut keeps all of the light", "[scene]") {
   LightSource source = environment(96, 48, varied, LightFrame::world);
   mapOf(source).up = {0.2, 0.9, -0.4};
-  const Scene scene = sceneWith({source});
+  const ResolvedScene scene = sceneWith({source});
   const glm::dvec3 exact = bruteForce(
       scene, [](const glm::dvec3&) { return 1.0; }, 16);
   const glm::dvec3 one = total(lightDirections(scene, 1));
@@ -185,7 +184,7 @@ TEST_CASE("The median cut keeps all of the light", "[scene]") {
 
 TEST_CASE("The median cut converges, and its rotations average to a better one", "[scene][slow]") {
   LightSource source = environment(96, 48, varied, LightFrame::world);
-  const Scene scene = sceneWith({source});
+  const ResolvedScene scene = sceneWith({source});
   const glm::dvec3 axis = towardsViewer(scene);
   const auto f = [&](const glm::dvec3& w) { return std::exp(-1 / std::max(1e-9, glm::dot(w, axis))); };
   const glm::dvec3 exact = bruteForce(scene, f, 8);
@@ -215,7 +214,7 @@ TEST_CASE("The median cut converges, and its rotations average to a better one",
 TEST_CASE("Samples of a map have its mean over seeds, and converge faster than random ones", "[scene][slow]") {
   LightSource source = environment(32, 16, varied, LightFrame::world);
   mapOf(source).up = {0.2, 0.9, -0.4};
-  const Scene scene = sceneWith({source});
+  const ResolvedScene scene = sceneWith({source});
   // Not symmetric around the view, and large at its edge, where pixels are cut.
   const glm::dvec3 axis = glm::normalize(towardsViewer(scene) + glm::dvec3(0.5, -0.3, 0.4));
   const auto f = [&](const glm::dvec3& w) { return 1 + glm::dot(w, axis) * glm::dot(w, axis); };
@@ -255,7 +254,7 @@ TEST_CASE("Samples of a map have its mean over seeds, and converge faster than r
 
 // A sun of one pixel is a sharp light of its radiance times its solid angle / (4 pi), in lists and in samples.
 TEST_CASE("A single bright pixel is one direction in lists and stays inside itself in samples", "[scene]") {
-  const Scene scene = sceneWith({onePixel(720, 360, 400, 250, {8e4, 7e4, 5e4})});
+  const ResolvedScene scene = sceneWith({onePixel(720, 360, 400, 250, {8e4, 7e4, 5e4})});
   const double s0 = std::sin(std::numbers::pi * (250 / 360.0 - 0.5)),
                s1 = std::sin(std::numbers::pi * (251 / 360.0 - 0.5));
   const glm::dvec3 expected =
@@ -270,7 +269,7 @@ TEST_CASE("A single bright pixel is one direction in lists and stays inside itse
 }
 
 TEST_CASE("A map that is dark in front lights nothing", "[scene]") {
-  const Scene scene = sceneWith({onePixel(8, 4, 0, 2, glm::dvec3(1))});
+  const ResolvedScene scene = sceneWith({onePixel(8, 4, 0, 2, glm::dvec3(1))});
   for (const auto& list : {lightDirections(scene, 16), lightSamples(scene, 0, 16, 1)}) {
     REQUIRE(list.size() == 1);
     CHECK(total(list) == glm::dvec3(0));
@@ -334,7 +333,7 @@ TEST_CASE("Maps that cannot be used are named with what is wrong", "[scene]") {
              Contains("light.sources[0].scale: is -1, must be 0 or more"));
   CHECK_THAT(refused(R"("file": "good.exr", "theta": 1)"), Contains("light.sources[0].theta: unknown field"));
   // From code.
-  Scene scene = sceneWith({LightSource{LightFrame::view, EnvironmentLight{}}});
+  ResolvedScene scene = sceneWith({LightSource{LightFrame::view, EnvironmentLight{}}});
   CHECK_THAT(complaint<InvalidArgument>([&] { validateScene(scene); }),
              Contains("light.sources[0].file: is not loaded"));
   LightSource source{LightFrame::view, EnvironmentLight{}};

@@ -8,16 +8,18 @@
 
 namespace umbrick {
 
-/// Its camera looks along no axis.
-inline Scene sceneWith(const std::vector<LightSource>& lights) {
+/// Its camera looks along no axis. The lights may be ones that no scene would be resolved with.
+inline ResolvedScene sceneWith(const std::vector<LightSource>& lights) {
   Scene scene;
+  scene.transfer = TransferFunction({{0, {glm::dvec3(1), 1}}});  // no light depends on it
   scene.orbit.reset();
   scene.camera.eye = {3, -2, 5};
   scene.camera.lookAt = {0.5, 1, -1};
   scene.camera.up = {0.2, 1, 0.1};
-  scene.model = Model::lights;
-  scene.lights = lights;
-  return scene;
+  ResolvedScene resolved = resolveScene(scene, {}, glm::dmat4(1));
+  resolved.model = Model::lights;
+  resolved.lights = lights;
+  return resolved;
 }
 
 /// What the light makes of a function of the direction.
@@ -31,6 +33,6 @@ inline glm::dvec3 total(const std::vector<LightDirection>& directions) {
   return applied(directions, [](const glm::dvec3&) { return 1.0; });
 }
 
-inline glm::dvec3 towardsViewer(const Scene& scene) { return -cameraFrame(scene.camera).forward; }
+inline glm::dvec3 towardsViewer(const ResolvedScene& scene) { return -cameraFrame(scene.camera).forward; }
 
 }  // namespace umbrick

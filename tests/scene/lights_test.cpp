@@ -50,8 +50,8 @@ double largestDifference(const std::vector<LightDirection>& a, const std::vector
 
 TEST_CASE("A cone around the view axis is the model cone, in lists and in samples", "[scene]") {
   for (const double degrees : {0.0, 25.0, 89.0}) {
-    const Scene lights = sceneWith({cone({0, 0, 2}, degrees, glm::dvec3(1))});
-    Scene same = lights;
+    const ResolvedScene lights = sceneWith({cone({0, 0, 2}, degrees, glm::dvec3(1))});
+    ResolvedScene same = lights;
     same.model = Model::cone;
     same.occlusion.aperture = degrees * std::numbers::pi / 180;
     CHECK(largestDifference(lightDirections(lights, 37, 0.3), lightDirections(same, 37, 0.3)) == 0);
@@ -74,7 +74,7 @@ TEST_CASE("A cone around the view axis is the model cone, in lists and in sample
 
 // Else its shadows would turn around the view axis as the camera does, and jump where tangents change.
 TEST_CASE("A cone that moves with the camera keeps its directions, seen from there", "[scene]") {
-  Scene scene = sceneWith({cone({0.3, -0.1, 1}, 40, glm::dvec3(1)), cone({0, 0, 1}, 20, glm::dvec3(2))});
+  ResolvedScene scene = sceneWith({cone({0.3, -0.1, 1}, 40, glm::dvec3(1)), cone({0, 0, 1}, 20, glm::dvec3(2))});
   const auto seen = [&] {
     const CameraFrame frame = cameraFrame(scene.camera);
     const glm::dmat3 worldToView = glm::transpose(glm::dmat3(frame.right, frame.up, -frame.forward));
@@ -97,7 +97,7 @@ TEST_CASE("Radiances add up to the light, each source has directions in its cone
       cone({-1, 0.5, 2}, 0, blue),
       cone({0, 0, 1}, 80, glm::dvec3(0.25)),
       {LightFrame::view, ListedLight{{{{0, 3, 4}, 0.5, red}, {{0, 0, 0.1}, 2, blue}}}}};
-  const Scene scene = sceneWith(sources);
+  const ResolvedScene scene = sceneWith(sources);
   const glm::dvec3 expected = red + blue + glm::dvec3(0.25) + 0.5 * red + 2.0 * blue;
   for (const int count : {1, 4, 30, 500}) {
     const auto list = lightDirections(scene, count, 1.1), samples = lightSamples(scene, 3, count, 4);
@@ -115,7 +115,7 @@ TEST_CASE("Radiances add up to the light, each source has directions in its cone
   // Of two cones of one size the one that is twice as bright has twice as many; of one brightness the one of four
   // times the solid angle has.
   const auto share = [](const LightSource& a, const LightSource& b) {
-    const Scene two = sceneWith({a, b});
+    const ResolvedScene two = sceneWith({a, b});
     const double sum = static_cast<double>(lightSamples(two, 0, 300, 1).size());
     CHECK(sum == 300);
     int first = 0;
@@ -131,7 +131,7 @@ TEST_CASE("Radiances add up to the light, each source has directions in its cone
 TEST_CASE("Listed directions come as they are, whatever the count", "[scene]") {
   const ListedLight listed{
       {{{0.5, -0.25, 0.75}, 0.3, {1, 2, 3}}, {{0, 0, 9}, 0, {1, 1, 1}}, {{-1, 0, 1e-3}, 2, {0, 1, 0}}}};
-  const Scene scene = sceneWith({{LightFrame::view, listed}});
+  const ResolvedScene scene = sceneWith({{LightFrame::view, listed}});
   const CameraFrame frame = cameraFrame(scene.camera);
   for (const int count : {1, 3, 100})
     for (const auto& list : {lightDirections(scene, count, 0.5), lightSamples(scene, 17, count, 3)}) {
@@ -146,7 +146,7 @@ TEST_CASE("Listed directions come as they are, whatever the count", "[scene]") {
 }
 
 TEST_CASE("A light of the view moves with the camera, one of the world stays", "[scene]") {
-  Scene scene = sceneWith({});
+  ResolvedScene scene = sceneWith({});
   const glm::dvec3 axis = glm::normalize(towardsViewer(scene) + glm::dvec3(0.1, 0.3, -0.1));
   scene.lights = {{LightFrame::world, ConeLight{axis, 0, glm::dvec3(1)}}, cone({0.3, 0, 1}, 0, glm::dvec3(1))};
   const auto before = lightDirections(scene, 2);
@@ -162,7 +162,8 @@ TEST_CASE("A light of the view moves with the camera, one of the world stays", "
 // of 2^j sets has an error of 2^(-j/2) of the first's. The points of R2 are of discrepancy log(n)^2 / n at best; over
 // seven doublings that asks for an order of 0.7 at least, with the mean of eight seeds to smooth what single ones do.
 TEST_CASE("Samples that follow each other converge faster than random ones", "[scene][slow]") {
-  const Scene scene = sceneWith({cone({0.5, 0.2, 1}, 50, {1, 0.5, 0.2}), cone({-1, 0, 1}, 10, {0.1, 0.2, 0.9})});
+  const ResolvedScene scene =
+      sceneWith({cone({0.5, 0.2, 1}, 50, {1, 0.5, 0.2}), cone({-1, 0, 1}, 10, {0.1, 0.2, 0.9})});
   const auto f = throughSlab(towardsViewer(scene));
   const double exact = appliedChannel(lightDirections(scene, 20'000), f);
   const auto error = [&](int sets, int size) {
@@ -184,8 +185,8 @@ TEST_CASE("Samples that follow each other converge faster than random ones", "[s
 }
 
 TEST_CASE("Every set of samples has the light's mean over seeds", "[scene]") {
-  const Scene scene = sceneWith({cone({0.5, 0.2, 1}, 50, {1, 0.5, 0.2}), cone({-1, 0, 1}, 10, {0.1, 0.2, 0.9}),
-                                 cone({0, 1, 1}, 0, {0.3, 0.3, 0.1})});
+  const ResolvedScene scene = sceneWith({cone({0.5, 0.2, 1}, 50, {1, 0.5, 0.2}), cone({-1, 0, 1}, 10, {0.1, 0.2, 0.9}),
+                                         cone({0, 1, 1}, 0, {0.3, 0.3, 0.1})});
   const auto f = throughSlab(towardsViewer(scene));
   for (const std::uint64_t first : {std::uint64_t(0), std::uint64_t(5), std::uint64_t(1) << 60})
     for (const int count : {1, 8}) {
@@ -205,7 +206,7 @@ TEST_CASE("Every set of samples has the light's mean over seeds", "[scene]") {
 }
 
 TEST_CASE("Lights behind the viewer's plane are named with their angles", "[scene]") {
-  const auto message = [](const Scene& scene) {
+  const auto message = [](const ResolvedScene& scene) {
     const std::string sampled = complaint<InvalidArgument>([&] { lightSamples(scene, 0, 1, 0); });
     CHECK(sampled == complaint<InvalidArgument>([&] { lightDirections(scene, 4); }));
     return sampled;
@@ -220,7 +221,7 @@ TEST_CASE("Lights behind the viewer's plane are named with their angles", "[scen
         "light.sources[1].list[1].direction: is [1, 0, -0.5], of which -0.5 is towards the viewer, must be above 0");
   // The view's are refused with the scene, the world's once the camera has its place.
   CHECK_THROWS_WITH(validateScene(sceneWith({cone({1, 0, 1}, 50, glm::dvec3(1))})), Contains("together 95"));
-  Scene world = sceneWith({});
+  ResolvedScene world = sceneWith({});
   world.lights = {{LightFrame::world, ConeLight{-towardsViewer(world), 0, glm::dvec3(1)}}};
   CHECK_NOTHROW(validateScene(world));
   CHECK_THAT(message(world), Contains("together 180, must be below 90 as the camera stands"));
@@ -229,7 +230,7 @@ TEST_CASE("Lights behind the viewer's plane are named with their angles", "[scen
 }
 
 TEST_CASE("What has no list of directions is refused", "[scene]") {
-  Scene scene = sceneWith({cone({0, 0, 1}, 10, glm::dvec3(1))});
+  ResolvedScene scene = sceneWith({cone({0, 0, 1}, 10, glm::dvec3(1))});
   CHECK(complaint<InvalidArgument>([&] { lightDirections(scene, 0); }) == "directions: expected at least 1, found 0");
   CHECK(complaint<InvalidArgument>([&] { lightSamples(scene, 0, -3, 1); }) ==
         "directions: expected at least 1, found -3");
@@ -240,13 +241,11 @@ TEST_CASE("What has no list of directions is refused", "[scene]") {
   scene.model = Model::lights;
   scene.lights.clear();
   CHECK_THAT(complaint<InvalidArgument>([&] { lightDirections(scene, 4); }), Contains("light.sources: is empty"));
-  scene.orbit = Orbit{};
-  CHECK_THAT(complaint<InvalidArgument>([&] { lightDirections(scene, 4); }), Contains("not resolved"));
 }
 
 // Lights that are switched off are black, not NaN.
 TEST_CASE("A light of no power has directions of no radiance", "[scene]") {
-  const Scene scene =
+  const ResolvedScene scene =
       sceneWith({cone({0, 0, 1}, 30, glm::dvec3(0)), {LightFrame::view, ListedLight{{{{0, 0, 1}, 0}}}}});
   for (const auto& list : {lightDirections(scene, 16), lightSamples(scene, 0, 16, 1)}) {
     CHECK(list.size() >= 2);

@@ -52,8 +52,9 @@ Scene randomScene(std::mt19937& random) {
   scene.lights = {{LightFrame::view, ConeLight{{number(-0.1, 0.1), 0.05, 1}, number(0, 1.3), vector(0, 7)}},
                   {LightFrame::world, ConeLight{vector(-1, 1), number(0, 1.5), vector(0, 1)}},
                   {LightFrame::world, ListedLight{{{vector(-1, 1), number(0, 1), vector(0, 1)}, {vector(-1, 1)}}}}};
-  scene.sampling = {number(1e-4, 5), false, Quadrature::midpoint, 5, 16, number(0, 0.1)};
-  scene.occlusion = {number(0, 1.57), 5, 2, 2, false, 16};
+  scene.sampling = {number(1e-4, 5), Quadrature::midpoint, 5, 16, number(0, 0.1)};
+  scene.spacingUnit = SpacingUnit::world;
+  scene.occlusion = {number(0, 1.57), 16, {5, 2, 2, false}, {7, number(0, 4)}};
   scene.clipPlanes = {ClipPlane(vector(-1, 1), number(-9, 9)), ClipPlane(vector(-1, 1), number(-9, 9))};
   scene.clipBox = Box{vector(-9, -1), vector(0, 9)};
   scene.bricks = {false, 64, false, "half", 123'456'789'012};
@@ -79,7 +80,7 @@ TEST_CASE("What a scene leaves out keeps its default", "[scene]") {
   CHECK(scene.orbit->azimuth == Approx(std::numbers::pi / 2).epsilon(1e-15));
   CHECK(scene.orbit->elevation == 0);
   CHECK(scene.occlusion.aperture == Approx(std::numbers::pi / 4).epsilon(1e-15));
-  CHECK(scene.occlusion.footprint == OcclusionOptions{}.footprint);
+  CHECK(scene.occlusion.dos == DosOptions{});
   CHECK_FALSE(scene.background);
 }
 
@@ -142,7 +143,7 @@ TEST_CASE("Malformed scenes are refused with line, column and field", "[scene]")
   CHECK_THROWS_WITH(parse(R"({"clip": {"box": [[0, 0, 0], [1, 0, 1]]}})"),
                     Contains("clip.box: is [0, 0, 0] to [1, 0, 1]"));
   CHECK_THROWS_WITH(parse(R"({"bricks": {"format": "rgb"}})"),
-                    Contains("bricks.format: is 'rgb', must be one of auto, "));
+                    Contains("bricks.format: expected one of auto, unorm8, unorm16, half, float32, found 'rgb'"));
   CHECK_THROWS_WITH(parse(R"({"bricks": {"budgetMiB": -1}})"), Contains("bricks.budgetMiB: expected a whole number"));
   CHECK_THROWS_WITH(parse("[1, 2"), Contains("not JSON"));
   CHECK_THROWS_WITH(parse("[1, 2]"), Contains("s.json:1:1: expected an object, found an array of 2"));
@@ -247,9 +248,9 @@ TEST_CASE("Every field of a scene has its range, however the scene was made", "[
       {"sampling.saturation", [](Scene& s) { s.sampling.saturation = 1; }},
       {"occlusion.theta", [](Scene& s) { s.occlusion.aperture = std::numbers::pi / 2; }},
       {"occlusion.theta", [](Scene& s) { s.occlusion.aperture = -1e-9; }},
-      {"occlusion.footprint", [](Scene& s) { s.occlusion.footprint = 17; }},
-      {"occlusion.passes", [](Scene& s) { s.occlusion.passes = 0; }},
-      {"occlusion.algorithm", [](Scene& s) { s.occlusion.algorithm = 1; }},
+      {"occlusion.footprint", [](Scene& s) { s.occlusion.dos.footprint = 17; }},
+      {"occlusion.passes", [](Scene& s) { s.occlusion.dos.passes = 0; }},
+      {"occlusion.algorithm", [](Scene& s) { s.occlusion.dos.algorithm = 1; }},
       {"occlusion.bits", [](Scene& s) { s.occlusion.bits = 8; }},
       {"clip.planes[0]", [](Scene& s) { s.clipPlanes = {ClipPlane(0, 0, 0, 1)}; }},
       {"clip.planes[1]",
@@ -269,6 +270,18 @@ TEST_CASE("Every field of a scene has its range, however the scene was made", "[
     INFO(c.field);
     CHECK_THROWS_WITH(validateScene(scene), Catch::Matchers::StartsWith(c.field));
   }
+}
+
+TEST_CASE("Segments are the fewest that are short enough, as long as there are not more than 8", "[scene]") {
+  for (const double slab : {0.01, 0.625, 0.7, 1.25, 1.3, 4.9, 5.0})
+    for (const double voxel : {0.3, 1.0, 2.5}) {
+      CAPTURE(slab, voxel);
+      const int segments = segmentsOf(slab * voxel / voxel);  // off by a rounding
+      CHECK(slab / segments <= kSegmentVoxels * (1 + 1e-9));
+      if (segments > 1) CHECK(slab / (segments - 1) > kSegmentVoxels);
+    }
+  CHECK(segmentsOf(1) == 2);
+  CHECK(segmentsOf(100) == kMostSegments);
 }
 
 TEST_CASE("The bundled scenes are valid", "[scene]") {

@@ -20,24 +20,15 @@ Camera camera() { return perspectiveCamera({40, 30, 50}, {16, 16, 16}, 0.7, 24);
 TEST_CASE("Scenes that cannot be rendered are refused with the reason", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const Scene scene = plainScene(unitRamp(), camera(), 1);
+  const ResolvedScene scene = plainScene(unitRamp(), camera(), 1);
   const FieldBricks volume = fieldFor(
       scene, [](const glm::ivec3& i) { return i.x / 31.0; }, kBlock);
-  const auto complaintOf = [&](const Scene& bad) {
+  const auto complaintOf = [&](const ResolvedScene& bad) {
     return complaint<InvalidArgument>([&] { renderPicture(*context, volume, bad); });
   };
-  Scene bad = scene;
+  ResolvedScene bad = scene;
   bad.camera.width = context->maxTextureEdge2d() + 1;
   CHECK_THAT(complaintOf(bad), Contains("size") && Contains(std::to_string(context->maxTextureEdge2d())));
-  bad = scene;
-  bad.transfer.reset();
-  CHECK_THAT(complaintOf(bad), Contains("not resolved"));
-  bad = scene;
-  bad.orbit = Orbit{};
-  CHECK_THAT(complaintOf(bad), Contains("not resolved"));
-  bad = scene;
-  bad.sampling.spacingInVoxels = true;
-  CHECK_THAT(complaintOf(bad), Contains("not resolved"));
   bad = scene;
   bad.model = Model::ambient;
   CHECK_THAT(complaintOf(bad), Contains("ambient") && Contains("reference"));
@@ -55,7 +46,7 @@ TEST_CASE("Scenes that cannot be rendered are refused with the reason", "[shade]
 TEST_CASE("A budget that one slice does not fit is refused with both sizes", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  Scene scene = plainScene(unitRamp(), orthographicCamera({64, 64, 190}, {64, 64, 0}, 128, 24), 1);
+  ResolvedScene scene = plainScene(unitRamp(), orthographicCamera({64, 64, 190}, {64, 64, 0}, 128, 24), 1);
   scene.bricks.budgetMiB = 1;  // of 20^3 * 4 bytes: 32 bricks
   const FieldBricks volume =
       fieldFor(scene, [](const glm::ivec3& i) { return (i.x + i.y + i.z) / 400.0; }, {glm::ivec3(0), glm::ivec3(127)});
@@ -71,7 +62,7 @@ TEST_CASE("A budget that one slice does not fit is refused with both sizes", "[s
 TEST_CASE("A renderer takes other cameras of the same image size", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  Scene scene = plainScene(unitRamp(), camera(), 1);
+  ResolvedScene scene = plainScene(unitRamp(), camera(), 1);
   scene.model = Model::cone;
   const FieldBricks volume = fieldFor(
       scene, [](const glm::ivec3& i) { return std::sin(0.3 * i.x) * std::sin(0.2 * i.y); }, kBlock);
@@ -83,7 +74,7 @@ TEST_CASE("A renderer takes other cameras of the same image size", "[shade][gl]"
   // Of either projection; nothing of an earlier picture stays.
   for (const Camera& next : {perspectiveCamera({-30, 20, 40}, {16, 16, 16}, 0.5, 24),
                              orthographicCamera({-30, 20, 40}, {16, 16, 16}, 30, 24)}) {
-    Scene same = scene;
+    ResolvedScene same = scene;
     same.camera = next;
     CHECK(maxDifference(renderer.render(next).colour, renderPicture(*context, volume, same).colour) == 0);
   }
@@ -95,7 +86,7 @@ TEST_CASE("A renderer takes other cameras of the same image size", "[shade][gl]"
 TEST_CASE("There is no slice to probe before a picture or beyond it", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const Scene scene = plainScene(unitRamp(), camera(), 1);
+  const ResolvedScene scene = plainScene(unitRamp(), camera(), 1);
   const FieldBricks volume = fieldFor(
       scene, [](const glm::ivec3& i) { return i.x / 31.0; }, kBlock);
   SliceRenderer renderer(*context, volume, scene);
@@ -111,7 +102,7 @@ TEST_CASE("An empty volume gives an empty picture", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   for (const Model model : {Model::emission, Model::cone}) {
-    Scene scene = plainScene(unitRamp(), camera(), 1);
+    ResolvedScene scene = plainScene(unitRamp(), camera(), 1);
     scene.model = model;
     scene.sampling.saturation = 1e-3;
     const FieldBricks empty = fieldFor(
@@ -136,12 +127,11 @@ TEST_CASE("Resolving a scene writes out what the volume decides", "[shade]") {
   CHECK_THAT(complaint<InvalidArgument>([&] { resolveScene(scene, bounds, anisotropic); }),
              Contains("no transfer function"));
   scene.transfer = unitRamp();
-  const Scene resolved = resolveScene(scene, bounds, anisotropic);
-  CHECK_FALSE(resolved.orbit);
-  CHECK_FALSE(resolved.sampling.spacingInVoxels);
+  const ResolvedScene resolved = resolveScene(scene, bounds, anisotropic);
   CHECK(resolved.sampling.spacing == 0.25);  // half a voxel of the shortest edge
   CHECK(glm::distance(resolved.camera.lookAt, bounds.centre()) < 1e-12);
-  CHECK(resolveScene(resolved, {}, glm::dmat4(7)) == resolved);
+  CHECK(resolveScene(unresolved(resolved), {}, glm::dmat4(7)) == resolved);
+  CHECK(parseScene(printScene(resolved), "printed") == unresolved(resolved));
   CHECK_THAT(complaint<InvalidArgument>([&] { resolveScene(scene, {}, anisotropic); }), Contains("empty"));
   scene.sampling.spacing = -1;
   CHECK_THAT(complaint<InvalidArgument>([&] { resolveScene(scene, bounds, anisotropic); }), Contains("spacing"));
@@ -149,7 +139,7 @@ TEST_CASE("Resolving a scene writes out what the volume decides", "[shade]") {
 
 // A slab reads half its length beyond a brick along each axis, and every sample half a voxel.
 TEST_CASE("The apron follows from the reach of a slab", "[shade]") {
-  Scene scene = plainScene(unitRamp(), orthographicCamera({0, 0, 9}, {0, 0, 0}, 1, 8), 1);
+  ResolvedScene scene = plainScene(unitRamp(), orthographicCamera({0, 0, 9}, {0, 0, 0}, 1, 8), 1);
   scene.camera.up = {0, 1, 0};
   CHECK(requiredApron(scene, glm::dmat4(1)) == 1);
   scene.sampling.spacing = 1.5;
@@ -173,7 +163,7 @@ TEST_CASE("The apron follows from the reach of a slab", "[shade]") {
 
 TEST_CASE("Bricks are as large as pixels and aprons ask for, unless the scene says how large", "[shade]") {
   // 2 x 2 world units on 8 x 8 pixels; voxels of an edge of 1.
-  Scene scene = plainScene(unitRamp(), orthographicCamera({0, 0, 9}, {0, 0, 0}, 2, 8), 1);
+  ResolvedScene scene = plainScene(unitRamp(), orthographicCamera({0, 0, 9}, {0, 0, 0}, 2, 8), 1);
   const Box bounds{{-1, -1, -1}, {1, 1, 1}};
   const glm::dmat4 voxels(1);
   CHECK(brickInterior(scene, voxels, bounds) == 16);

@@ -28,8 +28,9 @@ ScalarGrid sheetAt(int last) {
   });
 }
 
-Scene sheetScene(double spacing, int last, double fromAbove) {
-  Scene scene = plainScene(ramp(1.5), orthographicCamera({8, 7, last + fromAbove}, {8.5, 8.5, last}, 14, 16), spacing);
+ResolvedScene sheetScene(double spacing, int last, double fromAbove) {
+  ResolvedScene scene =
+      plainScene(ramp(1.5), orthographicCamera({8, 7, last + fromAbove}, {8.5, 8.5, last}, 14, 16), spacing);
   scene.sampling.segments = std::max(1, std::min(8, static_cast<int>(std::ceil(spacing / 0.625))));
   return scene;
 }
@@ -44,7 +45,7 @@ TEST_CASE("A sheet at the border is whole at every residue of the brick edge, br
       for (const double fromAbove : {31.3, -29.1}) {
         INFO("last voxel at " << last << ", slabs of " << spacing << ", seen from " << fromAbove);
         const ScalarGrid grid = sheetAt(last);
-        Scene scene = sheetScene(spacing, last, fromAbove);
+        ResolvedScene scene = sheetScene(spacing, last, fromAbove);
         scene.bricks.interior = 8;
         const Image whole = renderGrid(*context, padded(grid), scene).colour;
         CHECK(largestAlpha(whole) > 0.5);
@@ -67,7 +68,7 @@ TEST_CASE("A visible background fills the same box for slices and reference", "[
   const TransferFunction twoD({0, 1}, {0, 0.2}, {fog, dense, fog, dense});
   for (const TransferFunction& transfer : {oneD, twoD})
     for (const double spacing : {0.5, 4.0}) {
-      Scene scene = plainScene(transfer, perspectiveCamera({30, 12, 38}, {9, 3, 10}, 0.7, 24), spacing);
+      ResolvedScene scene = plainScene(transfer, perspectiveCamera({30, 12, 38}, {9, 3, 10}, 0.7, 24), spacing);
       scene.sampling.segments = spacing > 1 ? 8 : 1;
       scene.bricks.interior = 8;
       INFO("2D " << transfer.is2d() << ", spacing " << spacing);
@@ -84,7 +85,7 @@ TEST_CASE("Segments and cut slabs read no voxel beyond the apron, whatever the q
   for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint})
     for (const int segments : {1, 3, 8})
       for (const bool clipped : {false, true}) {
-        Scene scene = plainScene(ramp(0.8), blobCameras()[1], 5);
+        ResolvedScene scene = plainScene(ramp(0.8), blobCameras()[1], 5);
         scene.sampling.quadrature = quadrature;
         scene.sampling.segments = segments;
         scene.bricks.interior = 8;

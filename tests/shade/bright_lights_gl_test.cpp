@@ -6,8 +6,8 @@ using namespace umbrick;
 
 namespace {
 
-Scene brightScene(const glm::dvec3& radiance, int bits) {
-  Scene scene = plainScene(ramp(2), smallCameras()[1], 0.5);
+ResolvedScene brightScene(const glm::dvec3& radiance, int bits) {
+  ResolvedScene scene = plainScene(ramp(2), smallCameras()[1], 0.5);
   scene.model = Model::lights;
   scene.method = Method::ordinates;
   scene.lights = {{LightFrame::view, ConeLight{{0, 0, 1}, 0, radiance}}};

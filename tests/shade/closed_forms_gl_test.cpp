@@ -29,7 +29,7 @@ TEST_CASE("A homogeneous sphere has the opacity of its chords, as slices", "[sha
        {orthographicCamera(centre + glm::dvec3(30, -20, 25), centre, 24, 24),
         perspectiveCamera(centre + glm::dvec3(-30, 25, 35), centre, 0.5, 24),
         perspectiveCamera(centre + glm::dvec3(2, -1, 3), centre + glm::dvec3(9, 5, 1), 1.4, 24)}) {
-    Scene scene = plainScene(transfer, camera, d);
+    ResolvedScene scene = plainScene(transfer, camera, d);
     const Picture picture = renderGrid(*context, grid, scene);
     double worst = 0;
     for (int y = 0; y < camera.height; ++y)
@@ -64,7 +64,8 @@ TEST_CASE("Two slabs blend in order, as slices of any spacing", "[shade][gl][slo
   const ScalarGrid grid = fieldGrid(kDomain, [](const glm::dvec3& p) { return p.z; });
   for (const bool above : {false, true})
     for (const double d : {0.3, 1.0, 2.6}) {
-      Scene scene = plainScene(slabs.transfer, orthographicCamera({12, 9, above ? 60 : -50}, {12, 12, 12}, 8, 16), d);
+      ResolvedScene scene =
+          plainScene(slabs.transfer, orthographicCamera({12, 9, above ? 60 : -50}, {12, 12, 12}, 8, 16), d);
       scene.clipBox = Box{glm::dvec3(1), glm::dvec3(23)};
       const Picture picture = renderGrid(*context, grid, scene);
       const double stretch = 1 / std::abs(cameraFrame(scene.camera).forward.z);
@@ -93,13 +94,13 @@ TEST_CASE("Below an opaque half-plane dos has the light of a random walk, not of
       {{-1, {glm::dvec3(1), 1e-3}}, {0, {glm::dvec3(1), 0}}, {0.9, {glm::dvec3(1), 0}}, {1, {glm::dvec3(1), 1e4}}});
   const double d = 0.5, theta = 60 * std::numbers::pi / 180, edge = 1;
   const int size = 80, roof = 32, floor = 72;  // slabs
-  Scene scene = plainScene(transfer, orthographicCamera({0, 0, 40.25}, {0, 0, 0}, 40, size), d);
+  ResolvedScene scene = plainScene(transfer, orthographicCamera({0, 0, 40.25}, {0, 0, 0}, 40, size), d);
   scene.camera.up = {0, 1, 0};
   scene.model = Model::cone;
   scene.sampling.quadrature = Quadrature::midpoint;
   scene.occlusion.aperture = theta;
   for (const int footprint : {2, 3, 5}) {
-    scene.occlusion.footprint = footprint;
+    scene.occlusion.dos.footprint = footprint;
     const FieldBricks volume = fieldFor(scene, field, {glm::ivec3(-32), glm::ivec3(31)});
     const Picture picture = renderPicture(*context, volume, scene, {.visibilityAndDepth = true});
     const double pixel = 40.0 / size, radius = d * std::tan(theta) / pixel;

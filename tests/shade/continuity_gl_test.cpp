@@ -56,9 +56,9 @@ std::vector<Path> paths(int size) {
   return result;
 }
 
-Scene sceneOf(Model model, const Path& path) {
+ResolvedScene sceneOf(Model model, const Path& path) {
   const TransferFunction transfer({{0, {{0.9, 0.5, 0.2}, 0}}, {1, {{0.9, 0.5, 0.2}, kSigma}}});
-  Scene scene = plainScene(transfer, path.camera(0), kSpacing);
+  ResolvedScene scene = plainScene(transfer, path.camera(0), kSpacing);
   scene.model = model;
   scene.bricks.interior = 8;
   scene.occlusion.aperture = 0.8;
@@ -83,7 +83,7 @@ double changeAround(const Image& a, const Image& b, int x, int y, int channel) {
 //     thickness that a point moves along the view axis. E is measured, of the emission of the same path.
 void checkPath(const GlContext& context, const Path& path, Model model, double factor) {
   const ScalarGrid grid = ballsAndWall();
-  Scene scene = sceneOf(model, path), plain = sceneOf(Model::emission, path);
+  ResolvedScene scene = sceneOf(model, path), plain = sceneOf(Model::emission, path);
   const auto volume = bricksFor(grid, scene);
   SliceRenderer renderer(context, *volume, scene), emission(context, *volume, plain);
   // Points of V at fixed distances, so that the reference does not pop; its error does not matter here.
@@ -149,7 +149,7 @@ void checkJumps(Model model, int size, int every) {
   const ScalarGrid grid = ballsAndWall();
   for (const Path& path : paths(size))
     for (const double saturation : {0.0, 1e-3}) {
-      Scene scene = sceneOf(model, path);
+      ResolvedScene scene = sceneOf(model, path);
       scene.sampling.saturation = saturation;
       const auto volume = bricksFor(grid, scene);
       SliceRenderer renderer(*context, *volume, scene);

@@ -13,7 +13,7 @@ using namespace umbrick;
 
 namespace {
 
-Image exactPicture(const ScalarGrid& grid, const Scene& scene) {
+Image exactPicture(const ScalarGrid& grid, const ResolvedScene& scene) {
   ReferenceOptions options;
   options.tolerance = 2e-3;
   options.directions = 128;
@@ -28,7 +28,7 @@ TEST_CASE("Emission converges to the reference at second order in the slice dist
   const ScalarGrid grid = smoothGrid(1);
   for (const bool parallel : {false, true})
     for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint}) {
-      Scene scene = smoothScene(Model::emission, 32);
+      ResolvedScene scene = smoothScene(Model::emission, 32);
       if (parallel) scene.camera = orthographicCamera(scene.camera.eye, scene.camera.lookAt, 22, 32);
       scene.sampling.quadrature = quadrature;
       const Image exact = renderReference(grid, scene).colour;
@@ -56,7 +56,7 @@ TEST_CASE("Emission converges to the reference at second order in the slice dist
 TEST_CASE("Pictures of slices converge with the voxel size and the pixel size at second order", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
-  Scene scene = smoothScene(Model::emission, 16);
+  ResolvedScene scene = smoothScene(Model::emission, 16);
   scene.sampling.spacing = 0.1;
   std::vector<double> sizes{3, 1.5, 1}, errors;
   const Image exact = renderReference(smoothGrid(0.25), scene).colour;
@@ -84,7 +84,7 @@ TEST_CASE("Without an aperture dos converges to the reference at first order", "
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = smoothGrid(1);
-  Scene scene = smoothScene(Model::cone, 32);
+  ResolvedScene scene = smoothScene(Model::cone, 32);
   scene.camera = orthographicCamera(scene.camera.eye, scene.camera.lookAt, 22, 32);
   scene.occlusion.aperture = 0;
   const Image exact = exactPicture(grid, scene);
@@ -106,22 +106,22 @@ TEST_CASE("With an aperture dos does not converge to the cone: its error levels 
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();
-  const auto errorsOf = [&](Scene scene, const Image& exact, int footprint) {
+  const auto errorsOf = [&](ResolvedScene scene, const Image& exact, int footprint) {
     std::vector<double> errors;
-    scene.occlusion.footprint = footprint;
+    scene.occlusion.dos.footprint = footprint;
     for (const int slices : {64, 128, 256, 512, 1024}) {
       scene.sampling.spacing = courtyardScene(60, slices).sampling.spacing;
       errors.push_back(rmsDifference(renderGrid(*context, grid, scene).colour, exact));
     }
     return errors;
   };
-  Scene bright = courtyardScene(60, 64);
+  ResolvedScene bright = courtyardScene(60, 64);
   bright.model = Model::emission;
   const std::vector<double> emission = errorsOf(bright, exactPicture(grid, bright), 3);
   CHECK(emission[4] < 0.03 * emission[0]);
   CHECK(emission[4] < 1e-4);
   for (const double theta : {60.0, 80.0}) {
-    const Scene scene = courtyardScene(theta, 64);
+    const ResolvedScene scene = courtyardScene(theta, 64);
     const Image cone = exactPicture(grid, scene);
     for (const int footprint : {3, 5}) {
       const std::vector<double> e = errorsOf(scene, cone, footprint);

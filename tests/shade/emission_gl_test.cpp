@@ -36,7 +36,7 @@ std::vector<View> viewsOf(const glm::dmat4& indexToWorld) {
 // The chord: clip distances are differences of single-precision depths of some 60 units, divided by a rate that may be
 // a tenth, so 60 * 6e-8 * 10 * (two ends) < 1e-4 world units. The formulas of a slab: 1e-6 relative. The sum over the
 // slabs: a rounding each.
-void checkChords(const Picture& picture, const Scene& scene, std::span<const ClipPlane> planes, double sigma_t,
+void checkChords(const Picture& picture, const ResolvedScene& scene, std::span<const ClipPlane> planes, double sigma_t,
                  double chordError = 1e-4) {
   int hits = 0;
   double worst = 0, worstColour = 0;
@@ -71,7 +71,7 @@ TEST_CASE("A homogeneous box has the opacity of each ray's exact chord", "[shade
       for (const double spacing : {0.3, 1.0, 4.7}) {
         INFO(name << ", spacing " << spacing << ", crooked " << (transform != glm::dmat4(1)));
         const double sigma_t = 0.07;
-        Scene scene = plainScene(ramp(sigma_t), camera, spacing);
+        ResolvedScene scene = plainScene(ramp(sigma_t), camera, spacing);
         scene.clipPlanes = boxPlanes(kMediumIndex, transform);
         FieldOptions options;
         options.indexToWorld = transform;
@@ -89,7 +89,7 @@ TEST_CASE("The closed form holds from next to nothing to next to solid", "[shade
   for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint})
     for (const double tau : {1e-8, 1e-6, 1e-3, 0.4999, 0.5001, 3.0, 1e3, 1e4}) {
       INFO("sigma_t d " << tau << ", midpoint " << (quadrature == Quadrature::midpoint));
-      Scene scene = plainScene(ramp(tau / spacing), view.camera, spacing);
+      ResolvedScene scene = plainScene(ramp(tau / spacing), view.camera, spacing);
       scene.sampling.quadrature = quadrature;
       scene.clipBox = kMediumIndex;
       const FieldBricks volume = fieldFor(
@@ -106,7 +106,7 @@ TEST_CASE("A clip plane cuts slabs exactly, however it is tilted", "[shade][gl]"
        {ClipPlane(0.3, -0.5, 0.8, -6.1), ClipPlane(0, 0, -1, 14.7), ClipPlane(2, 0, 0.02, -31)})
     for (const auto& [name, camera] : viewsOf(glm::dmat4(1))) {
       INFO(name << ", plane " << plane.x << ' ' << plane.y << ' ' << plane.z << ' ' << plane.w);
-      Scene scene = plainScene(ramp(sigma_t), camera, spacing);
+      ResolvedScene scene = plainScene(ramp(sigma_t), camera, spacing);
       scene.clipPlanes = boxPlanes(kMediumIndex);
       scene.clipPlanes.push_back(plane);
       const FieldBricks volume = fieldFor(
@@ -135,7 +135,7 @@ TEST_CASE("Nothing nearer than the near distance is seen", "[shade][gl]") {
       if (name == "inside" && nearDistance > 4) continue;  // next to nothing would be left
       INFO(name << ", near " << nearDistance);
       camera.nearDistance = nearDistance;
-      Scene scene = plainScene(ramp(0.1), camera, 2.1);
+      ResolvedScene scene = plainScene(ramp(0.1), camera, 2.1);
       scene.clipBox = kMediumIndex;
       const FieldBricks volume = fieldFor(
           scene, [](const glm::ivec3&) { return 1.0; }, kAroundMedium);
@@ -157,7 +157,7 @@ TEST_CASE("A linear field of linear extinction has its exact optical depth", "[s
         return 0.05 + glm::dot(index, glm::dvec3(0.011, 0.004, 0.013));
       };
       const double sigma_t = 0.1;
-      Scene scene = plainScene(ramp(sigma_t), camera, 1.3);
+      ResolvedScene scene = plainScene(ramp(sigma_t), camera, 1.3);
       scene.clipPlanes = boxPlanes(kMediumIndex, transform);
       FieldOptions options;
       options.indexToWorld = transform;
@@ -194,7 +194,7 @@ TEST_CASE("A medium whose background value is visible fills the domain and nothi
     for (const bool midpoint : {false, true})
       for (const auto& [name, camera] : viewsOf(transform)) {
         INFO(name << ", midpoint " << midpoint << ", crooked " << (transform != glm::dmat4(1)));
-        Scene scene = plainScene(homogeneous(kAlbedo, sigma_t), camera, 1.7);
+        ResolvedScene scene = plainScene(homogeneous(kAlbedo, sigma_t), camera, 1.7);
         if (midpoint) scene.sampling.quadrature = Quadrature::midpoint;
         FieldOptions options;
         options.background = 2;
@@ -215,7 +215,7 @@ TEST_CASE("A volume of a single value shows the transfer function at exactly tha
     for (const bool midpoint : {false, true}) {
       INFO("value " << value << ", midpoint " << midpoint);
       const double width = std::max(0.25, std::abs(value) * 1e-3), sigma_t = 0.05;
-      Scene scene = plainScene(
+      ResolvedScene scene = plainScene(
           TransferFunction({{value - width, {kAlbedo, 0}}, {value, {kAlbedo, sigma_t}}, {value + width, {kAlbedo, 0}}}),
           view.camera, 1);
       if (midpoint) scene.sampling.quadrature = Quadrature::midpoint;
@@ -235,7 +235,7 @@ TEST_CASE("Colours are associated, scale with the ambient light and cover the ba
   const auto wave = [](const glm::ivec3& i) {
     return 0.5 + 0.5 * std::sin(0.4 * i.x) * std::cos(0.3 * i.y + 0.2 * i.z);
   };
-  Scene scene = plainScene(transfer, viewsOf(glm::dmat4(1))[2].camera, 0.5);
+  ResolvedScene scene = plainScene(transfer, viewsOf(glm::dmat4(1))[2].camera, 0.5);
   const FieldBricks volume = fieldFor(scene, wave, kAroundMedium);
   const Picture plain = renderPicture(*context, volume, scene);
   const glm::dvec3 largest(1, 0.7, 0.6);
@@ -271,7 +271,7 @@ TEST_CASE("Early rejection of saturated pixels changes less than the transmittan
   const auto field = [](const glm::ivec3& i) { return std::clamp(1 - i.z / 31.0, 0.0, 1.0); };
   for (const Model model : {Model::emission, Model::cone}) {
     INFO("model " << static_cast<int>(model));
-    Scene scene = plainScene(transfer, viewsOf(glm::dmat4(1))[2].camera, 0.5);
+    ResolvedScene scene = plainScene(transfer, viewsOf(glm::dmat4(1))[2].camera, 0.5);
     scene.model = model;
     const FieldBricks volume = fieldFor(scene, field, kAroundMedium);
     const Picture whole = renderPicture(*context, volume, scene);
@@ -299,7 +299,7 @@ TEST_CASE("A 2D transfer function sees the value and the gradient", "[shade][gl]
           {0, 1}, {0, 0.1},
           {{kAlbedo, 0}, {kAlbedo, byValue}, {kAlbedo, 0.1 * perGradient}, {kAlbedo, byValue + 0.1 * perGradient}});
       const Camera camera = viewsOf(transform)[2].camera;
-      Scene scene = plainScene(transfer, camera, 0.9);
+      ResolvedScene scene = plainScene(transfer, camera, 0.9);
       scene.clipPlanes = boxPlanes(kMediumIndex, transform);
       FieldOptions options;
       options.indexToWorld = transform;
@@ -329,7 +329,7 @@ TEST_CASE("A 2D transfer function sees a volume without gradients at gradient 0"
   const TransferFunction transfer(
       {0, 1}, {0, 0.25, 0.5},
       {{kAlbedo, 0}, {kAlbedo, sigma_t}, {kAlbedo, 0}, {kAlbedo, 0}, {kAlbedo, 0}, {kAlbedo, 0}});
-  Scene scene = plainScene(transfer, viewsOf(glm::dmat4(1))[1].camera, 1);
+  ResolvedScene scene = plainScene(transfer, viewsOf(glm::dmat4(1))[1].camera, 1);
   scene.clipBox = kMediumIndex;
   const FieldBricks volume = fieldFor(
       scene, [](const glm::ivec3&) { return 1.0; }, kAroundMedium);

@@ -9,15 +9,15 @@
 
 namespace umbrick {
 
-inline std::unique_ptr<Bricks> bricksFor(const ScalarGrid& grid, const Scene& scene) {
+inline std::unique_ptr<Bricks> bricksFor(const ScalarGrid& grid, const ResolvedScene& scene) {
   BrickOptions options;
   options.interior = scene.bricks.interior;
   options.apron = requiredApron(scene, grid.indexToWorld());
-  options.gradients = scene.transfer->is2d();
+  options.gradients = scene.transfer.is2d();
   return brickGrid(grid, options);
 }
 
-inline Picture renderGrid(const GlContext& context, const ScalarGrid& grid, const Scene& scene,
+inline Picture renderGrid(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
                           const RenderOptions& options = {}) {
   return renderPicture(context, *bricksFor(grid, scene), scene, options);
 }

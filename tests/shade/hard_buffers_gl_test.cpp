@@ -18,7 +18,7 @@ const double kStep = std::exp2(-16);  // of a 16-bit buffer
 constexpr double kDepth = 20;
 
 struct Sweep {
-  Scene scene;
+  ResolvedScene scene;
   int slices;
   double tau;  // of a slab
   Picture render(const GlContext& context) const {
@@ -34,7 +34,7 @@ Sweep makeSweep(Model model, int slices, double tau) {
                          orthographicCamera({12, 12, top + d}, {12, 12, 0}, 8, 8), d),
               slices, tau};
   sweep.scene.model = model;
-  sweep.scene.occlusion.footprint = 2;
+  sweep.scene.occlusion.dos.footprint = 2;
   sweep.scene.clipBox = Box{glm::dvec3(-4, -4, top - kDepth), glm::dvec3(28, 28, top)};
   return sweep;
 }

@@ -28,7 +28,7 @@ TEST_CASE("A camera inside a brick sees what is in front of it, as the reference
       INFO("eye " << eye.x << ' ' << eye.y << ' ' << eye.z << ", forward " << forward.x);
       checkAgainstReference(*context, grid, plainScene(ramp(0.2), perspectiveCamera(eye, eye + forward, 1.3, 24), 0.5));
       for (const Model model : {Model::emission, Model::cone}) {
-        Scene scene = plainScene(ramp(0.2), orthographicCamera(eye, eye + forward, 12, 24), 0.5);
+        ResolvedScene scene = plainScene(ramp(0.2), orthographicCamera(eye, eye + forward, 12, 24), 0.5);
         scene.model = model;
         scene.occlusion.aperture = 0;
         checkAgainstReference(*context, grid, scene);
@@ -43,7 +43,7 @@ TEST_CASE("A near distance through the volume cuts it, light included, as the re
   // Also between slices, and where nothing is left but a last sliver.
   for (const double distance : {12.0, 22.13, 39.9}) {
     INFO("near " << distance);
-    Scene scene = plainScene(ramp(0.3), perspectiveCamera({15, 20, 50}, {15, 14, 10}, 0.6, 24), 0.5);
+    ResolvedScene scene = plainScene(ramp(0.3), perspectiveCamera({15, 20, 50}, {15, 14, 10}, 0.6, 24), 0.5);
     scene.camera.nearDistance = distance;
     checkAgainstReference(*context, grid, scene);
     scene.camera = orthographicCamera({15, 20, 50}, {15, 14, 10}, 24, 24);
@@ -61,7 +61,7 @@ TEST_CASE("Fields of view of 1 and 150 degrees match the reference", "[shade][gl
   if (!context) return;
   const ScalarGrid grid = makeDense({30, 30, 30});
   const glm::dvec3 centre(14.5);
-  Scene scene = plainScene(
+  ResolvedScene scene = plainScene(
       ramp(0.2), perspectiveCamera(centre + 2600.0 * glm::normalize(glm::dvec3(1, -2, 3)), centre, 1 * kDegree, 32),
       0.5);
   checkAgainstReference(*context, grid, scene);
@@ -71,7 +71,7 @@ TEST_CASE("Fields of view of 1 and 150 degrees match the reference", "[shade][gl
     checkAgainstReference(*context, grid, scene, 2e-5, 1e-2);
   }
   // Wide, light is carried towards the edges of the image: in a homogeneous half-space V is that of the slabs in front.
-  Scene cone = plainScene(ramp(0.1), perspectiveCamera({16, 16, 30.2}, {16, 16, 0}, 150 * kDegree, 32), 0.5);
+  ResolvedScene cone = plainScene(ramp(0.1), perspectiveCamera({16, 16, 30.2}, {16, 16, 0}, 150 * kDegree, 32), 0.5);
   cone.model = Model::cone;
   cone.sampling.quadrature = Quadrature::midpoint;
   const FieldBricks wide =
@@ -102,7 +102,7 @@ TEST_CASE("One-pixel and narrow images are cut-outs of larger ones", "[shade][gl
     // 27 x 27 pixels, of which others show the middle row, column and pixel.
     Camera large = projection == Projection::perspective ? perspectiveCamera({40, 30, 50}, glm::dvec3(14.5), 0.7, 27)
                                                          : orthographicCamera({40, 30, 50}, glm::dvec3(14.5), 40, 27);
-    Scene scene = plainScene(ramp(0.3), large, 0.5);
+    ResolvedScene scene = plainScene(ramp(0.3), large, 0.5);
     const Image whole = renderGrid(*context, grid, scene).colour;
     REQUIRE(largestAlpha(whole) > 0.9);
     for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(27, 1), glm::ivec2(1, 27), glm::ivec2(3, 9)}) {
@@ -132,7 +132,7 @@ TEST_CASE("In images of any shape light in a wide medium falls as it should", "[
     for (const bool perspective : {false, true}) {
       const Camera camera = perspective ? perspectiveCamera({16, 16, 40}, {16, 16, 0}, 0.1, 8)
                                         : orthographicCamera({16, 16, 40}, {16, 16, 0}, 1, 8);
-      Scene scene = plainScene(ramp(sigma_t), withSize(camera, size.x, size.y), d);
+      ResolvedScene scene = plainScene(ramp(sigma_t), withSize(camera, size.x, size.y), d);
       scene.model = Model::cone;
       scene.clipPlanes = {{0, 0, -1, 20}, {0, 0, 1, -10}};  // depths 20 to 30: 20 whole slabs
       const FieldBricks volume =
@@ -142,7 +142,7 @@ TEST_CASE("In images of any shape light in a wide medium falls as it should", "[
           INFO("size " << size.x << " x " << size.y << ", bits " << bits << ", passes " << passes << ", perspective "
                        << perspective);
           scene.occlusion.bits = bits;
-          scene.occlusion.passes = passes;
+          scene.occlusion.dos.passes = passes;
           const Picture picture = renderPicture(*context, volume, scene, kLayers);
           double worst = 0;
           for (int y = 0; y < size.y; ++y)
@@ -176,7 +176,7 @@ TEST_CASE("A plate thinner than a slab has its whole opacity at any phase of the
                         << (model == Model::cone));
         Camera camera = orthographicCamera({12, 12, 20 + phase}, {12, 12, 0}, 16, 9);
         camera.up = {0, 1, 0};
-        Scene scene = plainScene(ramp(sigma_t), camera, spacing);
+        ResolvedScene scene = plainScene(ramp(sigma_t), camera, spacing);
         scene.model = model;
         scene.sampling.segments = segments;
         const Picture picture = renderGrid(*context, plate, scene, kLayers);

@@ -39,8 +39,8 @@ inline double largestAlpha(const Image& image) {
 ///                itself.
 /// Rounding, the table of the transfer function and the reference's tolerance allow for `floor`.
 /// @return the change
-inline double checkAgainstReference(const GlContext& context, const ScalarGrid& grid, Scene scene, double floor = 2e-5,
-                                    double mostChange = 5e-3) {
+inline double checkAgainstReference(const GlContext& context, const ScalarGrid& grid, ResolvedScene scene,
+                                    double floor = 2e-5, double mostChange = 5e-3) {
   const Image exact = renderReference(grid, scene).colour;
   const Image coarse = renderGrid(context, grid, scene).colour;
   scene.sampling.spacing *= 0.5;
@@ -75,7 +75,7 @@ inline void checkViewsAgainstReference(const GlContext& context, const ScalarGri
       if (model == Model::cone && projection == Projection::perspective) continue;
       INFO("perspective " << (projection == Projection::perspective) << ", cone " << (model == Model::cone));
       base.projection = projection;
-      Scene scene = plainScene(transfer, orbitCamera(bounds, 0.6, 0.4, base), spacing);
+      ResolvedScene scene = plainScene(transfer, orbitCamera(bounds, 0.6, 0.4, base), spacing);
       scene.model = model;
       scene.occlusion.aperture = 0;
       checkAgainstReference(context, grid, scene);

@@ -30,7 +30,7 @@ TEST_CASE("A grid without voxels is an empty picture for renderer and reference"
   if (!context) return;
   const ScalarGrid empty = makeVoxels({});
   for (const Model model : {Model::emission, Model::cone}) {
-    Scene scene = plainScene(ramp(1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 10, 8), 0.5);
+    ResolvedScene scene = plainScene(ramp(1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 10, 8), 0.5);
     scene.model = model;
     const Picture picture = renderGrid(*context, empty, scene);
     CHECK(picture.stats.bricks == 0);
@@ -51,7 +51,7 @@ TEST_CASE("One voxel is the tent that trilinear interpolation makes of it", "[sh
   Camera camera = orthographicCamera({3, -2, 20}, {3, -2, 0}, 0.01, 1);
   camera.up = {0, 1, 0};
   for (const double spacing : {0.25, 0.5, 1.0}) {
-    const Scene scene = plainScene(ramp(1.5), camera, spacing);
+    const ResolvedScene scene = plainScene(ramp(1.5), camera, spacing);
     CHECK(renderGrid(*context, voxel, scene).colour.at(0, 0)[3] == Approx(-std::expm1(-1.5)).epsilon(1e-4));
   }
 }
@@ -83,7 +83,7 @@ TEST_CASE("A level set is filled with its inside background", "[shade][gl]") {
   // A ray through the centre: sigma_t rises over two voxels on either side to its full value.
   Camera camera = orthographicCamera({3, 4, 30}, {3, 4, -5}, 0.01, 1);
   camera.up = {0, 1, 0};
-  const Scene scene = plainScene(ramp(0.1, 0, -2), camera, 0.5);
+  const ResolvedScene scene = plainScene(ramp(0.1, 0, -2), camera, 0.5);
   // 24 units inside less 2 for the two ramps. The narrow band is a distance to 1e-2 of a voxel between voxels.
   CHECK(renderGrid(*context, ball, scene).colour.at(0, 0)[3] == Approx(-std::expm1(-0.1 * 22)).margin(2e-3));
 }
@@ -106,7 +106,7 @@ TEST_CASE("Negative indices are like others", "[shade][gl]") {
   const TransferFunction transfer = ramp(0.4);
   checkViewsAgainstReference(*context, there, transfer, {glm::dvec3(moved), glm::dvec3(moved + 10)}, 0.5);
   for (const Model model : {Model::emission, Model::cone}) {
-    Scene scene = plainScene(transfer, perspectiveCamera({25, 30, 40}, {5, 5, 5}, 0.5, 32), 0.5);
+    ResolvedScene scene = plainScene(transfer, perspectiveCamera({25, 30, 40}, {5, 5, 5}, 0.5, 32), 0.5);
     scene.model = model;
     const Image image = renderGrid(*context, here, scene).colour;
     scene.camera.eye += glm::dvec3(moved);
@@ -128,12 +128,12 @@ TEST_CASE("Voxels far apart are rendered without what lies between them", "[shad
   CHECK(volume->bricks.size() <= 16);
   for (const Model model : {Model::emission, Model::cone}) {
     // The other one is beside the image, so it adds neither light nor shadow.
-    Scene scene = plainScene(transfer, orthographicCamera({4, 40, 4}, {4, 4, 4.1}, 14, 24), 0.5);
+    ResolvedScene scene = plainScene(transfer, orthographicCamera({4, 40, 4}, {4, 4, 4.1}, 14, 24), 0.5);
     scene.model = model;
     CHECK(maxDifference(renderGrid(*context, both, scene).colour, renderGrid(*context, one, scene).colour) == 0);
   }
   // One behind the other, 35 000 voxels of nothing between them.
-  Scene scene = plainScene(transfer, perspectiveCamera({-30, 36, -25}, glm::dvec3(far), 0.5, 24), 0.5);
+  ResolvedScene scene = plainScene(transfer, perspectiveCamera({-30, 36, -25}, glm::dvec3(far), 0.5, 24), 0.5);
   scene.sampling.spacing = 0.5;
   checkAgainstReference(*context, both, scene);
   // Were that not nothing, it would be 2e9 bricks of it.
@@ -156,14 +156,14 @@ TEST_CASE("Voxels near the limits of 32-bit indices are rendered or refused", "[
   }
   // Bricks reach nearly to the limit. The same as at the origin, but for the camera's coordinates: 5e-7 apart at 2e9.
   const glm::ivec3 moved(most - 127, 16, -most + 128);
-  Scene origin = plainScene(transfer, orthographicCamera({20, 25, 30}, {4, 4, 4}, 16, 24), 0.5), limit = origin;
+  ResolvedScene origin = plainScene(transfer, orthographicCamera({20, 25, 30}, {4, 4, 4}, 16, 24), 0.5), limit = origin;
   limit.camera.eye += glm::dvec3(moved);
   limit.camera.lookAt += glm::dvec3(moved);
   CHECK(maxDifference(renderGrid(*context, makeNoise({8, 8, 8}), origin).colour,
                       renderGrid(*context, makeNoise({8, 8, 8}, moved), limit).colour) < 2e-5);
   // The apron of the last brick would be beyond them.
   const ScalarGrid last = makeVoxels({{glm::ivec3(most, 0, 0), 1.0f}});
-  const Scene scene =
+  const ResolvedScene scene =
       plainScene(transfer, orthographicCamera(glm::dvec3(most, 0, 9), glm::dvec3(most, 0, 0), 10, 8), 0.5);
   CHECK_THAT(complaint<InvalidArgument>([&] { renderGrid(*context, last, scene); }),
              Contains("32-bit indices") && Contains("2147483648"));

@@ -39,7 +39,7 @@ TEST_CASE("Media as solid as numbers allow are opaque and empty space beside the
           INFO("sigma_t " << sigma_t << ", background " << background << ", midpoint "
                           << (quadrature == Quadrature::midpoint) << ", perspective "
                           << (camera.projection == Projection::perspective));
-          Scene scene = plainScene(rampBetween(background, background + 1000, sigma_t), camera, 0.5);
+          ResolvedScene scene = plainScene(rampBetween(background, background + 1000, sigma_t), camera, 0.5);
           scene.sampling.quadrature = quadrature;
           FieldOptions options;
           options.background = static_cast<float>(background);
@@ -89,7 +89,7 @@ TEST_CASE("Empty space beside a solid medium is exactly empty in any texels", "[
           if (format == "half" && background == 1e6) continue;  // beyond the range of half-floats
           INFO("background " << background << ", below " << below << ", midpoint "
                              << (quadrature == Quadrature::midpoint) << ", " << format);
-          Scene scene = plainScene(rampBetween(background, background + 1000, 1e30), ballCameras()[0], 2);
+          ResolvedScene scene = plainScene(rampBetween(background, background + 1000, 1e30), ballCameras()[0], 2);
           scene.camera.width = scene.camera.height = 12;
           scene.sampling.quadrature = quadrature;
           scene.bricks.format = format;
@@ -110,7 +110,7 @@ TEST_CASE("A clip plane through a solid medium shows its cut", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   for (const double sigma_t : {1e30, 1e300}) {
-    Scene scene = plainScene(rampBetween(0, 1, sigma_t), ballCameras()[0], 0.5);
+    ResolvedScene scene = plainScene(rampBetween(0, 1, sigma_t), ballCameras()[0], 0.5);
     scene.clipPlanes = {{0.1, 0.2, -1, 14}};
     const FieldBricks volume = fieldFor(scene, ball(1, 0), kBlock);
     const Image image = renderPicture(*context, volume, scene).colour;
@@ -145,7 +145,7 @@ TEST_CASE("NaN and infinite voxels are background for renderer and reference", "
   spoilt->tree().addTile(1, openvdb::Coord(-32, 0, 0), infinity, false);
   for (const Model model : {Model::emission, Model::cone})
     for (const Camera& camera : ballCameras()) {
-      Scene scene = plainScene(rampBetween(0.25, 1, 0.3), camera, 0.5);
+      ResolvedScene scene = plainScene(rampBetween(0.25, 1, 0.3), camera, 0.5);
       scene.model = model;
       scene.camera.width = scene.camera.height = 20;
       const auto bricks = bricksFor(makeGrid(spoilt), scene);
@@ -173,7 +173,7 @@ TEST_CASE("Denormal voxels are as good as 0 among others", "[shade][gl]") {
   const auto zeros = [&](const glm::ivec3& i) { return (i.x + i.y + i.z) % 3 ? waves(i) : 0.0; };
   const auto denormals = [&](const glm::ivec3& i) { return (i.x + i.y + i.z) % 3 ? waves(i) : 1e-40 * (i.x - 10); };
   for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint}) {
-    Scene scene = plainScene(rampBetween(0, 1, 0.3), ballCameras()[1], 0.5);
+    ResolvedScene scene = plainScene(rampBetween(0, 1, 0.3), ballCameras()[1], 0.5);
     scene.sampling.quadrature = quadrature;
     const Image image = renderPicture(*context, fieldFor(scene, zeros, kBlock), scene).colour;
     CHECK(largestAlpha(image) > 0.5);
@@ -190,7 +190,7 @@ TEST_CASE("Volumes of next to one value show the medium of that value", "[shade]
                                   std::pair(1e6, 1e6 + 0.0625), std::pair(-3e38, 3e38)})
     for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint}) {
       INFO("values " << low << " to " << high << ", midpoint " << (quadrature == Quadrature::midpoint));
-      Scene scene = plainScene(homogeneous({0.8, 0.4, 0.1}, sigma_t), ballCameras()[0], 0.5);
+      ResolvedScene scene = plainScene(homogeneous({0.8, 0.4, 0.1}, sigma_t), ballCameras()[0], 0.5);
       scene.sampling.quadrature = quadrature;
       FieldOptions options;
       options.background = static_cast<float>(low);

@@ -11,21 +11,21 @@ using namespace umbrick;
 
 namespace {
 
-Scene blobScene(Model model, const Camera& camera) {
-  Scene scene = plainScene(ramp(0.6), camera, 0.5);
+ResolvedScene blobScene(Model model, const Camera& camera) {
+  ResolvedScene scene = plainScene(ramp(0.6), camera, 0.5);
   scene.model = model;
   scene.sampling.saturation = SamplingOptions().saturation;
   return scene;
 }
 
 // Everything of the scene with lengths `scale` times as long.
-Scene scaled(Scene scene, double scale) {
+ResolvedScene scaled(ResolvedScene scene, double scale) {
   scene.camera.eye *= scale;
   scene.camera.lookAt *= scale;
   scene.camera.viewHeight *= scale;
   scene.camera.nearDistance *= scale;
   scene.sampling.spacing *= scale;
-  scene.transfer = scene.transfer->scaled(1 / scale);
+  scene.transfer = scene.transfer.scaled(1 / scale);
   for (ClipPlane& plane : scene.clipPlanes) plane.w *= scale;
   return scene;
 }
@@ -40,7 +40,7 @@ TEST_CASE("Huge and tiny worlds look like one of unit size", "[shade][gl]") {
   if (!context) return;
   for (const Model model : {Model::emission, Model::cone})
     for (const Camera& camera : smallCameras()) {
-      Scene scene = blobScene(model, camera);
+      ResolvedScene scene = blobScene(model, camera);
       scene.camera.nearDistance = 5;
       scene.clipPlanes = {{0.3, -0.5, -0.8, 16}};
       const IndexBox voxels{glm::ivec3(0), glm::ivec3(23)};
@@ -49,7 +49,7 @@ TEST_CASE("Huge and tiny worlds look like one of unit size", "[shade][gl]") {
       for (const double scale : {0x1p-20, 1e-6, 1e6, 0x1p40, 1e-12}) {
         INFO("scale " << scale << ", cone " << (model == Model::cone) << ", perspective "
                       << (camera.projection == Projection::perspective));
-        const Scene other = scaled(scene, scale);
+        const ResolvedScene other = scaled(scene, scale);
         FieldOptions options;
         options.indexToWorld = glm::scale(glm::dmat4(1), glm::dvec3(scale));
         const Picture picture = renderPicture(*context, fieldFor(other, smallBlobs, voxels, options), other, kLayers);
@@ -100,7 +100,7 @@ TEST_CASE("A mirrored world is the mirror image", "[shade][gl]") {
   if (!context) return;
   for (const Model model : {Model::emission, Model::cone})
     for (const Camera& camera : smallCameras()) {
-      Scene scene = blobScene(model, camera);
+      ResolvedScene scene = blobScene(model, camera);
       scene.camera.up = {0, 1, 0};
       const IndexBox voxels{glm::ivec3(0), glm::ivec3(23)};
       const Image plain = renderPicture(*context, fieldFor(scene, smallBlobs, voxels), scene).colour;
@@ -130,7 +130,7 @@ TEST_CASE("A grid 1e6 voxels from the origin looks like one at the origin", "[sh
         const glm::dvec3 centre(transform * glm::dvec4(kSmallCentre, 1));
         camera.eye += centre - camera.lookAt;
         camera.lookAt = centre;
-        Scene scene = blobScene(model, camera);
+        ResolvedScene scene = blobScene(model, camera);
         scene.clipPlanes = {{0.3, -0.5, -0.8, 4 - glm::dot(glm::dvec3(0.3, -0.5, -0.8), centre)}};
         const Picture here = renderPicture(*context, fieldFor(scene, smallBlobs, voxels, options), scene, kLayers);
         const glm::dvec3 moved = glm::dmat3(transform) * glm::dvec3(far);
@@ -166,7 +166,7 @@ TEST_CASE("Views along planes of the grid, slices on planes of voxels match the 
           const glm::dvec3 middle(7.5 + aside);  // pixels are a voxel wide, 16 to a row
           Camera camera = orthographicCamera(middle + axis * (22.25 + phase), middle, 16, 16);
           camera.up = {axis.z, axis.x, -axis.y};
-          Scene scene = plainScene(ramp(0.3), camera, 0.5);
+          ResolvedScene scene = plainScene(ramp(0.3), camera, 0.5);
           scene.model = model;
           scene.occlusion.aperture = 0;
           // On planes of voxels the value is piecewise linear along a ray, and slabs of half a voxel cut at them are
@@ -174,7 +174,7 @@ TEST_CASE("Views along planes of the grid, slices on planes of voxels match the 
           checkAgainstReference(*context, grid, scene, 5e-5);
         }
   // A perspective view straight at a face, with the eye in the plane of another.
-  Scene scene = plainScene(ramp(0.3), perspectiveCamera({-0.5, 7.5, 50}, {-0.5, 7.5, 0}, 0.7, 32), 0.5);
+  ResolvedScene scene = plainScene(ramp(0.3), perspectiveCamera({-0.5, 7.5, 50}, {-0.5, 7.5, 0}, 0.7, 32), 0.5);
   scene.camera.up = {0, 1, 0};
   checkAgainstReference(*context, grid, scene);
 }

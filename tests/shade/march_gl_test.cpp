@@ -51,12 +51,12 @@ struct Reference {
   }
 };
 
-Reference marchPicture(const FieldBricks& volume, const Scene& scene, int steps) {
+Reference marchPicture(const FieldBricks& volume, const ResolvedScene& scene, int steps) {
   Reference reference;
   for (int y = 0; y < scene.camera.height; ++y)
     for (int x = 0; x < scene.camera.width; ++x) {
       const ViewRay ray = viewRay(scene.camera, x + 0.5, y + 0.5);
-      reference.pixels.push_back(march(volume, *scene.transfer, ray, keptDepths(ray, scene.clipPlanes), steps));
+      reference.pixels.push_back(march(volume, scene.transfer, ray, keptDepths(ray, scene.clipPlanes), steps));
     }
   return reference;
 }
@@ -72,7 +72,7 @@ TEST_CASE("A smooth field converges to a march in double precision at second ord
   for (const Camera& camera : {orthographicCamera(centre + glm::dvec3(30, -20, 25), centre, 40, 32),
                                perspectiveCamera(centre + glm::dvec3(-25, 18, 27), centre, 0.9, 32),
                                perspectiveCamera(centre, centre + glm::dvec3(9, 5, 1), 1.4, 32)}) {
-    Scene scene = plainScene(smoothTransfer(), camera, 4);
+    ResolvedScene scene = plainScene(smoothTransfer(), camera, 4);
     scene.clipPlanes = boxPlanes(kMediumIndex);
     const FieldBricks volume = fieldFor(scene, smoothField, kSmoothBlock);
     // 1200 steps over 45 voxels or less: an error of (0.04 / 0.5)^2 of that at the smallest spacing.
@@ -105,7 +105,7 @@ TEST_CASE("A thin shell of a steep field is seen by pre-integration at any phase
   const double tau = 0.5 * 0.02 * sigma_t * 40;
   for (const double phase : {0.0, 0.3, 1.1, 1.9}) {
     const Camera camera = orthographicCamera({16, 16, 60 + phase}, {16, 16, 0}, 20, 16);
-    Scene scene = plainScene(transfer, camera, 2.5);
+    ResolvedScene scene = plainScene(transfer, camera, 2.5);
     const FieldBricks volume = fieldFor(
         scene, [](const glm::ivec3& i) { return i.z / 40.0; }, kSmoothBlock);
     const Picture picture = renderPicture(*context, volume, scene);
@@ -125,7 +125,7 @@ TEST_CASE("Texel formats agree within the error that they state", "[shade][gl]")
   // Grid units of a CT: not near [0, 1].
   const double low = -1000, high = 3000, sigma_t = 0.3;
   const TransferFunction transfer({{low, {{1, 0.5, 0.2}, 0}}, {high, {{1, 0.5, 0.2}, sigma_t}}});
-  Scene scene = plainScene(transfer, camera, 0.5);
+  ResolvedScene scene = plainScene(transfer, camera, 0.5);
   scene.clipPlanes = boxPlanes(kMediumIndex);
   double longest = 0;
   for (int y = 0; y < camera.height; ++y)

@@ -12,8 +12,8 @@ namespace {
 
 TransferFunction blobTransfer() { return TransferFunction({{0, {{0.9, 0.5, 0.2}, 0}}, {1, {{0.3, 0.8, 0.6}, 1.5}}}); }
 
-Scene coneScene(const TransferFunction& transfer, const Camera& camera, double spacing) {
-  Scene scene = plainScene(transfer, camera, spacing);
+ResolvedScene coneScene(const TransferFunction& transfer, const Camera& camera, double spacing) {
+  ResolvedScene scene = plainScene(transfer, camera, spacing);
   scene.model = Model::cone;
   scene.sampling.quadrature = Quadrature::midpoint;
   return scene;
@@ -27,14 +27,14 @@ TEST_CASE("Two passes a slice and multiple render targets agree to the last bit"
   if (!context) return;
   for (const Camera& camera : blobCameras())
     for (const int algorithm : {2, 3}) {
-      Scene scene = coneScene(blobTransfer(), camera, 0.7);
+      ResolvedScene scene = coneScene(blobTransfer(), camera, 0.7);
       scene.sampling.quadrature = Quadrature::preintegrated;
       scene.sampling.saturation = SamplingOptions().saturation;
-      scene.occlusion.algorithm = algorithm;
+      scene.occlusion.dos.algorithm = algorithm;
       const FieldBricks volume = fieldFor(scene, blobs, kBlock);
-      scene.occlusion.passes = 1;
+      scene.occlusion.dos.passes = 1;
       const Picture one = renderPicture(*context, volume, scene, kLayers);
-      scene.occlusion.passes = 2;
+      scene.occlusion.dos.passes = 2;
       const Picture two = renderPicture(*context, volume, scene, kLayers);
       CHECK(maxDifference(one.colour, two.colour) == 0);
       CHECK(maxDifference(one.visibility, two.visibility) == 0);
@@ -57,11 +57,11 @@ TEST_CASE("The occlusion sweep agrees with one in double precision", "[shade][gl
           const int algorithm = footprint % 2 ? 2 : 3;
           INFO("perspective " << perspective << ", theta " << theta << ", footprint " << footprint << ", algorithm "
                               << algorithm << ", correction " << correction);
-          Scene scene = coneScene(blobTransfer(), camera, 0.8);
+          ResolvedScene scene = coneScene(blobTransfer(), camera, 0.8);
           scene.occlusion.aperture = theta;
-          scene.occlusion.footprint = footprint;
-          scene.occlusion.algorithm = algorithm;
-          scene.occlusion.perspectiveCorrection = correction;
+          scene.occlusion.dos.footprint = footprint;
+          scene.occlusion.dos.algorithm = algorithm;
+          scene.occlusion.dos.perspectiveCorrection = correction;
           const FieldBricks volume = fieldFor(scene, blobs, kBlock);
           const Picture picture = renderPicture(*context, volume, scene, kLayers);
           const auto exact = sweepOcclusion(volume, scene, 80);
@@ -88,17 +88,17 @@ TEST_CASE("With an aperture of 0 Algorithms 2 and 3 are the same", "[shade][gl]"
   const auto context = testContext();
   if (!context) return;
   for (const Camera& camera : blobCameras()) {
-    Scene scene = coneScene(blobTransfer(), camera, 0.8);
+    ResolvedScene scene = coneScene(blobTransfer(), camera, 0.8);
     scene.occlusion.aperture = 0;
     const FieldBricks volume = fieldFor(scene, blobs, kBlock);
-    scene.occlusion.algorithm = 2;
+    scene.occlusion.dos.algorithm = 2;
     const Picture exact = renderPicture(*context, volume, scene, kLayers);
-    scene.occlusion.algorithm = 3;
+    scene.occlusion.dos.algorithm = 3;
     const Picture sliced = renderPicture(*context, volume, scene, kLayers);
     // The sum of nine products against the product of a sum: a few roundings a slice.
     CHECK(maxDifference(exact.colour, sliced.colour) < 80 * 4 * kFloatRounding);
     scene.occlusion.aperture = 0.5;
-    scene.occlusion.algorithm = 2;
+    scene.occlusion.dos.algorithm = 2;
     CHECK(maxDifference(renderPicture(*context, volume, scene).colour, sliced.colour) > 1e-3);
   }
 }
@@ -116,7 +116,7 @@ TEST_CASE("In a medium wider than the image light falls by each slab's transmitt
         INFO("perspective " << perspective << ", theta " << theta << ", bits " << bits);
         const Camera camera = perspective ? perspectiveCamera({16, 16, 63}, {16, 16, 0}, 0.7, 32)
                                           : orthographicCamera({16, 16, 63}, {16, 16, 0}, 30, 32);
-        Scene scene =
+        ResolvedScene scene =
             coneScene(TransferFunction({{0, {{1, 0.5, 0.25}, 0}}, {1, {{1, 0.5, 0.25}, sigma_t}}}), camera, d);
         scene.occlusion.aperture = theta;
         scene.occlusion.bits = bits;
@@ -159,7 +159,7 @@ TEST_CASE("The layers of a thin slab are its depth and the light that it gets", 
   if (!context) return;
   const double depth = 20.3, thickness = 0.4, sigma_t = 0.5;
   const Camera camera = orthographicCamera({16, 16, 63}, {16, 16, 0}, 30, 16);
-  Scene scene = coneScene(TransferFunction({{0, {{1, 1, 1}, 0}}, {1, {{1, 1, 1}, sigma_t}}}), camera, 0.7);
+  ResolvedScene scene = coneScene(TransferFunction({{0, {{1, 1, 1}, 0}}, {1, {{1, 1, 1}, sigma_t}}}), camera, 0.7);
   scene.clipPlanes = {{0, 0, -1, 63 - depth}, {0, 0, 1, depth + thickness - 63}};
   const FieldBricks volume = fieldFor(scene, [](const glm::ivec3&) { return 1.0; }, {glm::ivec3(-32), glm::ivec3(63)});
   for (const Model model : {Model::emission, Model::cone}) {
@@ -203,10 +203,10 @@ TEST_CASE("Carried light keeps its sum, and its variance grows as a walk's", "[s
   for (const double theta : {0.3, 0.7})
     for (const int footprint : {2, 3}) {
       INFO("theta " << theta << ", footprint " << footprint);
-      Scene scene = coneScene(transfer, camera, 1);
+      ResolvedScene scene = coneScene(transfer, camera, 1);
       scene.bricks.interior = 8;
       scene.occlusion.aperture = theta;
-      scene.occlusion.footprint = footprint;
+      scene.occlusion.dos.footprint = footprint;
       const FieldBricks volume = fieldFor(scene, field, {glm::ivec3(0), glm::ivec3(63)});
       const Picture picture = renderPicture(*context, volume, scene, kLayers);
       scene.clipPlanes = {{0, 0, 1, -(back + 5.0)}};
@@ -250,7 +250,7 @@ TEST_CASE("Clipping an occluder away lights what is behind it", "[shade][gl]") {
     return i.z >= 22 && i.z <= 26 && i.x <= 16 ? 1.0 : i.z >= 4 && i.z <= 8 ? 1.0 : 0.0;
   };
   const TransferFunction transfer({{0, {{1, 1, 1}, 0}}, {1, {{1, 1, 1}, 2}}});
-  Scene scene = coneScene(transfer, orthographicCamera({16, 16, 50}, {16, 16, 0}, 28, 32), 0.5);
+  ResolvedScene scene = coneScene(transfer, orthographicCamera({16, 16, 50}, {16, 16, 0}, 28, 32), 0.5);
   const FieldBricks volume = fieldFor(scene, field, kBlock);
   const Picture roofed = renderPicture(*context, volume, scene, kLayers);
   scene.clipPlanes = {{0, 0, -1, 18}};

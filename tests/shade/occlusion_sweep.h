@@ -29,20 +29,21 @@ struct Plane {
 
 /// Colour (3), opacity, visibility of each pixel, with the medium at the middle of every slab.
 /// @param slices  from the eye on
-inline std::vector<std::array<double, 5>> sweepOcclusion(const FieldBricks& volume, const Scene& scene, int slices) {
+inline std::vector<std::array<double, 5>> sweepOcclusion(const FieldBricks& volume, const ResolvedScene& scene,
+                                                         int slices) {
   const Camera& camera = scene.camera;
   const OcclusionOptions& options = scene.occlusion;
   const int width = camera.width, height = camera.height;
   const double d = scene.sampling.spacing, extent = d * std::tan(options.aperture);
   const double pixelSize = screenPlane(camera).pixelSize.y;
-  const std::vector<glm::dvec2> disk = diskGrid(options.footprint);
+  const std::vector<glm::dvec2> disk = diskGrid(options.dos.footprint);
   std::vector<std::array<double, 5>> eye(static_cast<std::size_t>(width * height));
   Plane before(width, height, 1);
   for (int slice = 0; slice < slices; ++slice) {
     const double depth = (slice + 0.5) * d;
     // How large a length on the slice before appears, and where a point straight before this one does.
     double scale = 1, perPixel = pixelSize;
-    if (camera.projection == Projection::perspective && !options.perspectiveCorrection) {
+    if (camera.projection == Projection::perspective && !options.dos.perspectiveCorrection) {
       perPixel = pixelSize * glm::length(camera.lookAt - camera.eye);
     } else if (camera.projection == Projection::perspective) {
       scale = slice > 0 ? depth / (depth - d) : 1;
@@ -52,12 +53,12 @@ inline std::vector<std::array<double, 5>> sweepOcclusion(const FieldBricks& volu
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         const ViewRay ray = viewRay(camera, x + 0.5, y + 0.5);
-        const Medium medium = (*scene.transfer)(volume.trilinearWorld(ray.at(depth)));
+        const Medium medium = scene.transfer(volume.trilinearWorld(ray.at(depth)));
         const double px = 0.5 * width + (x + 0.5 - 0.5 * width) * scale;
         const double py = 0.5 * height + (y + 0.5 - 0.5 * height) * scale;
         double sum = 0;
         for (const glm::dvec2& point : disk) {
-          const double length = options.algorithm == 3 ? d : std::hypot(d, extent * glm::length(point));
+          const double length = options.dos.algorithm == 3 ? d : std::hypot(d, extent * glm::length(point));
           sum += before.bilinear(px + extent * point.x / perPixel, py + extent * point.y / perPixel) *
                  std::exp(-medium.sigma_t * length);
         }

@@ -13,7 +13,7 @@ using namespace umbrick;
 
 namespace {
 
-Image exactPicture(const ScalarGrid& grid, const Scene& scene, double tolerance,
+Image exactPicture(const ScalarGrid& grid, const ResolvedScene& scene, double tolerance,
                    const std::vector<LightDirection>& lights = {}) {
   ReferenceOptions options;
   options.tolerance = tolerance;
@@ -23,14 +23,14 @@ Image exactPicture(const ScalarGrid& grid, const Scene& scene, double tolerance,
 }
 
 // The reference of the directions that the renderer takes.
-Image exactOrdinates(const ScalarGrid& grid, const Scene& scene, double tolerance) {
-  return exactPicture(grid, scene, tolerance, lightDirections(scene, scene.occlusion.directions));
+Image exactOrdinates(const ScalarGrid& grid, const ResolvedScene& scene, double tolerance) {
+  return exactPicture(grid, scene, tolerance, lightDirections(scene, scene.occlusion.ordinates.directions));
 }
 
 // Window texels as large as slabs are thick, voxels being of unit size.
-Scene refined(Scene scene, double spacing) {
+ResolvedScene refined(ResolvedScene scene, double spacing) {
   scene.sampling.spacing = spacing;
-  scene.occlusion.scale = 1 / spacing;
+  scene.occlusion.ordinates.scale = 1 / spacing;
   return scene;
 }
 
@@ -51,11 +51,11 @@ TEST_CASE("Light by ordinates converges to that of the same directions", "[shade
   };
   for (const bool parallel : {true, false})
     for (const auto& [theta, directions, least] : {Case{1.0, 1, 1.5}, Case{1.0, 8, 1.3}, Case{1.4, 8, 1.0}}) {
-      Scene scene = smoothScene(Model::cone, 16);
+      ResolvedScene scene = smoothScene(Model::cone, 16);
       if (parallel) scene.camera = orthographicCamera(scene.camera.eye, scene.camera.lookAt, 22, 16);
       scene.method = Method::ordinates;
       scene.occlusion.aperture = theta;
-      scene.occlusion.directions = directions;
+      scene.occlusion.ordinates.directions = directions;
       const Image exact = exactOrdinates(grid, scene, 1e-4);
       std::vector<double> steps, errors;
       for (const double d : {2.0, 1.0, 0.5, 0.25}) {
@@ -82,14 +82,14 @@ TEST_CASE("Light by ordinates converges to the cone where dos does not", "[shade
   if (!context) return;
   const ScalarGrid grid = courtyard();
   for (const bool perspective : {false, true}) {
-    Scene scene = courtyardScene(perspective ? 80 : 60, 1024);
+    ResolvedScene scene = courtyardScene(perspective ? 80 : 60, 1024);
     if (perspective) scene.camera = perspectiveCamera(scene.camera.eye, scene.camera.lookAt, 0.6, 48);
     const Image cone = exactPicture(grid, scene, 2e-3);
     const double dos = rmsDifference(renderGrid(*context, grid, scene).colour, cone);
     scene.method = Method::ordinates;
     std::vector<double> method, whole, few;  // errors by K: to the same directions, to the cone
     for (const int directions : {4, 8, 16}) {
-      scene.occlusion.directions = directions;
+      scene.occlusion.ordinates.directions = directions;
       const Image same = exactOrdinates(grid, scene, 2e-3);
       few.push_back(rmsDifference(same, cone));
       method.push_back(rmsDifference(renderGrid(*context, grid, refined(scene, 52.0 / 64)).colour, same));

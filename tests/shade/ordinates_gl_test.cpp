@@ -20,7 +20,8 @@ TransferFunction tintedRamp(const glm::dvec3& albedo, double sigma_t) {
   return TransferFunction({{0, {albedo, 0}}, {1, {albedo, sigma_t}}});
 }
 
-Scene sixteenDirections(const TransferFunction& transfer, const Camera& camera, double spacing, double theta = 1) {
+ResolvedScene sixteenDirections(const TransferFunction& transfer, const Camera& camera, double spacing,
+                                double theta = 1) {
   return ordinatesScene(transfer, camera, spacing, theta, 16);
 }
 
@@ -31,7 +32,7 @@ LightSource lightFrom(const glm::dvec3& direction, const glm::dvec3& colour = gl
   return lightFrom(std::vector<ListedDirection>{{direction, 1, colour}});
 }
 
-void setLights(Scene& scene, const std::vector<LightSource>& lights) {
+void setLights(ResolvedScene& scene, const std::vector<LightSource>& lights) {
   scene.model = Model::lights;
   scene.lights = lights;
 }
@@ -57,10 +58,10 @@ TEST_CASE("Light by ordinates agrees with a sweep in double precision", "[shade]
     for (const double theta : {0.0, 0.6, 1.2})
       for (const double scale : {0.0, 1.4}) {
         if (scale > 0 && theta != 1.2) continue;
-        Scene scene = ordinatesScene(TransferFunction({{0, {{0.9, 0.5, 0.2}, 0}}, {1, {{0.3, 0.8, 0.6}, 1.5}}}), camera,
-                                     0.8, theta, 10);
+        ResolvedScene scene = ordinatesScene(TransferFunction({{0, {{0.9, 0.5, 0.2}, 0}}, {1, {{0.3, 0.8, 0.6}, 1.5}}}),
+                                             camera, 0.8, theta, 10);
         scene.sampling.quadrature = Quadrature::midpoint;
-        scene.occlusion.scale = scale;
+        scene.occlusion.ordinates.scale = scale;
         const FieldBricks volume = fieldFor(scene, blobs, kBlock);
         const Picture picture = renderPicture(*context, volume, scene, kLayers);
         CHECK(picture.stats.windowTexel == Approx(scale > 0 ? 1 / scale : 1).epsilon(0.2));
@@ -97,7 +98,7 @@ TEST_CASE("A homogeneous layer under one direction has its closed form at any sl
         for (const double d : {0.3, 1.0, 4.0}) {
           const double first = inside ? 0 : 20.3, last = inside ? 15.9 : 36.2;
           const double z = inside ? 40.2 : 63;
-          Scene scene =
+          ResolvedScene scene =
               ordinatesScene(tintedRamp({1, 0.5, 0.25}, sigma_t), straightCamera(perspective, z, 24), d, 0, 1);
           setLights(scene, {lightFrom(towards)});
           // In a volume so wide that light from aside comes through all of the layer.
@@ -133,7 +134,7 @@ TEST_CASE("In a medium wider than the image each direction falls along its own p
     for (const double theta : {0.8, 1.2})
       for (const int bits : {32, 16}) {
         INFO("perspective " << perspective << ", theta " << theta << ", bits " << bits);
-        Scene scene =
+        ResolvedScene scene =
             ordinatesScene(tintedRamp({1, 0.5, 0.25}, sigma_t), straightCamera(perspective, 63, 24), d, theta, 12);
         scene.occlusion.bits = bits;
         scene.clipPlanes = {{0, 0, -1, 63 - first}, {0, 0, 1, last - 63}};
@@ -178,7 +179,7 @@ TEST_CASE("Two slabs under one direction, as the light of each says", "[shade][g
       fieldGrid({glm::ivec3(-8, -8, 0), glm::ivec3(40, 40, 24)}, [](const glm::dvec3& p) { return p.z; });
   for (const glm::dvec3& towards : {glm::dvec3(0, 0, 1), glm::dvec3(-0.6, 0.2, 0.9)})
     for (const double d : {0.3, 1.0}) {
-      Scene scene = ordinatesScene(slabs.transfer, straightCamera(false, 60, 16), d, 0, 1);
+      ResolvedScene scene = ordinatesScene(slabs.transfer, straightCamera(false, 60, 16), d, 0, 1);
       scene.camera.viewHeight = 8;
       setLights(scene, {lightFrom(towards)});
       const Picture picture = renderGrid(*context, grid, scene);
@@ -211,10 +212,11 @@ TEST_CASE("What is off the screen casts its shadow", "[shade][gl]") {
   const double sigma_t = 0.4;
   const glm::dvec3 towards(1, 0.1, 1);  // 22 or so to the right where the plate is
   for (const bool perspective : {false, true}) {
-    Scene scene = ordinatesScene(tintedRamp(glm::dvec3(1), sigma_t), straightCamera(perspective, 64, 24), 0.5, 0, 1);
+    ResolvedScene scene =
+        ordinatesScene(tintedRamp(glm::dvec3(1), sigma_t), straightCamera(perspective, 64, 24), 0.5, 0, 1);
     scene.camera.viewHeight = 16;
     scene.camera.fov = 0.3;
-    scene.occlusion.directions = 1;
+    scene.occlusion.ordinates.directions = 1;
     setLights(scene, {lightFrom(towards)});
     const FieldBricks volume = fieldFor(scene, field, {glm::ivec3(-16, -16, 0), glm::ivec3(63, 47, 63)});
     const Picture shadowed = renderPicture(*context, volume, scene, kLayers);
@@ -242,7 +244,7 @@ TEST_CASE("Below an opaque half-plane ordinates have the light of the cone", "[s
   const TransferFunction transfer(
       {{-1, {glm::dvec3(1), 1e-3}}, {0, {glm::dvec3(1), 0}}, {0.9, {glm::dvec3(1), 0}}, {1, {glm::dvec3(1), 1e4}}});
   const double theta = 60 * std::numbers::pi / 180;
-  Scene scene = ordinatesScene(transfer, orthographicCamera({0, 0, 40.25}, {0, 0, 0}, 40, 80), 0.5, theta, 160);
+  ResolvedScene scene = ordinatesScene(transfer, orthographicCamera({0, 0, 40.25}, {0, 0, 0}, 40, 80), 0.5, theta, 160);
   scene.camera.height = 1;
   scene.camera.viewHeight = 0.5;
   scene.camera.up = {0, 1, 0};
@@ -274,7 +276,7 @@ TEST_CASE("Clipping an occluder away lights what is behind it, by ordinates as w
   };
   const auto floor = [](const glm::ivec3& i) { return i.z >= 4 && i.z <= 8 ? 1.0 : 0.0; };
   for (const bool perspective : {false, true}) {
-    Scene scene = sixteenDirections(tintedRamp(glm::dvec3(1), 2), straightCamera(perspective, 50, 32), 0.5);
+    ResolvedScene scene = sixteenDirections(tintedRamp(glm::dvec3(1), 2), straightCamera(perspective, 50, 32), 0.5);
     const Picture roofed = renderPicture(*context, fieldFor(scene, field, kBlock), scene, kLayers);
     const Picture alone = renderPicture(*context, fieldFor(scene, floor, kBlock), scene, kLayers);
     CHECK(maxDifference(roofed.visibility, alone.visibility) > 0.15);
@@ -299,7 +301,7 @@ TEST_CASE("Bricks, culling, pools and textures change nothing of light by ordina
   for (Camera camera :
        {orthographicCamera({30, 5, 95}, middle, 70, 40), perspectiveCamera({20, 8, 75}, middle, 1, 40)}) {
     INFO("perspective " << (camera.projection == Projection::perspective));
-    Scene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 1.2, 12);
+    ResolvedScene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 1.2, 12);
     scene.bricks.culling = false;
     scene.bricks.interior = 128;
     const Picture whole = renderPicture(*context, fieldFor(scene, far, voxels), scene, kLayers);
@@ -342,7 +344,7 @@ TEST_CASE("Bricks, culling, pools and textures change nothing of light by ordina
 TEST_CASE("A picture by ordinates does not depend on the ones before", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  Scene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), blobCameras()[0], 0.8, 1.2, 20);
+  ResolvedScene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), blobCameras()[0], 0.8, 1.2, 20);
   FieldOptions options;
   options.interior = scene.bricks.interior;
   options.apron = 2;  // for the widest of the views
@@ -365,7 +367,7 @@ TEST_CASE("Many directions are lit in groups, which add up to what one group has
   if (!context) return;
   for (const Camera& camera : blobCameras())
     for (const bool coloured : {false, true}) {
-      Scene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 1.1, 15);
+      ResolvedScene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 1.1, 15);
       std::vector<ListedDirection> once, often;
       for (const auto& [direction, radiance] : lightDirections(scene, 15)) {
         const glm::dvec3 colour = coloured ? 0.5 + 0.5 * direction : glm::dvec3(1);
@@ -401,7 +403,7 @@ TEST_CASE("Pictures of lights add up to the picture of all of them", "[shade][gl
       const glm::dvec3 left(-0.6, 0.1, 0.7), right = equalPaths ? glm::dvec3(0.6, 0.1, 0.7) : glm::dvec3(0.1, 0.2, 0.9);
       std::vector<double> differences;
       for (const double d : {0.8, 0.4}) {
-        Scene scene = sixteenDirections(tintedRamp({0.9, 0.8, 0.7}, 1.2), camera, d);
+        ResolvedScene scene = sixteenDirections(tintedRamp({0.9, 0.8, 0.7}, 1.2), camera, d);
         const FieldBricks volume = fieldFor(scene, blobs, kBlock);
         setLights(scene, {lightFrom(left, red)});
         Image sum = renderPicture(*context, volume, scene).colour;
@@ -427,7 +429,7 @@ TEST_CASE("Windows of 16 bits stay within half a step per slice", "[shade][gl][s
   if (!context) return;
   for (const Camera& camera : blobCameras())
     for (const double d : {0.8, 0.1}) {
-      Scene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 0.6), camera, d, 1, 12);
+      ResolvedScene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 0.6), camera, d, 1, 12);
       const FieldBricks volume = fieldFor(scene, blobs, kBlock);
       const Picture fine = renderPicture(*context, volume, scene, kLayers);
       scene.occlusion.bits = 16;
@@ -444,11 +446,11 @@ TEST_CASE("Without an aperture any number of directions is one, straight towards
   const auto context = testContext();
   if (!context) return;
   for (const Camera& camera : blobCameras()) {
-    Scene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 0, 16);
+    ResolvedScene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), camera, 0.8, 0, 16);
     const FieldBricks volume = fieldFor(scene, blobs, kBlock);
     const Picture straight = renderPicture(*context, volume, scene, kLayers);
     CHECK(straight.stats.directions == 1);
-    scene.occlusion.directions = 1;
+    scene.occlusion.ordinates.directions = 1;
     scene.occlusion.aperture = 1.2;
     CHECK(layersDifference(renderPicture(*context, volume, scene, kLayers), straight) == 0);
     setLights(scene, {lightFrom({0, 0, 3})});

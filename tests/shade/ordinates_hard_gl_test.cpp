@@ -17,11 +17,12 @@ using namespace umbrick;
 
 namespace {
 
-Scene eightDirections(const TransferFunction& transfer, const Camera& camera, double spacing, double theta = 1) {
+ResolvedScene eightDirections(const TransferFunction& transfer, const Camera& camera, double spacing,
+                              double theta = 1) {
   return ordinatesScene(transfer, camera, spacing, theta, 8);
 }
 
-void setLights(Scene& scene, const std::vector<ListedDirection>& list, LightFrame frame = LightFrame::view) {
+void setLights(ResolvedScene& scene, const std::vector<ListedDirection>& list, LightFrame frame = LightFrame::view) {
   scene.model = Model::lights;
   scene.lights = {{frame, ListedLight{list}}};
 }
@@ -30,19 +31,19 @@ void setLights(Scene& scene, const std::vector<ListedDirection>& list, LightFram
 // slabs. Of first order at least (see ordinates_convergence_gl_test), so that what is left is no more than what the
 // halving changed; slices that happen to be better than their order, the tolerance of the reference and the table allow
 // for `floor`.
-void checkAgainstDirections(const GlContext& context, const ScalarGrid& grid, Scene scene, double floor = 1e-3,
+void checkAgainstDirections(const GlContext& context, const ScalarGrid& grid, ResolvedScene scene, double floor = 1e-3,
                             double changes = 1) {
   ReferenceOptions options;
   options.tolerance = 1e-3;
-  options.lights = lightDirections(scene, scene.occlusion.directions);
+  options.lights = lightDirections(scene, scene.occlusion.ordinates.directions);
   const Image exact = renderReference(grid, scene, options).colour;
-  scene.occlusion.scale = shortestVoxelEdge(grid.indexToWorld()) / scene.sampling.spacing;
+  scene.occlusion.ordinates.scale = shortestVoxelEdge(grid.indexToWorld()) / scene.sampling.spacing;
   const Image coarse = renderGrid(context, grid, scene).colour;
   scene.sampling.spacing *= 0.5;
-  scene.occlusion.scale *= 2;
+  scene.occlusion.ordinates.scale *= 2;
   const Image fine = renderGrid(context, grid, scene).colour;
   const double change = rmsDifference(coarse, fine), rest = rmsDifference(fine, exact);
-  Scene bright = scene;
+  ResolvedScene bright = scene;
   bright.model = Model::emission;
   const double shadow = rmsDifference(renderGrid(context, grid, bright).colour, exact);
   INFO("change by halving the spacing " << change << ", left to the reference " << rest << ", shadow " << shadow);
@@ -62,7 +63,7 @@ TEST_CASE("Slabs of optical depths from 1e-8 to 1e4 scatter what they should, by
   for (const double slab : {1e-8, 1e-5, 1e-3, 0.1, 0.49, 0.51, 1.0, 10.0, 1e4}) {
     for (const glm::dvec3& towards : {glm::dvec3(0, 0, 1), glm::dvec3(0.6, 0, 0.8)}) {
       Camera camera = orthographicCamera({16, 16, 40}, {16, 16, 0}, 8, 4);
-      Scene scene = ordinatesScene(ramp(slab / d), camera, d, 0, 1);
+      ResolvedScene scene = ordinatesScene(ramp(slab / d), camera, d, 0, 1);
       setLights(scene, {{towards}});
       scene.clipPlanes = {{0, 0, -1, 30}, {0, 0, 1, depth - 30}};
       const FieldBricks volume =
@@ -87,7 +88,7 @@ TEST_CASE("Media as solid as numbers allow are lit in front and dark behind, at 
           for (const Camera& camera : smallCameras(20)) {
             INFO("sigma_t " << sigma_t << ", theta " << theta << ", directions " << directions << ", bits " << bits
                             << ", perspective " << (camera.projection == Projection::perspective));
-            Scene scene = ordinatesScene(ramp(sigma_t), camera, 0.5, theta, directions);
+            ResolvedScene scene = ordinatesScene(ramp(sigma_t), camera, 0.5, theta, directions);
             scene.occlusion.bits = bits;
             // The half of the ball behind its middle: a front that no part of it shades.
             const glm::dvec3 forward = cameraFrame(camera).forward;
@@ -117,10 +118,11 @@ TEST_CASE("Windows that 10 000 slices have multiplied are off by half a step per
   for (const double whole : {0.05, 2.3})
     for (const int slices : {100, 10'000}) {
       const double d = depth / slices;
-      Scene scene = eightDirections(ramp(whole / depth), orthographicCamera({12, 12, 20.5 + d}, {12, 12, 0}, 4, 2), d);
+      ResolvedScene scene =
+          eightDirections(ramp(whole / depth), orthographicCamera({12, 12, 20.5 + d}, {12, 12, 0}, 4, 2), d);
       setLights(scene, {{glm::dvec3(0.28, 0, 0.96)}});
       scene.clipPlanes = {{0, 0, -1, 20.5}, {0, 0, 1, -0.5}};
-      scene.occlusion.scale = 1;
+      scene.occlusion.ordinates.scale = 1;
       const FieldBricks volume =
           fieldFor(scene, [](const glm::ivec3&) { return 1.0; }, {glm::ivec3(-8), glm::ivec3(31)});
       const double both = 1 + 1 / 0.96, exact = -std::expm1(-whole * both) / both;
@@ -164,7 +166,7 @@ TEST_CASE("Light at a grazing angle is blocked by what is beside a point, or not
   for (const Camera& camera : smallCameras(24))
     for (const double towards : {1e-2, 1e-4, 1e-9, 1e-300}) {
       INFO("towards the viewer " << towards << ", perspective " << (camera.projection == Projection::perspective));
-      Scene scene = eightDirections(ramp(0.6), camera, 0.5);
+      ResolvedScene scene = eightDirections(ramp(0.6), camera, 0.5);
       setLights(scene, {{glm::dvec3(0.8, 0.6, towards)}});
       const Picture picture = renderGrid(*context, grid, scene, kLayers);
       CHECK(allWithin(picture.colour, 0, 1));
@@ -182,16 +184,16 @@ TEST_CASE("Huge and tiny worlds, by ordinates, look like one of unit size", "[sh
   if (!context) return;
   const IndexBox voxels{glm::ivec3(0), glm::ivec3(23)};
   for (const Camera& camera : smallCameras()) {
-    const Scene scene = eightDirections(ramp(0.6), camera, 0.5);
+    const ResolvedScene scene = eightDirections(ramp(0.6), camera, 0.5);
     const Picture unit = renderPicture(*context, fieldFor(scene, smallBlobs, voxels), scene, kLayers);
     for (const double scale : {0x1p-20, 1e-6, 1e6, 0x1p40, 1e-12}) {
       INFO("scale " << scale << ", perspective " << (camera.projection == Projection::perspective));
-      Scene other = scene;
+      ResolvedScene other = scene;
       other.camera.eye *= scale;
       other.camera.lookAt *= scale;
       other.camera.viewHeight *= scale;
       other.sampling.spacing *= scale;
-      other.transfer = scene.transfer->scaled(1 / scale);
+      other.transfer = scene.transfer.scaled(1 / scale);
       FieldOptions options;
       options.indexToWorld = glm::scale(glm::dmat4(1), glm::dvec3(scale));
       const Picture picture = renderPicture(*context, fieldFor(other, smallBlobs, voxels, options), other, kLayers);
@@ -215,7 +217,7 @@ TEST_CASE("A grid 1e6 voxels from the origin, by ordinates, looks like one at th
       const glm::dvec3 centre(transform * glm::dvec4(kSmallCentre, 1));
       camera.eye += centre - camera.lookAt;
       camera.lookAt = centre;
-      Scene scene = eightDirections(ramp(0.6), camera, 0.5);
+      ResolvedScene scene = eightDirections(ramp(0.6), camera, 0.5);
       scene.clipPlanes = {{0.3, -0.5, -0.8, 4 - glm::dot(glm::dvec3(0.3, -0.5, -0.8), centre)}};
       const Picture here = renderPicture(*context, fieldFor(scene, smallBlobs, voxels, options), scene, kLayers);
       const glm::dvec3 moved = glm::dmat3(transform) * glm::dvec3(far);
@@ -293,7 +295,7 @@ TEST_CASE("From inside an opaque brick the eye sees its first slab, in its own l
     const glm::dvec3 eye(20.3, 19.1, 21.7);
     const Camera camera = perspective ? perspectiveCamera(eye, eye - glm::dvec3(0.2, 0.3, 1), 1.2, 16)
                                       : orthographicCamera(eye, eye - glm::dvec3(0.2, 0.3, 1), 8, 16);
-    Scene scene = ordinatesScene(ramp(1e5), camera, 0.5, 0, 1);
+    ResolvedScene scene = ordinatesScene(ramp(1e5), camera, 0.5, 0, 1);
     const FieldBricks volume = fieldFor(scene, [](const glm::ivec3&) { return 1.0; }, {glm::ivec3(0), glm::ivec3(47)});
     const Picture picture = renderPicture(*context, volume, scene, kLayers);
     double worst = 0;
@@ -315,7 +317,7 @@ TEST_CASE("One-pixel and narrow images, by ordinates, are cut-outs of larger one
   for (const bool perspective : {false, true}) {
     const Camera large = perspective ? perspectiveCamera({40, 30, 50}, glm::dvec3(14.5), 0.7, 27)
                                      : orthographicCamera({40, 30, 50}, glm::dvec3(14.5), 40, 27);
-    Scene scene = eightDirections(ramp(0.3), large, 0.5);
+    ResolvedScene scene = eightDirections(ramp(0.3), large, 0.5);
     const Image whole = renderGrid(*context, grid, scene).colour;
     REQUIRE(largestAlpha(whole) > 0.9);
     for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(27, 1), glm::ivec2(1, 27), glm::ivec2(3, 9)}) {
@@ -339,11 +341,11 @@ TEST_CASE("One-pixel and narrow images, by ordinates, are cut-outs of larger one
 TEST_CASE("What a grid holds, nothing, one voxel, tiles or fog, is lit as the reference says", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const Scene nothing = eightDirections(ramp(1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 10, 8), 0.5);
+  const ResolvedScene nothing = eightDirections(ramp(1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 10, 8), 0.5);
   const Picture empty = renderGrid(*context, makeVoxels({}), nothing, kLayers);
   CHECK(maxDifference(empty.colour, Image(8, 8)) == 0);
   CHECK(maxDifference(empty.visibility, Image(8, 8, 1)) == 0);
-  Scene beside = eightDirections(ramp(1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 4, 8), 0.5);
+  ResolvedScene beside = eightDirections(ramp(1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 4, 8), 0.5);
   CHECK(maxDifference(renderGrid(*context, makeVoxels({{{30, 0, 0}, 1.0f}}), beside).colour, Image(8, 8)) == 0);
   beside.camera = orthographicCamera({0, 0, -9}, {0, 0, -20}, 100, 8);  // all is behind the eye
   CHECK(maxDifference(renderGrid(*context, makeVoxels({{{0, 0, 0}, 1.0f}}), beside).colour, Image(8, 8)) == 0);
@@ -388,7 +390,7 @@ TEST_CASE("What a grid holds, nothing, one voxel, tiles or fog, is lit as the re
 TEST_CASE("Lights without radiance and maps that are dark in front give opacity and no light", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  Scene scene = eightDirections(ramp(0.6), smallCameras()[1], 0.5);
+  ResolvedScene scene = eightDirections(ramp(0.6), smallCameras()[1], 0.5);
   const FieldBricks volume = fieldFor(scene, smallBlobs, {glm::ivec3(0), glm::ivec3(23)});
   const Picture lit = renderPicture(*context, volume, scene, kLayers);
   EnvironmentLight dark;
@@ -432,9 +434,9 @@ TEST_CASE("No step of the camera is so small that light by ordinates jumps", "[s
             if (dolly) moved.eye += 0.05 * i * glm::normalize(moved.lookAt - moved.eye);
             return moved;
           };
-          Scene scene = ordinatesScene(ramp(0.6), camera(0), 0.5, 0.8, 8);
+          ResolvedScene scene = ordinatesScene(ramp(0.6), camera(0), 0.5, 0.8, 8);
           scene.bricks.interior = 8;
-          scene.occlusion.scale = scale;
+          scene.occlusion.ordinates.scale = scale;
           if (light != Light::cone) {
             const CameraFrame axes = cameraFrame(scene.camera);
             const glm::dmat3 toWorld =
@@ -489,8 +491,8 @@ TEST_CASE("A wall thinner than a texel of the windows leaks as the test says", "
       const double x = 6 + phase / scale / phases;
       Camera camera = orthographicCamera({x, 16, 44.25}, {x, 16, 0}, 1, 2);
       camera.up = {0, 1, 0};
-      Scene scene = ordinatesScene(ramp(sigma_t), camera, 0.5, 0, 1);
-      scene.occlusion.scale = scale;
+      ResolvedScene scene = ordinatesScene(ramp(sigma_t), camera, 0.5, 0, 1);
+      scene.occlusion.ordinates.scale = scale;
       setLights(scene, {{glm::dvec3(tilt, 0, 1)}});
       const FieldBricks volume = fieldFor(scene, field, {glm::ivec3(-8, 0, 0), glm::ivec3(39, 31, 47)});
       const double shadowed = *renderPicture(*context, volume, scene, kLayers).visibility.at(1, 1);
@@ -515,11 +517,11 @@ TEST_CASE("A wall thinner than a texel of the windows leaks as the test says", "
 TEST_CASE("Windows that no driver has room for are refused, saying why", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  Scene scene = eightDirections(ramp(0.6), smallCameras()[0], 0.5);
+  ResolvedScene scene = eightDirections(ramp(0.6), smallCameras()[0], 0.5);
   const FieldBricks volume = fieldFor(scene, smallBlobs, {glm::ivec3(0), glm::ivec3(23)});
-  scene.occlusion.scale = 2000;
+  scene.occlusion.ordinates.scale = 2000;
   CHECK_THAT(complaint<InvalidArgument>([&] { renderPicture(*context, volume, scene); }), Catch::Contains("scale"));
-  scene.occlusion.scale = 0;
+  scene.occlusion.ordinates.scale = 0;
   std::vector<ListedDirection> many(5000, {{0.1, 0.2, 1}, 1.0 / 5000, glm::dvec3(1)});
   setLights(scene, many);
   CHECK_THAT(complaint<InvalidArgument>([&] { renderPicture(*context, volume, scene); }),

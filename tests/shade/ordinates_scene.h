@@ -8,13 +8,13 @@
 
 namespace umbrick {
 
-inline Scene ordinatesScene(const TransferFunction& transfer, const Camera& camera, double spacing, double theta,
-                            int directions) {
-  Scene scene = plainScene(transfer, camera, spacing);
+inline ResolvedScene ordinatesScene(const TransferFunction& transfer, const Camera& camera, double spacing,
+                                    double theta, int directions) {
+  ResolvedScene scene = plainScene(transfer, camera, spacing);
   scene.model = Model::cone;
   scene.method = Method::ordinates;
   scene.occlusion.aperture = theta;
-  scene.occlusion.directions = directions;
+  scene.occlusion.ordinates.directions = directions;
   return scene;
 }
 

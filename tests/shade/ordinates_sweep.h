@@ -13,8 +13,8 @@ namespace umbrick {
 
 /// Colour (3), opacity, visibility of each pixel, with the medium at the middle of every slab, for light of one colour.
 /// Every path is kept for ever. @param texel  of the lattice, world units; `slices` from the eye on
-inline std::vector<std::array<double, 5>> sweepOrdinates(const FieldBricks& volume, const Scene& scene, double texel,
-                                                         int slices) {
+inline std::vector<std::array<double, 5>> sweepOrdinates(const FieldBricks& volume, const ResolvedScene& scene,
+                                                         double texel, int slices) {
   const Camera& camera = scene.camera;
   const CameraFrame axes = cameraFrame(camera);
   const double d = scene.sampling.spacing;
@@ -27,7 +27,7 @@ inline std::vector<std::array<double, 5>> sweepOrdinates(const FieldBricks& volu
     }
   };
   std::vector<Path> paths;
-  for (const auto& [direction, radiance] : lightDirections(scene, scene.occlusion.directions)) {
+  for (const auto& [direction, radiance] : lightDirections(scene, scene.occlusion.ordinates.directions)) {
     const double towards = -glm::dot(direction, axes.forward);
     paths.push_back({glm::dot(direction, axes.right) / towards / texel,
                      glm::dot(direction, axes.up) / towards / texel,
@@ -50,7 +50,7 @@ inline std::vector<std::array<double, 5>> sweepOrdinates(const FieldBricks& volu
       for (int x = 0; x < camera.width; ++x) {
         const ViewRay ray = viewRay(camera, x + 0.5, y + 0.5);
         const glm::dvec3 point = ray.at(depth);
-        const Medium medium = (*scene.transfer)(volume.trilinearWorld(point));
+        const Medium medium = scene.transfer(volume.trilinearWorld(point));
         if (medium.sigma_t == 0) continue;
         const double px = glm::dot(point - camera.eye, axes.right) / texel - 0.5;
         const double py = glm::dot(point - camera.eye, axes.up) / texel - 0.5;
@@ -83,7 +83,7 @@ inline std::vector<std::array<double, 5>> sweepOrdinates(const FieldBricks& volu
       for (int i = cx - reach; i <= cx + reach; ++i) {
         const glm::dvec3 point =
             camera.eye + (i + 0.5) * texel * axes.right + (j + 0.5) * texel * axes.up + depth * axes.forward;
-        const double sigma_t = (*scene.transfer)(volume.trilinearWorld(point)).sigma_t;
+        const double sigma_t = scene.transfer(volume.trilinearWorld(point)).sigma_t;
         if (sigma_t == 0) continue;
         for (Path& path : paths)
           path.light.try_emplace({i + shift(path.x), j + shift(path.y)}, 1).first->second *=

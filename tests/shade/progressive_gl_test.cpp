@@ -19,22 +19,22 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The courtyard in few pixels, slabs and directions.
-Scene smallScene(int slices = 16, int directions = 3) {
-  Scene scene = courtyardScene(60, slices);
+ResolvedScene smallScene(int slices = 16, int directions = 3) {
+  ResolvedScene scene = courtyardScene(60, slices);
   scene.camera.width = scene.camera.height = 24;
   scene.method = Method::ordinates;
-  scene.occlusion.directions = directions;
+  scene.occlusion.ordinates.directions = directions;
   return scene;
 }
 
 // A layer of depth 40.3 to 56.2, far wider than the picture, under light from one direction: nothing in it depends on
 // directions, and slabs are exact (see ordinates_gl_test).
-Scene layerScene(bool perspective, double eyeDepth = 40.3) {
+ResolvedScene layerScene(bool perspective, double eyeDepth = 40.3) {
   const double z = 50 + eyeDepth;
-  Scene scene = plainScene(TransferFunction({{0, {{1, 0.5, 0.25}, 0}}, {1, {{1, 0.5, 0.25}, 0.11}}}),
-                           perspective ? perspectiveCamera({16, 16, z}, {16, 16, 0}, 0.7, 16)
-                                       : orthographicCamera({16, 16, z}, {16, 16, 0}, 30, 16),
-                           1.7);
+  ResolvedScene scene = plainScene(TransferFunction({{0, {{1, 0.5, 0.25}, 0}}, {1, {{1, 0.5, 0.25}, 0.11}}}),
+                                   perspective ? perspectiveCamera({16, 16, z}, {16, 16, 0}, 0.7, 16)
+                                               : orthographicCamera({16, 16, z}, {16, 16, 0}, 30, 16),
+                                   1.7);
   scene.camera.up = {0, 1, 0};
   scene.method = Method::ordinates;
   scene.model = Model::lights;
@@ -43,12 +43,12 @@ Scene layerScene(bool perspective, double eyeDepth = 40.3) {
   return scene;
 }
 
-FieldBricks layerVolume(const Scene& scene) {
+FieldBricks layerVolume(const ResolvedScene& scene) {
   return fieldFor(scene, [](const glm::ivec3&) { return 1.0; }, {glm::ivec3(-64, -64, 0), glm::ivec3(95, 95, 63)});
 }
 
 // Bricks that slabs twice as thick fit as well.
-std::unique_ptr<Bricks> bricksForPasses(const ScalarGrid& grid, const Scene& scene) {
+std::unique_ptr<Bricks> bricksForPasses(const ScalarGrid& grid, const ResolvedScene& scene) {
   return bricksFor(grid, coarserScene(scene));
 }
 
@@ -72,7 +72,7 @@ TEST_CASE("A homogeneous layer looks the same whatever the sample", "[shade][gl]
   const auto context = testContext();
   if (!context) return;
   for (const bool perspective : {false, true}) {
-    const Scene scene = layerScene(perspective);
+    const ResolvedScene scene = layerScene(perspective);
     const FieldBricks volume = layerVolume(scene);
     SliceRenderer renderer(*context, volume, scene, kLayers);
     const Picture plain = renderer.render();
@@ -101,7 +101,7 @@ TEST_CASE("A homogeneous layer looks the same whatever the sample", "[shade][gl]
 TEST_CASE("A phase is ignored where the eye is inside", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const Scene scene = layerScene(true, -5);  // 5 deep in the layer
+  const ResolvedScene scene = layerScene(true, -5);  // 5 deep in the layer
   const FieldBricks volume = layerVolume(scene);
   SliceRenderer renderer(*context, volume, scene);
   const Picture plain = renderer.render();
@@ -117,7 +117,7 @@ TEST_CASE("The picture after n passes is the mean of n pictures", "[shade][gl]")
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();
-  Scene scene = smallScene();
+  ResolvedScene scene = smallScene();
   const auto volume = bricksForPasses(grid, scene);
   // A pass of its own is what the next mean has more of.
   std::vector<Image> means;
@@ -153,7 +153,7 @@ TEST_CASE("Layers are averaged as the picture is", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();
-  Scene scene = smallScene();
+  ResolvedScene scene = smallScene();
   const auto volume = bricksForPasses(grid, scene);
   const Picture picture = renderProgressive(*context, *volume, scene, {.passes = 8}, kLayers).picture;
   REQUIRE(picture.visibility.pixels.size() == picture.colour.pixels.size() / 4);
@@ -188,7 +188,7 @@ TEST_CASE("The same seed gives the same picture to the bit, another seed another
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();
-  const Scene scene = smallScene();
+  const ResolvedScene scene = smallScene();
   const auto volume = bricksForPasses(grid, scene);
   const auto picture = [&](std::uint64_t seed) {
     return renderProgressive(*context, *volume, scene, {.passes = 5, .seed = seed}, kLayers);
@@ -210,7 +210,7 @@ TEST_CASE("The standard error is that of the mean, which falls faster than with 
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();
-  const Scene scene = smallScene();
+  const ResolvedScene scene = smallScene();
   const auto volume = bricksForPasses(grid, scene);
   const Image limit = renderProgressive(*context, *volume, scene, {.passes = 256, .seed = 99}).picture.colour;
   std::vector<double> passes{4, 8, 16}, distances;
@@ -241,12 +241,11 @@ TEST_CASE("The standard error is that of the mean, which falls faster than with 
 }
 
 // Quality of the courtyard in so many pixels: walls of 4 voxels, a shell of 3, edges of one.
-Scene qualityScene(Quality quality, int pixels) {
-  Scene scene = smallScene();
+ResolvedScene qualityScene(Quality quality, int pixels) {
+  Scene scene = unresolved(smallScene());
   scene.camera.width = scene.camera.height = pixels;
   applyQuality(quality, scene);
-  scene.sampling.spacingInVoxels = false;  // a voxel is a world unit
-  return scene;
+  return resolvedAnywhere(scene);  // a voxel is a world unit
 }
 
 // Pixels of 1.8 and 0.9 voxels. Where texels followed pixels, `high` had slabs of 1.25 voxels and texels of 1.8 in the
@@ -263,7 +262,7 @@ TEST_CASE("Better quality is nearer to the reference at any size and estimates h
     const Image exact = renderReference(grid, qualityScene(Quality::high, pixels), options).colour;
     double coarser = kInfinity, coarserMean = kInfinity;
     for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
-      const Scene scene = qualityScene(quality, pixels);
+      const ResolvedScene scene = qualityScene(quality, pixels);
       const auto volume = bricksForPasses(grid, scene);
       const double single = rmsOfRgb(renderPicture(*context, *volume, scene).colour, exact);
       const ProgressivePicture passes = renderProgressive(*context, *volume, scene, {.passes = 8});
@@ -286,7 +285,7 @@ TEST_CASE("Passes end where the target is reached, at the time limit, or when to
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();
-  const Scene scene = smallScene(64);
+  const ResolvedScene scene = smallScene(64);
   const auto volume = bricksForPasses(grid, scene);
   const ProgressivePicture four = renderProgressive(*context, *volume, scene, {.passes = 4});
   // A target between the error after four passes and what no number of passes gets below.
@@ -321,7 +320,7 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();
-  const Scene scene = smallScene(10, 16);
+  const ResolvedScene scene = smallScene(10, 16);
   const auto volume = bricksForPasses(grid, scene);
   const ProgressivePicture coarse = renderProgressive(*context, *volume, scene, {.passes = 4});
   ProgressiveOptions options{.passes = 60, .targetError = 0.75 * coarse.error.systematic, .refine = true};
@@ -361,7 +360,7 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
   // No finer than an eighth of a voxel.
   options.passes = 9;
   options.targetError = 1e-9;
-  Scene finest = scene;
+  ResolvedScene finest = scene;
   finest.clipPlanes = {{0, 0, -1, 3}};  // fewer slices
   finest.sampling.spacing = 0.125;
   CHECK(renderProgressive(*context, *volume, finest, options).scene == finest);
@@ -371,7 +370,7 @@ TEST_CASE("Without bricks for thicker slabs, thinner ones tell the systematic er
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();
-  const Scene scene = smallScene();  // slabs of 3.25 voxels
+  const ResolvedScene scene = smallScene();  // slabs of 3.25 voxels
   const auto narrow = bricksFor(grid, scene), wide = bricksForPasses(grid, scene);
   REQUIRE(narrow->layout.apron < wide->layout.apron);
   const ProgressivePicture picture = renderProgressive(*context, *narrow, scene, {.passes = 8});
@@ -393,7 +392,7 @@ TEST_CASE("Without bricks for thicker slabs, thinner ones tell the systematic er
 TEST_CASE("Listed directions come whole in every pass", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const Scene layer = layerScene(false);
+  const ResolvedScene layer = layerScene(false);
   const FieldBricks volume = layerVolume(coarserScene(layer));
   const ProgressivePicture passes = renderProgressive(*context, volume, layer, {.passes = 8});
   // As the test of samples says: all passes are one picture, to which slabs twice as thick make no difference.
@@ -404,7 +403,7 @@ TEST_CASE("Listed directions come whole in every pass", "[shade][gl]") {
   CHECK(passes.error.systematic < tolerance);
 
   const ScalarGrid grid = courtyard();
-  Scene scene = smallScene(64);
+  ResolvedScene scene = smallScene(64);
   scene.model = Model::lights;
   scene.lights = {
       {LightFrame::view, ListedLight{{{{0.5, 0.2, 0.8}, 0.5, {1, 0.5, 0}}, {{0, 0, 1}, 0.5, {0, 0.5, 1}}}}}};
@@ -425,12 +424,12 @@ TEST_CASE("Passes that make no sense are refused", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();
-  const Scene scene = smallScene();
+  const ResolvedScene scene = smallScene();
   const auto volume = bricksForPasses(grid, scene);
-  const auto refused = [&](const Scene& changed, const ProgressiveOptions& options) {
+  const auto refused = [&](const ResolvedScene& changed, const ProgressiveOptions& options) {
     return complaint<InvalidArgument>([&] { renderProgressive(*context, *volume, changed, options); });
   };
-  Scene emission = scene, dos = scene, ambient = scene;
+  ResolvedScene emission = scene, dos = scene, ambient = scene;
   emission.model = Model::emission;
   dos.method = Method::dos;
   ambient.model = Model::ambient;

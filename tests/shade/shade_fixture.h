@@ -44,15 +44,15 @@ inline std::vector<Camera> blobCameras() {
 }
 
 /// A field in bricks as the scene needs them.
-inline FieldBricks fieldFor(const Scene& scene, FieldBricks::Field field, const IndexBox& box,
+inline FieldBricks fieldFor(const ResolvedScene& scene, FieldBricks::Field field, const IndexBox& box,
                             FieldOptions options = {}) {
   options.interior = scene.bricks.interior;
   options.apron = requiredApron(scene, options.indexToWorld);
-  options.gradients = scene.transfer->is2d();
+  options.gradients = scene.transfer.is2d();
   return FieldBricks(std::move(field), box, options);
 }
 
-inline Picture renderPicture(const GlContext& context, const Bricks& volume, const Scene& scene,
+inline Picture renderPicture(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
                              const RenderOptions& options = {}) {
   return SliceRenderer(context, volume, scene, options).render();
 }

@@ -26,7 +26,7 @@ TransferFunction rampOf(double offset, double range) {
                            {offset + range, {{0.9, 0.9, 0.9}, 1}}});
 }
 
-double errorOf(const GlContext& context, const ScalarGrid& grid, const Scene& scene) {
+double errorOf(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene) {
   return rmsDifference(renderGrid(context, grid, scene).colour, renderReference(grid, scene).colour);
 }
 
@@ -35,7 +35,7 @@ double errorOf(const GlContext& context, const ScalarGrid& grid, const Scene& sc
 TEST_CASE("The error does not depend on offset, range, background and outliers", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const Scene plain = plainScene(rampOf(0, 1), smallCameras()[1], 0.5);
+  const ResolvedScene plain = plainScene(rampOf(0, 1), smallCameras()[1], 0.5);
   const double base = errorOf(*context, blobGrid(0, 1, 0), plain);
   CHECK(base < 2e-3);
   for (const double offset : {0.0, 290.0, 101325.0, 1e6})
@@ -49,7 +49,7 @@ TEST_CASE("The error does not depend on offset, range, background and outliers",
           const double background = farBackground ? 0 : offset;
           if (farBackground && offset > 0 && offset < range) continue;  // then 0 is one of the values
           const ScalarGrid grid = blobGrid(offset, range, background, outlier);
-          Scene scene = plain;
+          ResolvedScene scene = plain;
           scene.transfer = rampOf(offset, range);
           // Twice the error of the plain case, and that of voxels rounded to 24 bits, whose steps an interpolation
           // hits differently: of a slope of sigma_t of 2.25 over the range along a ray of some 20 units.
@@ -70,7 +70,7 @@ TEST_CASE("Values exactly on a step belong to its upper side in every format", "
                                  {3, {glm::dvec3(1, 0, 0), 0.1}},
                                  {3, {glm::dvec3(0, 1, 0), 0.4}}});
   // Along the faces, where rays through the middle of a label meet nothing but that label and empty space.
-  Scene scene = plainScene(labels, orthographicCamera({9.5, 9.5, 60}, glm::dvec3(9.5), 20, 20), 0.5);
+  ResolvedScene scene = plainScene(labels, orthographicCamera({9.5, 9.5, 60}, glm::dvec3(9.5), 20, 20), 0.5);
   scene.camera.up = {0, 1, 0};
   const Image exact = renderReference(grid, scene).colour;
   for (const std::string format : {"unorm8", "unorm16", "half", "float32"})
@@ -99,8 +99,8 @@ TEST_CASE("Values exactly on a step stay there in formats that round them", "[sh
       if (i == glm::ivec3(1)) return 1.0;
       return std::min({i.x, i.y, i.z}) > 4 && std::max({i.x, i.y, i.z}) < 15 ? static_cast<double>(label) : 0.0;
     });
-    Scene scene = plainScene(TransferFunction({{label, {kAlbedo, 0}}, {label, {kAlbedo, 0.3}}}),
-                             orthographicCamera({40, 20, 60}, glm::dvec3(9.5), 20, 16), 0.5);
+    ResolvedScene scene = plainScene(TransferFunction({{label, {kAlbedo, 0}}, {label, {kAlbedo, 0.3}}}),
+                                     orthographicCamera({40, 20, 60}, glm::dvec3(9.5), 20, 16), 0.5);
     scene.bricks.format = "float32";
     const Image exact = renderGrid(*context, grid, scene).colour;
     CHECK(largestAlpha(exact) > 0.9);
@@ -122,8 +122,8 @@ TEST_CASE("A step beyond all values is not met by the largest of them", "[shade]
     return std::min({i.x, i.y, i.z}) > 4 && std::max({i.x, i.y, i.z}) < 15 ? 20.0 : 0.0;
   });
   const Medium thin{{0.2, 0.9, 0.4}, 0.1}, dense{kAlbedo, 5};
-  Scene scene = plainScene(TransferFunction({{20, {{0.2, 0.9, 0.4}, 0}}, {20, thin}, {25, thin}, {25, dense}}),
-                           orthographicCamera({40, 20, 60}, glm::dvec3(9.5), 20, 16), 0.5);
+  ResolvedScene scene = plainScene(TransferFunction({{20, {{0.2, 0.9, 0.4}, 0}}, {20, thin}, {25, thin}, {25, dense}}),
+                                   orthographicCamera({40, 20, 60}, glm::dvec3(9.5), 20, 16), 0.5);
   scene.bricks.format = "float32";
   const Image exact = renderGrid(*context, grid, scene).colour;
   for (const std::string format : {"unorm8", "unorm16", "half"}) {
@@ -145,7 +145,7 @@ TEST_CASE("A quarter of a volume may be a marker of missing data", "[shade][gl]"
         static_cast<float>(offset - 9999));
   };
   const auto errorAt = [&](double offset) {
-    const Scene scene = plainScene(
+    const ResolvedScene scene = plainScene(
         TransferFunction({{offset + 0.8, {kAlbedo, 0}}, {offset + 0.9, {kAlbedo, 1}}, {offset + 1, {kAlbedo, 0}}}),
         smallCameras()[1], 0.25);
     return errorOf(*context, marked(offset), scene);
@@ -161,7 +161,7 @@ TEST_CASE("A peak of any width keeps its optical depth, however fine the slices"
   for (const double halfWidth : {1e-2, 1e-3, 1e-5}) {
     // The same optical depth along a given slope of values.
     const double most = 0.05 / halfWidth;
-    Scene scene = plainScene(
+    ResolvedScene scene = plainScene(
         TransferFunction({{0.5 - halfWidth, {kAlbedo, 0}}, {0.5, {kAlbedo, most}}, {0.5 + halfWidth, {kAlbedo, 0}}}),
         smallCameras()[1], 0.25);
     const Image exact = renderReference(grid, scene).colour;
@@ -190,7 +190,7 @@ TEST_CASE("A 2D function is exact between its lattice lines, steps and narrow pe
   const std::vector<double> gradients{0, 0.1, 0.3};
   const std::vector<Medium> media{none,  thin, thin, thin, thin, none,  thin, thin,
                                   dense, thin, none, thin, thin, dense, thin};
-  Scene scene = plainScene(TransferFunction(values, gradients, media), smallCameras()[1], 0.5);
+  ResolvedScene scene = plainScene(TransferFunction(values, gradients, media), smallCameras()[1], 0.5);
   const Image exact = renderReference(grid, scene).colour;
   CHECK(largestAlpha(exact) > 0.3);
   double coarser = 1;

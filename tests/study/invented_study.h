@@ -10,6 +10,14 @@
 
 namespace umbrick {
 
+/// A scene of no volume in particular.
+inline ResolvedScene smokeScene() {
+  Scene scene;
+  scene.transfer = loadTransferFunction("smoke");
+  scene.orbit.reset();
+  return resolvedAnywhere(scene);
+}
+
 /// Complete; errors fall with the slices as d^1 and times grow with slices and detail.
 inline StudyRecord inventedStudy(const std::vector<int>& slices = {8, 16, 32}) {
   StudySettings settings;
@@ -22,12 +30,8 @@ inline StudyRecord inventedStudy(const std::vector<int>& slices = {8, 16, 32}) {
   settings.scales = {0.5, 1};
   settings.sizes = {16, 24};
   settings.thetas = {60 * kDegree, 80 * kDegree};
-  StudyRecord record;
-  record.plan = planStudy(settings, 60 * kDegree);
-  Scene scene;
-  scene.transfer = loadTransferFunction("smoke");
-  scene.orbit.reset();
-  record.scene = studyScene(scene, record.plan, 1);
+  const StudyPlan plan = planStudy(settings, 60 * kDegree);
+  StudyRecord record{.plan = plan, .scene = studyScene(smokeScene(), plan, 1)};
   record.volume = {"/data/a <b> & \"c\".vdb", 12345, 0xdeadbeef};
   record.machine = {"a CPU & more", 2, "OSMesa: llvmpipe <x>", true, "0.0", "compiler", "gnuplot 5.4"};
   record.geometry = {10.0 / 3, 0.25};

@@ -58,7 +58,7 @@ struct SmallStudy {
     settings.directions = 8;
     settings.tolerance = 0.05;
   }
-  Scene resolved() const { return resolveScene(scene, grid.worldBounds(), grid.indexToWorld()); }
+  ResolvedScene resolved() const { return resolveScene(scene, grid.worldBounds(), grid.indexToWorld()); }
   fs::path report() const { return folder.path() / "report"; }
   Json record() const { return Json::parse(readBytes(report() / "study.json")); }
 };
@@ -170,7 +170,7 @@ TEST_CASE("The scene's model, method and background do not matter to a study", "
   study.scene.model = Model::ambient;
   study.scene.background.reset();
   study.scene.sampling.spacing = 3;
-  study.scene.occlusion.footprint = 7;
+  study.scene.occlusion.dos.footprint = 7;
   CHECK(runStudy(*context, study.grid, study.resolved(), study.settings, study.report()).complete);
 }
 

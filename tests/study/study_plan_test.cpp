@@ -8,6 +8,7 @@
 #include <string>
 
 #include "study/case_scene.h"
+#include "study/invented_study.h"
 #include "support/complaint.h"
 #include "support/test_scenes.h"
 #include "umbrick/core/error.h"
@@ -73,18 +74,6 @@ TEST_CASE("Slabs of ordinates have automatic segments at the base, and its windo
   for (const StudyCase& one : planStudy(settings, 60 * kDegree).cases) CHECK(one.scale == 0);
 }
 
-TEST_CASE("Automatic segments are the fewest that are short enough, as long as there are not more than 8", "[report]") {
-  for (const double spacing : {0.01, 0.6, 0.7, 1.2, 1.3, 4.7, 4.8})
-    for (const double voxel : {0.3, 1.0, 2.5}) {
-      CAPTURE(spacing, voxel);
-      const int segments = automaticSegments(spacing * voxel, voxel);
-      CHECK(spacing / segments <= 0.6 * (1 + 1e-9));
-      if (segments > 1) CHECK(spacing / (segments - 1) > 0.6);
-    }
-  CHECK(automaticSegments(1, 1) == 2);
-  CHECK(automaticSegments(100, 1) == 8);
-}
-
 TEST_CASE("Every method has slices of its own, but for those too few to draw", "[report]") {
   StudySettings settings = small();
   settings.slices.clear();
@@ -113,8 +102,7 @@ TEST_CASE("The command of a case has every option that its method depends on", "
   settings.methods = {"ordinates"};
   settings.details = {{"directions", {8}}};
   settings.scales = {0.5};
-  Scene scene;
-  scene.transfer = loadTransferFunction("smoke");
+  const ResolvedScene scene = smokeScene();
   const StudyGeometry geometry{16, 0.5};
   StudyCase what = planStudy(settings, 60 * kDegree).bases.at("ordinates");  // slabs of 2 = 4 voxels
   CHECK(renderCommand(what, scene, geometry) ==
@@ -126,10 +114,10 @@ TEST_CASE("The command of a case has every option that its method depends on", "
   const std::string command = renderCommand(what, scene, geometry);
   CHECK(command.find(" --occlusion-scale 0.5 ") != std::string::npos);
   CHECK(command.find(" --segments 2 ") != std::string::npos);
-  const Scene made = caseScene(scene, what, geometry);
+  const ResolvedScene made = caseScene(scene, what, geometry);
   CHECK(made.method == Method::ordinates);
-  CHECK(made.occlusion.directions == 8);
-  CHECK(made.occlusion.scale == 0.5);
+  CHECK(made.occlusion.ordinates.directions == 8);
+  CHECK(made.occlusion.ordinates.scale == 0.5);
   CHECK(made.sampling.segments == 2);
 }
 
@@ -181,10 +169,9 @@ TEST_CASE("Every method of the registry can be planned, and makes a valid scene 
     settings.details.clear();
     const StudyPlan plan = planStudy(settings, 1);
     REQUIRE(!plan.cases.empty());
-    Scene scene;
-    scene.transfer = loadTransferFunction("smoke");
+    const ResolvedScene scene = smokeScene();
     for (const StudyCase& one : plan.cases) {
-      const Scene made = caseScene(scene, one, {10.0, 1.0});
+      const ResolvedScene made = caseScene(scene, one, {10.0, 1.0});
       CHECK_NOTHROW(validateScene(made));
       CHECK(made.model == method.model);
       CHECK(made.sampling.spacing == 10.0 / one.slices);

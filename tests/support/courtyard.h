@@ -20,12 +20,12 @@ inline ScalarGrid courtyard() {
 }
 
 /// @param theta  degrees; the slices, so many, span 52 units
-inline Scene courtyardScene(double theta, int slices) {
+inline ResolvedScene courtyardScene(double theta, int slices) {
   const TransferFunction transfer({{0, {glm::dvec3(1), 0}},
                                    {0.25, {{0.5, 0.7, 1}, 0.04}},
                                    {0.4, {{0.9, 0.8, 0.6}, 0.1}},
                                    {1, {{0.9, 0.8, 0.6}, 3}}});
-  Scene scene = plainScene(transfer, orthographicCamera({30, 10, 90}, {24, 23, 20}, 44, 48), 52.0 / slices);
+  ResolvedScene scene = plainScene(transfer, orthographicCamera({30, 10, 90}, {24, 23, 20}, 44, 48), 52.0 / slices);
   scene.model = Model::cone;
   scene.occlusion.aperture = theta * std::numbers::pi / 180;
   return scene;

@@ -27,8 +27,8 @@ inline ScalarGrid smoothGrid(double h) {
       glm::dmat4(glm::dmat3(h)));
 }
 
-inline Scene smoothScene(Model model, int size) {
-  Scene scene = plainScene(softTransfer(), perspectiveCamera({40, -18, 33}, {12, 12, 12}, 0.4, size), 1);
+inline ResolvedScene smoothScene(Model model, int size) {
+  ResolvedScene scene = plainScene(softTransfer(), perspectiveCamera({40, -18, 33}, {12, 12, 12}, 0.4, size), 1);
   scene.model = model;
   scene.occlusion.aperture = 1.1;
   return scene;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "umbrick/image/image.h"
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 
@@ -93,18 +93,21 @@ inline TransferFunction homogeneous(const glm::dvec3& albedo, double sigma_t) {
   return TransferFunction({{0, {albedo, sigma_t}}});
 }
 
-/// A resolved scene without early rejection of saturated pixels: what is left is the method itself.
-inline Scene plainScene(const TransferFunction& transfer, const Camera& camera, double spacing) {
+/// Resolves a scene whose camera is placed, for no volume in particular: a voxel's edge is a world unit.
+inline ResolvedScene resolvedAnywhere(const Scene& scene) { return resolveScene(scene, {}, glm::dmat4(1)); }
+
+/// A scene without early rejection of saturated pixels: what is left is the method itself.
+inline ResolvedScene plainScene(const TransferFunction& transfer, const Camera& camera, double spacing) {
   Scene scene;
   scene.transfer = transfer;
   scene.camera = camera;
   scene.orbit.reset();
   scene.method = Method::dos;  // what tests of `cone` that name no method are about
   scene.sampling.spacing = spacing;
-  scene.sampling.spacingInVoxels = false;
+  scene.spacingUnit = SpacingUnit::world;
   scene.sampling.saturation = 0;
   scene.bricks.interior = 16;
-  return scene;
+  return resolvedAnywhere(scene);
 }
 
 /// Largest difference of two images over all channels.

@@ -67,13 +67,14 @@ struct Rendering {
   RenderStats stats;
 };
 
-Rendering render(const GlContext& context, const ScalarGrid& grid, Scene scene, const RenderOptions& options = {}) {
+Rendering render(const GlContext& context, const ScalarGrid& grid, ResolvedScene scene,
+                 const RenderOptions& options = {}) {
   const glm::dmat4 toWorld = grid.indexToWorld();
   scene.bricks.interior = brickInterior(scene, toWorld, grid.worldBounds());
   BrickOptions cut;
   cut.interior = scene.bricks.interior;
   cut.apron = requiredApron(scene, toWorld);
-  cut.gradients = scene.transfer->is2d();
+  cut.gradients = scene.transfer.is2d();
   Rendering rendering;
   rendering.bricks = scene.bricks.bricked ? brickGrid(grid, cut) : unbrickedGrid(grid, cut);
   rendering.renderer = std::make_unique<SliceRenderer>(context, *rendering.bricks, scene, options);
@@ -93,7 +94,7 @@ Camera displaced(Camera camera, const glm::dmat4& toWorld, double voxels) {
 }
 
 // 1, or more where light or background are brighter.
-double brightestOf(const Scene& scene) {
+double brightestOf(const ResolvedScene& scene) {
   glm::dvec3 arriving(1);
   if (scene.model == Model::lights) {
     arriving = glm::dvec3(0);
@@ -157,18 +158,18 @@ class Comparer {
     ReferenceOptions reference;
     reference.tolerance = emission_ ? 1e-4 : 2e-3;
     if (!emission_ && scene_.method == Method::ordinates)
-      reference.lights = lightDirections(scene_, scene_.occlusion.directions);
+      reference.lights = lightDirections(scene_, scene_.occlusion.ordinates.directions);
     reference.directions = 64;
     return renderReference(grid_, scene_, reference);
   }
 
-  Scene fineScene() const {
-    Scene fine = scene_;
+  ResolvedScene fineScene() const {
+    ResolvedScene fine = scene_;
     fine.sampling.spacing = std::min(fine.sampling.spacing, 0.25 * shortestVoxelEdge(toWorld_));
     fine.sampling.segments = 4;
     fine.sampling.quadrature = Quadrature::preintegrated;
     fine.sampling.bits = fine.occlusion.bits = 32;
-    if (fine.method == Method::ordinates) fine.occlusion.scale = 3;
+    if (fine.method == Method::ordinates) fine.occlusion.ordinates.scale = 3;
     return fine;
   }
 
@@ -180,7 +181,7 @@ class Comparer {
     result_.opacity = 4 * alpha / static_cast<double>(exact.pixels.size());
     result_.render = distance(base_.colour, exact);
     const IndexBox& domain = base_.bricks->domain;
-    const Scene fine = fineScene();
+    const ResolvedScene fine = fineScene();
     // What is not finite is wrong for every model.
     double limit = std::numeric_limits<double>::max(), fineLimit = limit;
     if (emission_) {
@@ -209,7 +210,7 @@ class Comparer {
 
   // Depths are those of the middles of slabs, which may be off by half of one; where light comes from depends on
   // colours as far as those may be off, over the way through the medium. Weighted by opacity, in voxels.
-  void compareDepths(const Rendering& rendered, const ReferencePicture& reference, const Scene& fine) {
+  void compareDepths(const Rendering& rendered, const ReferencePicture& reference, const ResolvedScene& fine) {
     const double edge = shortestVoxelEdge(toWorld_);
     double sum = 0;
     for (std::size_t i = 0; i < rendered.depth.pixels.size(); ++i) {
@@ -235,12 +236,12 @@ class Comparer {
     const Range value = base_.bricks->value;
     const double magnitude = std::max(std::abs(double(value.min)), std::abs(double(value.max)));
     // An outlier widens the range, but not the part of it where the function varies.
-    const float varying = scene_.transfer->valueDomain().extent();
+    const float varying = scene_.transfer.valueDomain().extent();
     const double extent = varying > 0 ? std::min(varying, value.extent()) : value.extent();
     const double ofValue = extent > 0 ? magnitude / extent : 0;
     // Planes cut at depths from the eye, in single precision, too.
     const bool cut = !scene_.clipPlanes.empty() || scene_.clipBox || scene_.camera.nearDistance > 0 ||
-                     (*scene_.transfer)(base_.bricks->background).sigma_t > 0;
+                     scene_.transfer(base_.bricks->background).sigma_t > 0;
     const double depth =
         cut ? glm::distance(scene_.camera.eye, grid_.worldBounds().centre()) / shortestVoxelEdge(toWorld_) : 0;
     const double voxels = 16 * 0x1p-25 * (base_.stats.textureEdge + 64 + ofValue + depth);
@@ -260,7 +261,7 @@ class Comparer {
 
   std::vector<Variant> variants() {
     std::vector<Variant> all;
-    Scene wide = scene_;
+    ResolvedScene wide = scene_;
     wide.bricks.interior = kMostInterior;
     const double limit = rounding_ + saturation();
     for (SameScene& same : sameScenes(grid_, scene_, requiredApron(wide, toWorld_), options_.seed))
@@ -274,7 +275,7 @@ class Comparer {
     all.push_back({"small budget", limit, [this] { return withSmallPool(); }});
     if (scene_.sampling.saturation > 0)
       all.push_back({"not saturated", limit, [this] {
-                       Scene scene = scene_;
+                       ResolvedScene scene = scene_;
                        scene.sampling.saturation = 0;
                        return render(context_, grid_, scene).colour;
                      }});
@@ -317,7 +318,7 @@ class Comparer {
 
   const GlContext& context_;
   const ScalarGrid& grid_;
-  const Scene& scene_;
+  const ResolvedScene& scene_;
   const CompareOptions options_;
   const glm::dmat4 toWorld_;
   const bool emission_;

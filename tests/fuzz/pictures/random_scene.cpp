@@ -292,18 +292,18 @@ void illuminateAtRandom(Dice& dice, SceneKind kind, Scene& scene, std::string& n
   if (dice.chance(0.3)) scene.ambient = dice.scaleBetween(0.3, 3) * (0.2 + 0.8 * randomColour(dice));
   if (dice.chance(0.2)) scene.background = randomColour(dice);
   OcclusionOptions& occlusion = scene.occlusion;
-  occlusion.directions = dice.of({4, 8, 16, 32});
+  occlusion.ordinates.directions = dice.of({4, 8, 16, 32});
   occlusion.bits = dice.chance(0.8) ? 32 : 16;
-  if (dice.chance(0.2)) occlusion.scale = dice.between(0.5, 3);
+  if (dice.chance(0.2)) occlusion.ordinates.scale = dice.between(0.5, 3);
   switch (kind) {
     case SceneKind::occlusion:
       scene.model = Model::cone;
       scene.method = dice.chance(0.7) ? Method::ordinates : Method::dos;
       occlusion.aperture = dice.chance(0.1) ? 0 : dice.between(0.1, 1.45);
-      occlusion.footprint = dice.whole(1, 5);
-      occlusion.passes = dice.whole(1, 2);
-      occlusion.algorithm = dice.whole(2, 3);
-      occlusion.perspectiveCorrection = dice.chance(0.7);
+      occlusion.dos.footprint = dice.whole(1, 5);
+      occlusion.dos.passes = dice.whole(1, 2);
+      occlusion.dos.algorithm = dice.whole(2, 3);
+      occlusion.dos.perspectiveCorrection = dice.chance(0.7);
       name += methodName(scene.method) + " " + shortNumber(occlusion.aperture);
       break;
     case SceneKind::lights:
@@ -315,9 +315,10 @@ void illuminateAtRandom(Dice& dice, SceneKind kind, Scene& scene, std::string& n
 }
 
 // By a picture of a few pixels and thick slabs.
-bool showsSomething(const ScalarGrid& grid, Scene scene, double edge) {
+bool showsSomething(const ScalarGrid& grid, const Scene& drawn) {
+  ResolvedScene scene = resolveScene(drawn, grid.worldBounds(), grid.indexToWorld());
   scene.camera.width = scene.camera.height = 10;
-  scene.sampling.spacing = edge;
+  scene.sampling.spacing = shortestVoxelEdge(grid.indexToWorld());
   scene.sampling.segments = 2;
   const IndexBox active = grid.activeBox();
   const Image image = slabPicture(grid, scene, {active.min - 1, active.max + 1});
@@ -343,27 +344,27 @@ RandomScene randomScene(std::uint64_t seed, SceneKind kind, int largest) {
   const glm::dmat4 toWorld = grid.grid.indexToWorld();
   const double edge = shortestVoxelEdge(toWorld);
   std::string functionName, viewName, clipName, restName, lightName;
-  Scene scene;
-  scene.transfer = function.chance(0.2) ? randomFunction2d(function, grid, edge, functionName)
+  Scene drawn;
+  drawn.transfer = function.chance(0.2) ? randomFunction2d(function, grid, edge, functionName)
                                         : randomFunction1d(function, grid, edge, functionName);
-  scene.orbit.reset();
+  drawn.orbit.reset();
   // Views that show nothing teach little: another one is drawn, some times.
   for (int i = 0; i < 8; ++i) {
     viewName.clear();
     clipName.clear();
-    scene.clipPlanes.clear();
-    scene.clipBox.reset();
-    scene.camera = randomCamera(view, grid.grid, largest, viewName);
-    clipAtRandom(clipping, grid.grid, scene, clipName);
-    if (showsSomething(grid.grid, scene, edge)) break;
+    drawn.clipPlanes.clear();
+    drawn.clipBox.reset();
+    drawn.camera = randomCamera(view, grid.grid, largest, viewName);
+    clipAtRandom(clipping, grid.grid, drawn, clipName);
+    if (showsSomething(grid.grid, drawn)) break;
   }
-  sampleAtRandom(rest, scene, restName);
-  illuminateAtRandom(light, kind, scene, lightName);
-  scene.bricks.interior = rest.chance(0.4) ? 0 : rest.of({8, 16, 24, 32, 48});
-  if (rest.chance(0.15)) scene.bricks.culling = false;
-  scene = resolveScene(scene, grid.grid.worldBounds(), toWorld);
+  sampleAtRandom(rest, drawn, restName);
+  illuminateAtRandom(light, kind, drawn, lightName);
+  drawn.bricks.interior = rest.chance(0.4) ? 0 : rest.of({8, 16, 24, 32, 48});
+  if (rest.chance(0.15)) drawn.bricks.culling = false;
+  ResolvedScene scene = resolveScene(drawn, grid.grid.worldBounds(), toWorld);
   // Slabs must not reach beyond the neighbours of a brick.
-  Scene wide = scene;
+  ResolvedScene wide = scene;
   wide.bricks.interior = kMostInterior;
   const int apron = requiredApron(wide, toWorld);
   if (scene.bricks.interior > 0) scene.bricks.interior = std::max(scene.bricks.interior, 8 * ((apron + 7) / 8));

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "umbrick/grid/scalar_grid.h"
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 
@@ -18,7 +18,7 @@ SceneKind parseSceneKind(std::string_view name);
 
 struct RandomScene {
   ScalarGrid grid;
-  Scene scene;              // resolved for the grid; its brick edge may be 0, which asks for brickInterior
+  ResolvedScene scene;      // its brick edge may be 0, which asks for brickInterior
   std::string description;  // one line: what kinds of grid, function, camera, ... were drawn
 };
 

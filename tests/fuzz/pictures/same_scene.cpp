@@ -74,7 +74,7 @@ TransferFunction steeper(const TransferFunction& transfer, double factor) {
 }
 
 // Every point p of the world goes to scale p + offset.
-SameScene elsewhere(std::string name, const ScalarGrid& grid, const Scene& scene, double scale,
+SameScene elsewhere(std::string name, const ScalarGrid& grid, const ResolvedScene& scene, double scale,
                     const glm::dvec3& offset) {
   const auto to = [&](const glm::dvec3& p) { return scale * p + offset; };
   SameScene result{std::move(name), {}, scene};
@@ -82,8 +82,8 @@ SameScene elsewhere(std::string name, const ScalarGrid& grid, const Scene& scene
   for (glm::length_t axis = 0; axis < 3; ++axis) toWorld[axis] *= scale;
   toWorld[3] = glm::dvec4(to(glm::dvec3(toWorld[3])), 1);
   result.grid = withTransform(grid, toWorld);
-  Scene& changed = result.scene;
-  changed.transfer = steeper(*scene.transfer, 1 / scale);
+  ResolvedScene& changed = result.scene;
+  changed.transfer = steeper(scene.transfer, 1 / scale);
   Camera& camera = changed.camera;
   camera.eye = to(camera.eye);
   camera.lookAt = to(camera.lookAt);
@@ -102,7 +102,7 @@ bool backgroundIsClear(const ScalarGrid& grid, const TransferFunction& transfer)
 
 }  // namespace
 
-std::vector<SameScene> sameScenes(const ScalarGrid& grid, const Scene& scene, int apron, std::uint64_t seed) {
+std::vector<SameScene> sameScenes(const ScalarGrid& grid, const ResolvedScene& scene, int apron, std::uint64_t seed) {
   Dice dice(seed, 77);
   std::vector<SameScene> same;
   const auto withBricks = [&](const char* name, const auto& change) {
@@ -123,7 +123,7 @@ std::vector<SameScene> sameScenes(const ScalarGrid& grid, const Scene& scene, in
   const auto odd = [&] { return 2 * dice.whole(-30, 30) + 1; };
   const int x = odd(), y = odd(), z = odd();
   same.push_back({"shifted", shifted(grid, {x, y, z}), scene});
-  if (backgroundIsClear(grid, *scene.transfer)) same.push_back({"padded", padded(grid, dice.whole(2, 9)), scene});
+  if (backgroundIsClear(grid, scene.transfer)) same.push_back({"padded", padded(grid, dice.whole(2, 9)), scene});
   const double edge = shortestVoxelEdge(grid.indexToWorld());
   same.push_back(elsewhere("scaled", grid, scene, dice.scaleBetween(1e-3, 1e3) / edge, glm::dvec3(0)));
   same.push_back(elsewhere("moved", grid, scene, 1, edge * dice.scaleBetween(1, 1000) * dice.direction()));

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "umbrick/grid/scalar_grid.h"
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 
 struct SameScene {
   std::string name;
   ScalarGrid grid;
-  Scene scene;  // resolved
+  ResolvedScene scene;
 };
 
 /// What must change no picture but for rounding:
@@ -25,6 +25,6 @@ struct SameScene {
 ///   moved     the world, its camera and planes by a vector
 /// @param seed  of factors, vectors and edges
 /// @param apron that the scene needs, voxels
-std::vector<SameScene> sameScenes(const ScalarGrid& grid, const Scene& scene, int apron, std::uint64_t seed);
+std::vector<SameScene> sameScenes(const ScalarGrid& grid, const ResolvedScene& scene, int apron, std::uint64_t seed);
 
 }  // namespace umbrick

@@ -178,9 +178,9 @@ void addPath(Gathered& ray, const TransferFunction& transfer, const glm::dvec2& 
 
 class SlabIntegrator {
  public:
-  SlabIntegrator(const ScalarGrid& grid, const Scene& scene, const IndexBox& domain)
+  SlabIntegrator(const ScalarGrid& grid, const ResolvedScene& scene, const IndexBox& domain)
       : scene_(scene),
-        transfer_(*scene.transfer),
+        transfer_(scene.transfer),
         field_(grid, domain, transfer_.is2d()),
         toIndex_(glm::inverse(grid.indexToWorld())),
         planes_(scene.clipPlanes) {
@@ -263,14 +263,14 @@ class SlabIntegrator {
     return {field_.value(index), transfer_.is2d() ? field_.gradient(index) : 0};
   }
 
-  const Scene& scene_;
+  const ResolvedScene& scene_;
   const TransferFunction& transfer_;
   DenseField field_;
   glm::dmat4 toIndex_;
   std::vector<ClipPlane> planes_, around_;
 };
 
-Image picture(const Scene& scene, const std::function<Gathered(const ViewRay&)>& along) {
+Image picture(const ResolvedScene& scene, const std::function<Gathered(const ViewRay&)>& along) {
   Image image(scene.camera.width, scene.camera.height);
   tbb::parallel_for(tbb::blocked_range<int>(0, image.height), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y)
@@ -287,12 +287,12 @@ Image picture(const Scene& scene, const std::function<Gathered(const ViewRay&)>&
 
 }  // namespace
 
-Image slabPicture(const ScalarGrid& grid, const Scene& scene, const IndexBox& domain) {
+Image slabPicture(const ScalarGrid& grid, const ResolvedScene& scene, const IndexBox& domain) {
   const SlabIntegrator integrator(grid, scene, domain);
   return picture(scene, [&](const ViewRay& ray) { return integrator.alongSlabs(ray); });
 }
 
-Image cellPicture(const ScalarGrid& grid, const Scene& scene, const IndexBox& domain, int parts) {
+Image cellPicture(const ScalarGrid& grid, const ResolvedScene& scene, const IndexBox& domain, int parts) {
   const SlabIntegrator integrator(grid, scene, domain);
   return picture(scene, [&](const ViewRay& ray) { return integrator.alongCells(ray, parts); });
 }

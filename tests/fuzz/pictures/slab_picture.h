@@ -5,7 +5,7 @@
 #include "umbrick/core/box.h"
 #include "umbrick/grid/scalar_grid.h"
 #include "umbrick/image/image.h"
-#include "umbrick/scene/scene.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 
@@ -16,12 +16,12 @@ namespace umbrick {
 /// and of nothing else.
 /// @param domain  active voxels, and others that differ from the background, grown by one. A visible background ends
 ///                there; for a 2D function one voxel farther out, where gradients do
-/// @param scene   resolved; emission, whatever its model is
-Image slabPicture(const ScalarGrid& grid, const Scene& scene, const IndexBox& domain);
+/// @param scene   emission, whatever its model is
+Image slabPicture(const ScalarGrid& grid, const ResolvedScene& scene, const IndexBox& domain);
 
 /// The same with other slabs: each stretch of a ray between two faces of voxel cells in so many parts. The interpolated
 /// value has its kinks at those faces, so that this converges with the square of the parts also where a narrow peak of
 /// the function meets a kink, which slabs of any one thickness cut off.
-Image cellPicture(const ScalarGrid& grid, const Scene& scene, const IndexBox& domain, int parts);
+Image cellPicture(const ScalarGrid& grid, const ResolvedScene& scene, const IndexBox& domain, int parts);
 
 }  // namespace umbrick
