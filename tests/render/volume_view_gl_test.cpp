@@ -1,5 +1,6 @@
 // Renderers that live: what a change of the scene uploads, and that pictures are those of a renderer made for the
 // scene. SPDX-License-Identifier: Apache-2.0
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <functional>
 #include <string>

@@ -28,7 +28,7 @@ GLuint compileText(const GlFunctions& gl, GLenum stage, const std::string& sourc
   return shader;
 }
 
-// For every x: oneMinusExp(x), slabFactor(x), transmittance(x, 1), x itself.
+// For every x: oneMinusExp(x), slabFactor(x), exp(-x), x itself.
 std::vector<glm::vec4> evaluate(const GlFunctions& gl, std::vector<float> x) {
   const int width = 512, height = static_cast<int>((x.size() + width - 1) / width);
   const std::size_t count = x.size();
@@ -45,7 +45,7 @@ layout(binding = 0) uniform sampler2D numbers;
 layout(location = 0) out vec4 result;
 void main() {
   float x = texelFetch(numbers, ivec2(gl_FragCoord.xy), 0).r;
-  result = vec4(oneMinusExp(x), slabFactor(x), transmittance(x, 1.0), x);
+  result = vec4(oneMinusExp(x), slabFactor(x), exp(-x), x);
 })")}) {
     gl.AttachShader(program, shader);
     gl.DeleteShader(shader);  // kept alive by the program

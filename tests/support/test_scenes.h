@@ -59,18 +59,6 @@ inline DepthInterval keptDepths(const ViewRay& ray, std::span<const ClipPlane> p
   return kept;
 }
 
-/// Half-spaces that keep a box of continuous coordinates given by an affine map to world space.
-inline std::vector<ClipPlane> boxPlanes(const Box& box, const glm::dmat4& toWorld = glm::dmat4(1)) {
-  const glm::dmat4 inverse = glm::inverse(toWorld);
-  std::vector<ClipPlane> planes;
-  for (int axis = 0; axis < 3; ++axis) {
-    const glm::dvec4 coordinate(inverse[0][axis], inverse[1][axis], inverse[2][axis], inverse[3][axis]);
-    planes.push_back(coordinate - glm::dvec4(0, 0, 0, box.min[axis]));
-    planes.push_back(glm::dvec4(0, 0, 0, box.max[axis]) - coordinate);
-  }
-  return planes;
-}
-
 inline Camera orthographicCamera(const glm::dvec3& eye, const glm::dvec3& lookAt, double viewHeight, int size) {
   Camera camera;
   camera.projection = Projection::orthographic;

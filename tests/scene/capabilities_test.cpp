@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "umbrick/scene/capabilities.h"
+
+#include <catch2/catch.hpp>
+#include <set>
+#include <string_view>
+#include <utility>
+
+using namespace umbrick;
+
+TEST_CASE("Every model and every method has the traits that it is asked for", "[scene]") {
+  std::set<std::string_view> meanings;
+  for (const auto& [name, model] : kModels) {
+    CAPTURE(name);
+    const ModelTraits& traits = traitsOf(model);
+    CHECK(traits.model == model);
+    CHECK_FALSE(traits.meaning.empty());
+    CHECK(meanings.insert(traits.meaning).second);
+    // What is said of light that is occluded needs occlusion, and of a cone's axis a cone.
+    if (traits.cone || traits.sphere || traits.directions || traits.sources || traits.behindEye)
+      CHECK(traits.occlusion);
+    if (traits.aroundRay) CHECK(traits.cone);
+    // Light of a set of directions in front of the viewer meets nothing behind the eye.
+    CHECK_FALSE((traits.directions && traits.behindEye));
+  }
+  CHECK(modelTraits().size() == std::size(kModels));
+  for (const auto& [name, method] : kMethods) {
+    CAPTURE(name);
+    CHECK(traitsOf(method).method == method);
+    CHECK_FALSE(traitsOf(method).meaning.empty());
+    CHECK(meanings.insert(traitsOf(method).meaning).second);
+  }
+}
+
+TEST_CASE("Light sources are for ordinates alone", "[scene]") {
+  CHECK_FALSE(traitsOf(Method::dos).sources);
+  CHECK_FALSE(traitsOf(Method::dos).directions);
+  CHECK(traitsOf(Method::ordinates).sources);
+  CHECK(traitsOf(Method::ordinates).directions);
+  for (const auto& [name, model] : kModels) {
+    CAPTURE(name);
+    CHECK(traitsOf(model).sources == (model == Model::lights));
+  }
+}
+
+TEST_CASE("A method supports the models that the slice renderer accepts with it", "[scene]") {
+  const std::set<std::pair<Method, Model>> accepted{{Method::dos, Model::emission},
+                                                    {Method::dos, Model::cone},
+                                                    {Method::ordinates, Model::emission},
+                                                    {Method::ordinates, Model::cone},
+                                                    {Method::ordinates, Model::lights}};
+  for (const auto& [methodName, method] : kMethods)
+    for (const auto& [modelName, model] : kModels) {
+      CAPTURE(methodName, modelName);
+      CHECK(supports(method, model) == accepted.contains({method, model}));
+    }
+}
+
+TEST_CASE("Without occlusion no method computes it", "[scene]") {
+  for (const auto& [methodName, method] : kMethods)
+    for (const auto& [modelName, model] : kModels) {
+      CAPTURE(methodName, modelName);
+      Scene scene;
+      scene.model = model;
+      scene.method = method;
+      if (model == Model::emission)
+        CHECK_FALSE(occlusionMethod(scene));
+      else
+        CHECK(occlusionMethod(scene) == method);
+    }
+}
