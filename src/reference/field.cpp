@@ -144,6 +144,8 @@ Field::Field(const ScalarGrid& grid, const Classifier& classifier, bool skipEmpt
   if (!domain_.empty()) addBlocks(tree, grid.indexToWorld(), classifier);
 }
 
+Field::~Field() = default;
+
 void Field::findDomain(const openvdb::FloatTree& tree) {
   std::vector<const Leaf*> leaves;
   tree.getNodes(leaves);

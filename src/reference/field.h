@@ -103,6 +103,7 @@ class Field {
 
   /// @param skipEmpty  false: transparent blocks are kept as well, and rays visit each cell
   Field(const ScalarGrid& grid, const Classifier& classifier, bool skipEmpty);
+  ~Field();  // where the tree is known: each file that deletes one compiles all of its virtual functions
 
   /// Returns the box of active voxels and of others that differ from the background, grown by one voxel.
   const IndexBox& domain() const { return domain_; }
