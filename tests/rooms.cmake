@@ -1,5 +1,6 @@
 # Fails on an #include against the table of the rooms, by file and line: cmake -DTOP=<checkout> -P rooms.cmake
-# A room includes its own headers, the public headers of the rooms that the table names, and those of src/core.
+# A room includes its own headers, the public headers of the rooms that the table names, and those of src/core. What lies
+# below tools/ includes the public headers of all rooms, and those of src/core.
 # SPDX-License-Identifier: Apache-2.0
 set(may_core "")
 set(may_image core)
@@ -44,6 +45,20 @@ foreach(room ${rooms})
         string(APPEND against "  ${name}: ${line}\n")
       endif()
     endforeach()
+  endforeach()
+endforeach()
+file(GLOB_RECURSE files ${TOP}/tools/*.h ${TOP}/tools/*.cpp)
+foreach(file ${files})
+  file(STRINGS ${file} includes REGEX "^#include \"[a-z]+/")
+  foreach(line ${includes})
+    math(EXPR looked "${looked} + 1")
+    string(REGEX MATCH "^#include \"([a-z]+)/" ignored "${line}")
+    set(other "${CMAKE_MATCH_1}")
+    list(FIND rooms "${other}" known)
+    if(NOT known EQUAL -1 AND NOT "${other}" STREQUAL "core")
+      file(RELATIVE_PATH name ${TOP} ${file})
+      string(APPEND against "  ${name}: ${line}\n")
+    endif()
   endforeach()
 endforeach()
 if(against)

@@ -17,6 +17,9 @@
 #include "command.h"
 #include "progress.h"
 #include "scene_options.h"
+#include "study_page/gnuplot.h"
+#include "study_page/page.h"
+#include "study_page/pictures.h"
 #include "umbrick/core/error.h"
 #include "validators.h"
 
@@ -90,21 +93,27 @@ int study(const StudyCommand& command) {
   const Volume volume(scene.volume);
   const ResolvedScene resolved = volume.resolve(scene);
   const auto context = createContext(command.backend);
+  const PageFolder folder(command.folder);
   const StopRequest stop;
-  StudyOutcome outcome;
-  {
+  StudyOptions options;
+  options.earlier = command.earlier;
+  options.plotter = gnuplotVersion();  // before anything is measured that could not be plotted then
+  options.picture = [&](const StudyPicture& p) { writePictures(folder, p, resolved.ambient); };
+  const StudyOutcome outcome = [&] {
     ProgressBar bar("study");
-    const auto progress = [&](const StudyProgress& p) {
+    options.progress = [&](const StudyProgress& p) {
       bar.show(p.share);
       return !stop.requested();
     };
-    outcome = runStudy(*context, volume.grid(), resolved, settings, command.folder, progress, command.earlier);
-  }
+    StudyOutcome measured = runStudy(*context, volume.grid(), resolved, settings, command.folder, options);
+    writePage(measured.study, folder);
+    return measured;
+  }();
   warnOfNonFinite(scene, outcome.nonFiniteVoxels);
-  for (const std::filesystem::path& path : {outcome.page, outcome.table, outcome.record})
+  for (const std::filesystem::path& path : {folder.page(), outcome.table, outcome.record})
     std::cout << path.string() << '\n';
-  if (outcome.complete) return 0;
-  std::cerr << "umbrick: stopped after " << outcome.casesDone << " of " << outcome.cases
+  if (outcome.study.complete()) return 0;
+  std::cerr << "umbrick: stopped after " << outcome.study.cases.size() << " of " << outcome.study.plan.cases.size()
             << " cases; the same command goes on\n";
   return 1;
 }

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/case_scene.h"
+#include "umbrick/study/case_scene.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "core/json_writer.h"
 
 namespace umbrick {
 namespace {
@@ -13,10 +11,6 @@ void setSize(Camera& camera, int height) {
   const double aspect = static_cast<double>(camera.width) / camera.height;
   camera.width = std::max(1, static_cast<int>(std::lround(height * aspect)));
   camera.height = height;
-}
-
-std::string sizeOption(const ResolvedScene& scene) {
-  return " --size " + std::to_string(scene.camera.width) + "x" + std::to_string(scene.camera.height);
 }
 
 }  // namespace
@@ -75,33 +69,6 @@ ReferenceOptions referenceOptions(const StudySettings& settings, bool coarser) {
   options.directions = coarser ? settings.directions / 2 : settings.directions;
   options.tolerance = coarser ? std::min(1.0, 4 * settings.tolerance) : settings.tolerance;
   return options;
-}
-
-std::string renderCommand(const StudyCase& what, const ResolvedScene& scene, const StudyGeometry& geometry) {
-  const StudyMethod& method = studyMethod(what.method);
-  const ResolvedScene result = caseScene(scene, what, geometry);
-  std::string text = "umbrick render scene.json --model " + modelName(method.model);
-  const std::string options = method.options(what.detail);
-  if (!options.empty()) text += " " + options;
-  if (method.model != Model::emission)
-    text += " --theta " + jsonDegrees(what.theta) + " --occlusion-bits " + std::to_string(what.bits.occlusion);
-  if (what.scale > 0) text += " --occlusion-scale " + jsonNumber(what.scale);
-  text += " --eye-bits " + std::to_string(what.bits.eye) + " --spacing " + jsonNumber(result.sampling.spacing) +
-          " --spacing-unit world --segments " + std::to_string(result.sampling.segments) + sizeOption(result) +
-          " --exr-pixel float -o " + what.id() + ".exr";
-  return text;
-}
-
-std::string referenceCommand(const StudyReference& what, const ResolvedScene& scene, const StudySettings& settings) {
-  std::string text = "umbrick reference scene.json --model " + modelName(what.model);
-  if (what.model == Model::cone) text += " --theta " + jsonDegrees(what.theta);
-  return text + " --directions " + std::to_string(settings.directions) + " --tolerance " +
-         jsonNumber(settings.tolerance) + sizeOption(referenceScene(scene, what)) + " -o references/" + what.id() +
-         ".exr";
-}
-
-std::string compareCommand(const StudyCase& what, const StudyReference& reference) {
-  return "umbrick compare " + what.id() + ".exr references/" + reference.id() + ".exr";
 }
 
 }  // namespace umbrick

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/earlier_study.h"
+#include "umbrick/study/earlier_study.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include "core/json_reader.h"
 #include "core/json_writer.h"
 #include "study/json_difference.h"
-#include "study/study_record.h"
 #include "umbrick/core/error.h"
+#include "umbrick/study/study_record.h"
 
 namespace umbrick {
 namespace {

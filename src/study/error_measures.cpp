@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/error_measures.h"
+#include "umbrick/study/error_measures.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/machine.h"
+#include "umbrick/study/machine.h"
 
 #include <tbb/info.h>
 #include <algorithm>
@@ -33,14 +33,14 @@ bool isSoftware(std::string renderer) {
 
 }  // namespace
 
-Machine describeMachine(const GlContext& context, const std::string& gnuplot) {
+Machine describeMachine(const GlContext& context) {
   return {cpuModel(),
           tbb::info::default_concurrency(),
           context.description(),
           isSoftware(context.renderer()),
           UMBRICK_VERSION,
           "C++ compiler " __VERSION__,
-          gnuplot};
+          {}};
 }
 
 double loadAverage() {

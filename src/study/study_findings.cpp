@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/study_findings.h"
+#include "umbrick/study/study_findings.h"
 
 #include <algorithm>
 

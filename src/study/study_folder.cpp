@@ -19,11 +19,6 @@ void createFolder(const fs::path& folder) {
 
 }  // namespace
 
-fs::path StudyFolder::thumbnail(const std::string& id) const {
-  std::error_code ignored;
-  return fs::exists(smallPicture(id), ignored) ? smallPicture(id) : picture(id);
-}
-
 void StudyFolder::restore(StudyRecord& record) const {
   std::error_code error;
   if (!fs::exists(root_, error)) return;
@@ -41,7 +36,7 @@ void StudyFolder::create(const StudyRecord& first) const {
   createFolder(root_);
   // The record comes first: it says that what follows is a study.
   writeTextFile(record(), printRecord(first));
-  for (const fs::path& folder : {root_ / "references", root_ / "pictures" / "small", plots()}) createFolder(folder);
+  createFolder(root_ / "references");
   writeTextFile(scene(), printScene(first.scene) + "\n");
 }
 

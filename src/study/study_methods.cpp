@@ -19,12 +19,6 @@ void applyDos(int footprint, ResolvedScene& scene) {
   scene.occlusion.dos.footprint = footprint;
 }
 
-template <int Algorithm, int Passes>
-std::string dosOptions(int footprint) {
-  return "--method dos --algorithm " + std::to_string(Algorithm) + " --passes " + std::to_string(Passes) +
-         " --footprint " + std::to_string(footprint);
-}
-
 const StudyMethod::Detail kDirections{
     "directions", "directions",   "K",    "directions over the cone, each with a window of its own", 1,
     1024,         {4, 8, 16, 32}, {4, 16}};
@@ -37,7 +31,6 @@ void applyOrdinates(int directions, ResolvedScene& scene) {
   scene.method = Method::ordinates;
   scene.occlusion.ordinates.directions = directions;
 }
-std::string ordinatesOptions(int directions) { return "--method ordinates --directions " + std::to_string(directions); }
 
 }  // namespace
 
@@ -51,7 +44,6 @@ const std::vector<StudyMethod>& studyMethods() {
        .model = Model::emission,
        .detail = {},
        .apply = [](int, ResolvedScene&) {},
-       .options = [](int) { return std::string(); },
        .work = emissionWork,
        .slices = kMany,
        .quickSlices = kManyQuick,
@@ -61,7 +53,6 @@ const std::vector<StudyMethod>& studyMethods() {
        .model = Model::emission,
        .detail = {},
        .apply = [](int, ResolvedScene& scene) { scene.sampling.saturation = 0; },
-       .options = [](int) { return std::string("--saturation 0"); },
        .work = emissionWork,
        .slices = kMany,
        .quickSlices = kManyQuick},
@@ -70,7 +61,6 @@ const std::vector<StudyMethod>& studyMethods() {
        .model = Model::cone,
        .detail = kFootprint,
        .apply = applyDos<3, 1>,
-       .options = dosOptions<3, 1>,
        .work = dosWork,
        .slices = kMany,
        .quickSlices = kManyQuick,
@@ -80,7 +70,6 @@ const std::vector<StudyMethod>& studyMethods() {
        .model = Model::cone,
        .detail = kFootprint,
        .apply = applyDos<2, 1>,
-       .options = dosOptions<2, 1>,
        .work = dosWork,
        .slices = kMany,
        .quickSlices = kManyQuick},
@@ -89,7 +78,6 @@ const std::vector<StudyMethod>& studyMethods() {
        .model = Model::cone,
        .detail = kFootprint,
        .apply = applyDos<3, 2>,
-       .options = dosOptions<3, 2>,
        .work = dosWork,
        .slices = kMany,
        .quickSlices = kManyQuick,
@@ -99,7 +87,6 @@ const std::vector<StudyMethod>& studyMethods() {
        .model = Model::cone,
        .detail = kDirections,
        .apply = applyOrdinates,
-       .options = ordinatesOptions,
        .work = ordinatesWork,
        .slices = kFew,
        .quickSlices = kFewQuick,

@@ -52,7 +52,7 @@ std::vector<std::string> completeMethods(std::vector<std::string> names) {
   std::vector<std::string> sorted = names;
   sortList("methods", sorted);
   for (const std::string& name : names) studyMethod(name);
-  // In the order of the registry, so that the order of the command line does not matter.
+  // In the order of the registry, so that the order in which they are given does not matter.
   std::vector<std::string> complete;
   for (const StudyMethod& method : studyMethods())
     if (std::find(names.begin(), names.end(), method.name) != names.end()) complete.push_back(method.name);

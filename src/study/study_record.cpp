@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/study_record.h"
+#include "umbrick/study/study_record.h"
 
 #include <algorithm>
 #include <cmath>
@@ -112,7 +112,7 @@ Json toJson(const ReferenceResult& result) {
 Json toJson(const Machine& machine) {
   return {{"cpu", machine.cpu},           {"cores", machine.cores},     {"renderer", machine.renderer},
           {"software", machine.software}, {"version", machine.version}, {"compiler", machine.compiler},
-          {"gnuplot", machine.gnuplot}};
+          {"gnuplot", machine.plotter}};
 }
 
 // Times of two machines are no ratio.

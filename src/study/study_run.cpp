@@ -6,8 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "study/case_scene.h"
-#include "study/study_pictures.h"
+#include "core/json_writer.h"
 #include "study/study_timing.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
@@ -17,6 +16,7 @@
 #include "umbrick/scene/resolve.h"
 #include "umbrick/shade/prepare.h"
 #include "umbrick/slice/proxy_slices.h"
+#include "umbrick/study/case_scene.h"
 
 namespace umbrick {
 namespace {
@@ -48,10 +48,11 @@ double estimatedWork(const StudyCase& what, const StudySettings& settings) {
   return (settings.repeats + 3) * (pixels * what.slices * cost / 4e7 + 1e-4 * what.slices + baseline);
 }
 
-// What makes a stored reference the one that is wanted.
+// Two references with the same key are the same picture: of one volume and scene, integrated with the same care.
 std::string referenceKey(const StudyRecord& record, const StudyReference& what) {
-  return referenceCommand(what, record.scene, record.plan.settings) + " # volume " +
-         std::to_string(record.volume.crc32) + ", " + printScene(referenceScene(record.scene, what));
+  const ReferenceOptions options = referenceOptions(record.plan.settings);
+  return "volume " + std::to_string(record.volume.crc32) + ", directions " + std::to_string(options.directions) +
+         ", tolerance " + jsonNumber(options.tolerance) + ", " + printScene(referenceScene(record.scene, what));
 }
 
 }  // namespace
@@ -114,12 +115,12 @@ struct StudyRun::Baseline {
 };
 
 StudyRun::StudyRun(const GlContext& context, const ScalarGrid& grid, StudyRecord& record, const StudyFolder& folder,
-                   const StudyCallback& progress)
+                   const StudyOptions& options)
     : context_(context),
       grid_(grid),
       record_(record),
       folder_(folder),
-      progress_(progress),
+      options_(options),
       resident_(context, record.scene.bricks.budgetMiB << 20) {}
 
 StudyRun::~StudyRun() = default;
@@ -160,9 +161,9 @@ std::uint64_t StudyRun::nonFiniteVoxels() const {
 }
 
 bool StudyRun::report(const std::string& step, double share) {
-  if (!progress_) return true;
+  if (!options_.progress) return true;
   const double done = work_ > 0 ? std::min(1.0, (done_ + share) / work_) : 1;
-  return progress_({done, step, record_.cases.size(), record_.plan.cases.size()});
+  return options_.progress({done, step, record_.cases.size(), record_.plan.cases.size()});
 }
 
 const Bricks& StudyRun::bricksFor(const ResolvedScene& scene) {
@@ -220,7 +221,7 @@ bool StudyRun::measureReference(const StudyReference& what) {
   options.metadata = {{"umbrick.study.reference", key},
                       {"umbrick.scene", printScene(referenceScene(record_.scene, what))}};
   writeExr(file, {{"", image}}, options);
-  writeStudyPicture(folder_, what.id(), image);
+  show(what.id(), what.model, image, nullptr);
   references_[what.id()] = std::move(image);
   record_.references.push_back(result);
   save();
@@ -234,7 +235,8 @@ const Image& StudyRun::referenceImage(const StudyReference& what) {
   ExrFile stored = readExr(file);
   const auto key = stored.metadata.find("umbrick.study.reference");
   if (key == stored.metadata.end() || key->second != referenceKey(record_, what))
-    throw InvalidArgument(file.string() + ": not the reference that this study made; give another folder");
+    throw InvalidArgument(file.string() +
+                          ": not the reference that this version makes for this study; give another folder");
   return references_[what.id()] = std::move(stored.layers.front().image);
 }
 
@@ -242,9 +244,7 @@ void StudyRun::measureModelError(const StudyReference& cone) {
   const StudyReference ambient{Model::ambient, cone.size, 0};
   const Image &test = referenceImage(cone), &truth = referenceImage(ambient);
   record_.modelErrors.push_back({cone, measureError(test, truth)});
-  const glm::dvec3 light = record_.scene.ambient;
-  writeErrorPicture(folder_, cone.id(), test, truth,
-                    errorScale(Model::cone) * std::max({light.r, light.g, light.b, 1e-12}));
+  show(cone.id(), cone.model, test, &truth);
   save();
 }
 
@@ -293,12 +293,13 @@ void StudyRun::measureCase(const StudyCase& what) {
   result.windowBytes = counted.windowBytes;
   result.windowUpdates = counted.windowUpdates;
   result.error = measureError(picture.colour, truth);
-  const glm::dvec3 light = record_.scene.ambient;
-  writeStudyPicture(folder_, what.id(), picture.colour);
-  writeErrorPicture(folder_, what.id(), picture.colour, truth,
-                    errorScale(reference.model) * std::max({light.r, light.g, light.b, 1e-12}));
+  show(what.id(), reference.model, picture.colour, &truth);
   record_.cases.push_back(result);
   save();
+}
+
+void StudyRun::show(const std::string& id, Model model, const Image& image, const Image* truth) const {
+  if (options_.picture) options_.picture({id, model, image, truth});
 }
 
 void StudyRun::save() const { writeTextFile(folder_.record(), printRecord(record_)); }

@@ -14,8 +14,6 @@
 
 namespace umbrick {
 
-using StudyCallback = std::function<bool(const StudyProgress&)>;
-
 /// Depth between the nearest and the farthest visible brick in the picture of a scene, world units.
 /// @throw InvalidArgument  nothing is visible
 double visibleExtent(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene);
@@ -30,10 +28,10 @@ class StudyRun {
  public:
   /// @param record  what is there already; grows, and is written to the folder after each step
   StudyRun(const GlContext& context, const ScalarGrid& grid, StudyRecord& record, const StudyFolder& folder,
-           const StudyCallback& progress);
+           const StudyOptions& options);
   ~StudyRun();
 
-  /// Measures what is missing, until the callback asks to stop.
+  /// Measures what is missing, until the caller asks to stop.
   void measure();
   /// Of the volume; 0 when nothing was left to measure.
   std::uint64_t nonFiniteVoxels() const;
@@ -51,13 +49,15 @@ class StudyRun {
   void measureCase(const StudyCase& what);
   /// Of a picture that counts its fragments and times its passes, which makes it slower.
   RenderStats countedPicture(const ResolvedScene& scene);
+  /// Hands a picture to the caller. @param truth  null: nothing is compared
+  void show(const std::string& id, Model model, const Image& image, const Image* truth) const;
   void save() const;
 
   const GlContext& context_;
   const ScalarGrid& grid_;
   StudyRecord& record_;
   const StudyFolder& folder_;
-  const StudyCallback& progress_;
+  const StudyOptions& options_;
   std::map<std::pair<int, int>, std::unique_ptr<Bricks>> bricks_;  // by interior and apron
   ResidentVolumes resident_;                                       // made of those
   std::unique_ptr<Baseline> baseline_;                             // of the last size

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/study_table.h"
+#include "umbrick/study/study_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/json_writer.h"
-#include "study/case_scene.h"
-#include "study/study_findings.h"
+#include "umbrick/study/case_scene.h"
+#include "umbrick/study/study_findings.h"
 
 namespace umbrick {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/volume_identity.h"
+#include "umbrick/study/volume_identity.h"
 
 #include <zlib.h>
 
@@ -10,7 +10,7 @@
 
 namespace umbrick {
 
-VolumeIdentity identify(const std::filesystem::path& file) {
+VolumeIdentity identifyVolume(const std::filesystem::path& file) {
   VolumeIdentity identity;
   std::error_code ignored;
   const std::filesystem::path absolute = std::filesystem::weakly_canonical(file, ignored);

@@ -321,19 +321,19 @@ TEST_CASE("Bricks, culling, pools and textures change nothing of light by ordina
       options.reverseBricks = true;
       const Picture reversed = renderPicture(*context, volume, scene, options);
       CHECK(layersDifference(reversed, bricked) == 0);
-      options = kLayers;
-      options.maxTextureBytes = bricked.stats.textureBytes / 3;
-      const Picture textures = renderPicture(*context, volume, scene, options);
+      AtlasLimits limits;
+      limits.maxTextureBytes = bricked.stats.textureBytes / 3;
+      const Picture textures = renderPicture(*context, volume, scene, kLayers, limits);
       CHECK(textures.stats.textures > 2);
       CHECK(layersDifference(textures, whole) < kPictureRounding);
-      options = kLayers;
-      options.maxTextureEdge = 2 * volume.layout.edge().x;
-      const Picture small = renderPicture(*context, volume, scene, options);
+      limits = {};
+      limits.maxTextureEdge = 2 * volume.layout.edge().x;
+      const Picture small = renderPicture(*context, volume, scene, kLayers, limits);
       CHECK(small.stats.textures > 2);
       CHECK(layersDifference(small, whole) < kPictureRounding);
-      options = kLayers;
-      options.budgetBytes = bricked.stats.textureBytes * 2 / 3;
-      const Picture pooled = renderPicture(*context, volume, scene, options);
+      limits = {};
+      limits.budgetBytes = bricked.stats.textureBytes * 2 / 3;
+      const Picture pooled = renderPicture(*context, volume, scene, kLayers, limits);
       CHECK(pooled.stats.textureBytes < bricked.stats.textureBytes);
       CHECK(layersDifference(pooled, whole) < kPictureRounding);
     }

@@ -53,8 +53,8 @@ inline FieldBricks fieldFor(const ResolvedScene& scene, FieldBricks::Field field
 }
 
 inline Picture renderPicture(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
-                             const RenderOptions& options = {}) {
-  return SliceRenderer(context, volume, scene, options).render();
+                             const RenderOptions& options = {}, const AtlasLimits& limits = {}) {
+  return SliceRenderer(context, volume, scene, options, limits).render();
 }
 
 }  // namespace umbrick

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/earlier_study.h"
+#include "umbrick/study/earlier_study.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,9 +8,9 @@
 #include <string>
 
 #include "study/invented_study.h"
-#include "study/study_findings.h"
 #include "support/complaint.h"
 #include "umbrick/core/error.h"
+#include "umbrick/study/study_findings.h"
 
 using namespace umbrick;
 using Catch::Contains;

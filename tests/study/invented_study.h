@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "study/case_scene.h"
-#include "study/study_record.h"
 #include "support/test_scenes.h"
+#include "umbrick/study/case_scene.h"
+#include "umbrick/study/study_record.h"
 
 namespace umbrick {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/statistics.h"
+#include "umbrick/study/statistics.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

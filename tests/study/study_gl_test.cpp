@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -17,9 +16,9 @@
 #include "support/temporary_folder.h"
 #include "support/test_grids.h"
 #include "support/test_scenes.h"
-#include "support/xml.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/build_grid.h"
+#include "umbrick/image/exr.h"
 #include "umbrick/scene/resolve.h"
 
 using namespace umbrick;
@@ -85,29 +84,28 @@ TEST_CASE("A stopped study goes on where it was, and measures nothing twice", "[
     return p.casesDone < stopAfter;
   };
   const auto run = [&] {
-    return runStudy(*context, study.grid, study.resolved(), study.settings, study.report(), progress);
+    return runStudy(*context, study.grid, study.resolved(), study.settings, study.report(), {.progress = progress});
   };
   // In the first reference.
-  CHECK(!run().complete);
+  CHECK(!run().study.complete());
   CHECK(study.record()["cases"].empty());
   CHECK(study.record()["references"].empty());
   // After two cases.
   stopAfter = 2;
   const StudyOutcome stopped = run();
-  CHECK(!stopped.complete);
-  CHECK(stopped.casesDone == 2);
+  CHECK(!stopped.study.complete());
+  CHECK(stopped.study.cases.size() == 2);
   const Json first = study.record();
   REQUIRE(first["cases"].size() == 2);
   CHECK(first["complete"] == false);
-  CHECK_THAT(readBytes(stopped.page), Contains("Unfinished: 2 of"));
   // To the end.
   stopAfter = 1000;
   steps.clear();
   const StudyOutcome finished = run();
-  CHECK(finished.complete);
+  CHECK(finished.study.complete());
   const Json second = study.record();
   CHECK(second["complete"] == true);
-  REQUIRE(second["cases"].size() == finished.cases);
+  REQUIRE(second["cases"].size() == finished.study.plan.cases.size());
   // Times and all: what was measured is what it was.
   for (std::size_t i = 0; i < 2; ++i) CHECK(second["cases"][i] == first["cases"][i]);
   CHECK(second["references"] == first["references"]);
@@ -127,17 +125,66 @@ TEST_CASE("A stopped study goes on where it was, and measures nothing twice", "[
   }
 }
 
-TEST_CASE("A complete study is only shown again", "[report]") {
+TEST_CASE("A reference that was made otherwise is refused and left as it is", "[report]") {
+  const auto context = testContext();
+  if (!context) return;
+  const SmallStudy study;
+  const auto run = [&](std::size_t stopAfter) {
+    return runStudy(*context, study.grid, study.resolved(), study.settings, study.report(),
+                    {.progress = [&](const StudyProgress& p) { return p.casesDone < stopAfter; }});
+  };
+  run(1);
+  REQUIRE(study.record()["cases"].size() == 1);
+  const fs::path file = study.report() / "references" / "cone-s16-t60.exr";
+  const ExrFile stored = readExr(file);
+  ExrOptions options;
+  options.pixel = ExrPixel::float32;
+  options.metadata = stored.metadata;
+  // Versions before had the command that makes the picture here.
+  options.metadata["umbrick.study.reference"] = "umbrick reference scene.json --model cone";
+  writeExr(file, {{"", stored.layers.front().image}}, options);
+  const std::string before = readBytes(file);
+  CHECK_THAT(complaint<InvalidArgument>([&] { run(1000); }),
+             Contains("cone-s16-t60.exr: not the reference that this version makes for this study"));
+  CHECK(readBytes(file) == before);
+}
+
+TEST_CASE("A complete study is not measured again", "[report]") {
   const auto context = testContext();
   if (!context) return;
   const SmallStudy study;
   const StudyOutcome outcome = runStudy(*context, study.grid, study.resolved(), study.settings, study.report());
-  REQUIRE(outcome.complete);
-  CHECK(xmlFault(readBytes(outcome.page)) == "");
+  REQUIRE(outcome.study.complete());
+  CHECK(readBytes(outcome.record) == printRecord(outcome.study));
   const auto before = contentsOf(study.report());
-  fs::remove(outcome.page);
-  runStudy(*context, study.grid, study.resolved(), study.settings, study.report());
+  fs::remove(outcome.table);
+  int pictures = 0;
+  runStudy(*context, study.grid, study.resolved(), study.settings, study.report(),
+           {.picture = [&](const StudyPicture&) { ++pictures; }});
+  CHECK(pictures == 0);
   CHECK(contentsOf(study.report()) == before);
+}
+
+TEST_CASE("Every picture is handed on with what its error is measured against", "[report]") {
+  const auto context = testContext();
+  if (!context) return;
+  const SmallStudy study;
+  std::map<std::string, double> rmse;  // of pictures that have a truth
+  std::set<std::string> alone;
+  const auto picture = [&](const StudyPicture& p) {
+    if (p.truth)
+      rmse[p.id] = measureError(p.image, *p.truth).rmse;
+    else
+      alone.insert(p.id);
+  };
+  const StudyRecord record =
+      runStudy(*context, study.grid, study.resolved(), study.settings, study.report(), {.picture = picture}).study;
+  std::set<std::string> references;
+  for (const StudyReference& what : record.plan.references) references.insert(what.id());
+  CHECK(alone == references);
+  CHECK(rmse.size() == record.cases.size() + record.modelErrors.size());
+  for (const CaseResult& result : record.cases) CHECK(rmse.at(result.what.id()) == result.error.rmse);
+  for (const ModelError& error : record.modelErrors) CHECK(rmse.at(error.cone.id()) == error.error.rmse);
 }
 
 TEST_CASE("Errors fall with the slices, and the model's error is apart from the method's", "[report]") {
@@ -171,7 +218,7 @@ TEST_CASE("The scene's model, method and background do not matter to a study", "
   study.scene.background.reset();
   study.scene.sampling.spacing = 3;
   study.scene.occlusion.dos.footprint = 7;
-  CHECK(runStudy(*context, study.grid, study.resolved(), study.settings, study.report()).complete);
+  CHECK(runStudy(*context, study.grid, study.resolved(), study.settings, study.report()).study.complete());
 }
 
 TEST_CASE("What a study cannot use is refused before anything is written", "[report]") {
@@ -218,17 +265,4 @@ TEST_CASE("What a study cannot use is refused before anything is written", "[rep
   study.scene.transfer = TransferFunction({{0.1, {{1, 1, 1}, 0}}, {1, {{1, 1, 1}, 1}}});
   study.settings.sizes = {60000};
   CHECK_THAT(refusal(), Contains("sizes: 60000 x 60000 pixels are beyond the driver's limit of "));
-}
-
-TEST_CASE("Without gnuplot a study does not begin", "[report]") {
-  const auto context = testContext();
-  if (!context) return;
-  const SmallStudy study;
-  const std::string path = std::getenv("PATH");
-  setenv("PATH", study.folder.path().c_str(), 1);
-  const std::string message =
-      complaint<IoError>([&] { runStudy(*context, study.grid, study.resolved(), study.settings, study.report()); });
-  setenv("PATH", path.c_str(), 1);
-  CHECK_THAT(message, Contains("gnuplot: cannot be run") && Contains("gnuplot-nox"));
-  CHECK(!fs::exists(study.report()));
 }

@@ -7,11 +7,11 @@
 #include <set>
 #include <string>
 
-#include "study/case_scene.h"
 #include "study/invented_study.h"
 #include "support/complaint.h"
 #include "support/test_scenes.h"
 #include "umbrick/core/error.h"
+#include "umbrick/study/case_scene.h"
 
 using namespace umbrick;
 
@@ -95,30 +95,6 @@ TEST_CASE("Every method has slices of its own, but for those too few to draw", "
   settings.slices.clear();
   CHECK(complaint<InvalidArgument>([&] { planStudy(settings, 1, 2000); }) ==
         "slices: fewer than 2000 cannot be drawn, and dos has no more to sweep; give others");
-}
-
-TEST_CASE("The command of a case has every option that its method depends on", "[report]") {
-  StudySettings settings = small();
-  settings.methods = {"ordinates"};
-  settings.details = {{"directions", {8}}};
-  settings.scales = {0.5};
-  const ResolvedScene scene = smokeScene();
-  const StudyGeometry geometry{16, 0.5};
-  StudyCase what = planStudy(settings, 60 * kDegree).bases.at("ordinates");  // slabs of 2 = 4 voxels
-  CHECK(renderCommand(what, scene, geometry) ==
-        "umbrick render scene.json --model cone --method ordinates --directions 8 --theta 60 --occlusion-bits 32 "
-        "--eye-bits 32 --spacing 2 --spacing-unit world --segments 7 --size 32x32 --exr-pixel float -o "
-        "ordinates-K8-N8-ka-e32o32-s32-t60.exr");
-  what.scale = 0.5;
-  what.segments = 2;
-  const std::string command = renderCommand(what, scene, geometry);
-  CHECK(command.find(" --occlusion-scale 0.5 ") != std::string::npos);
-  CHECK(command.find(" --segments 2 ") != std::string::npos);
-  const ResolvedScene made = caseScene(scene, what, geometry);
-  CHECK(made.method == Method::ordinates);
-  CHECK(made.occlusion.ordinates.directions == 8);
-  CHECK(made.occlusion.ordinates.scale == 0.5);
-  CHECK(made.sampling.segments == 2);
 }
 
 TEST_CASE("A plan has the references that its cases need, and the whole sphere at the base size", "[report]") {

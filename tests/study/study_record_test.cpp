@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/study_record.h"
+#include "umbrick/study/study_record.h"
 
 #include <catch2/catch.hpp>
 #include <functional>
@@ -114,7 +114,7 @@ TEST_CASE("Times of two machines are not mixed, but a complete study can be show
   stored.cases.pop_back();
   CHECK_THAT(refusal(stored, faster),
              Contains("unfinished on another machine: machine.cpu is \"a CPU & more\" there and \"another\" here"));
-  CHECK(refusal(stored, [](StudyRecord& r) { r.machine.gnuplot = "newer"; }) == "no complaint");
+  CHECK(refusal(stored, [](StudyRecord& r) { r.machine.plotter = "newer"; }) == "no complaint");
 }
 
 TEST_CASE("A damaged record is reported with its place, and changes nothing", "[report]") {
@@ -145,8 +145,8 @@ TEST_CASE("A damaged record is reported with its place, and changes nothing", "[
 TEST_CASE("A volume is known by its bytes", "[report]") {
   const TemporaryFolder folder;
   writeBytes(folder.path() / "check", "123456789");
-  const VolumeIdentity identity = identify(folder.path() / "check");
+  const VolumeIdentity identity = identifyVolume(folder.path() / "check");
   CHECK(identity.bytes == 9);
   CHECK(identity.crc32 == 0xcbf43926);  // the check value of CRC-32
-  CHECK_THAT(complaint<IoError>([&] { identify(folder.path() / "none"); }), Contains("none: cannot read"));
+  CHECK_THAT(complaint<IoError>([&] { identifyVolume(folder.path() / "none"); }), Contains("none: cannot read"));
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -75,6 +77,39 @@ TEST_CASE("A study of a bundled volume is written whole, and its commands make i
     CHECK(layer["rmse_rgb"] == one["error"]["rmse"]);
     CHECK(layer["flip"] == one["error"]["flip"]);
   }
+}
+
+TEST_CASE("A complete study is only shown again", "[tools]") {
+  if (!testContext()) return;
+  const TemporaryFolder folder;
+  const std::string small = kStudySmoke +
+                            "--methods emission dos --slices 8 16 --footprints 2 --bits 32 --segments 1 --sizes 16 "
+                            "--thetas 60 --repeats 1 --reference-directions 8 --reference-tolerance 0.05 -o report";
+  REQUIRE(runProgram(folder, small).status == 0);
+  const auto contents = [&] {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(folder.path() / "report"))
+      all[entry.path().string()] = entry.is_regular_file() ? readBytes(entry.path()) : "folder";
+    return all;
+  };
+  const auto before = contents();
+  fs::remove(folder.path() / "report" / "index.html");
+  fs::remove_all(folder.path() / "report" / "plots");
+  REQUIRE(runProgram(folder, small).status == 0);
+  CHECK(contents() == before);
+}
+
+TEST_CASE("Without gnuplot a study does not begin", "[tools]") {
+  if (!testContext()) return;
+  const TemporaryFolder folder;
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", folder.path().c_str(), 1);
+  const ProgramResult result = runProgram(folder, kStudySmoke + "--quick -o report");
+  setenv("PATH", path.c_str(), 1);
+  CHECK(result.status == 1);
+  CHECK_THAT(result.err, Contains("gnuplot: cannot be run") && Contains("gnuplot-nox"));
+  CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+  CHECK(!fs::exists(folder.path() / "report"));
 }
 
 TEST_CASE("Studies that cannot be say so in one line and leave nothing behind", "[tools]") {

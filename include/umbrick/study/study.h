@@ -1,4 +1,4 @@
-// A study: what accuracy costs. Renders every case of a plan, times it, compares it, and writes a report.
+// A study: what accuracy costs. Renders every case of a plan, times it, compares it, and keeps what was measured.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -9,7 +9,9 @@
 
 #include "umbrick/gl/context.h"
 #include "umbrick/grid/scalar_grid.h"
+#include "umbrick/image/image.h"
 #include "umbrick/study/study_plan.h"
+#include "umbrick/study/study_record.h"
 
 namespace umbrick {
 
@@ -19,20 +21,41 @@ struct StudyProgress {
   std::size_t casesDone = 0, cases = 0;
 };
 
+/// A picture at the moment when it is measured. A study keeps the pictures of its references alone: who wants to show
+/// the others takes them from here.
+struct StudyPicture {
+  std::string id;                // of the case or the reference
+  Model model;                   // that it is of, or approximates
+  const Image& image;            // linear premultiplied RGBA; valid during the call, as is `truth`
+  const Image* truth = nullptr;  // what its error is measured against; null: a reference, which nothing is
+};
+
+struct StudyOptions {
+  /// Called often; false stops after the case at hand, and within a reference.
+  std::function<bool(const StudyProgress&)> progress = {};
+  /// Called before the record says that a picture is measured, so that a study which ends by an exception from here
+  /// measures it again when it goes on: of every reference and case, and once more of a reference of the cone at the
+  /// base size, whose truth is then the reference of the whole sphere.
+  std::function<void(const StudyPicture&)> picture = {};
+  /// The study.json of an earlier study of the same scene on the same machine, to show its Pareto fronts beside; it may
+  /// be of an earlier version. Empty: none.
+  std::filesystem::path earlier = {};
+  /// Name and version of the program with which the caller draws plots, for the record.
+  std::string plotter = {};
+};
+
 struct StudyOutcome {
-  bool complete = false;  // false: stopped; the same call goes on
-  std::size_t casesDone = 0, cases = 0;
-  std::filesystem::path page, table, record;  // HTML, CSV, JSON
+  StudyRecord study;  // all that is measured; not complete: stopped, and the same call goes on
+  std::filesystem::path table = {}, record = {};  // CSV, JSON
   std::uint64_t nonFiniteVoxels = 0;  // active NaN or infinite voxels, read as background; 0 when nothing was measured
 };
 
-/// Measures the cases of a plan that are not in the folder yet, and writes the report:
-///   index.html            plots, table, pictures, machine, commands: one file that needs nothing else
+/// Measures the cases of a plan that are not in the folder yet, and writes what it measured there:
 ///   study.csv, study.json a row and an object per case; study.json is also what a stopped study goes on from
-///   scene.json            what the commands of the page render
-///   references/, pictures/, plots/    EXR; PNG of each case and of its error; SVG with gnuplot's script and data
+///   scene.json            the scene that all cases and references vary
+///   references/           pictures of the references, EXR
 /// A folder that holds the same study goes on: finished references and cases are kept. A complete one is not measured
-/// again: only the page, the table and the plots are written anew.
+/// again: only the table is written anew.
 ///
 /// Time: case and baseline take turns in one process, after a picture of each that does not count; a case's time is
 /// the median of the ratios of neighbours. The baseline is `emission` with 256 slices, one segment and a 32-bit buffer,
@@ -40,19 +63,16 @@ struct StudyOutcome {
 /// the same model, size and theta. The error of a reference is estimated as its difference to one with half of the
 /// directions and four times the tolerance.
 ///
-/// @param scene     resolved; its model, method, background and what a plan sweeps do not matter
-/// @param progress  called often; false stops after the case at hand, and within a reference
-/// @param earlier   study.json of an earlier study of the same scene on the same machine, whose Pareto fronts the page
-///                  shows beside; may be of an earlier version; empty: none
+/// @param scene   resolved; its model, method, background and what a plan sweeps do not matter
+/// @param folder  new, empty, or of the same study
 /// @throw InvalidArgument  see planStudy; an earlier study of another volume, scene, baseline or machine; an empty or
 /// invisible volume; slices so far apart that bricks are too narrow;
 ///                         a folder that holds another study (names what differs) or anything else: untouched then
-/// @throw IoError  gnuplot is missing or fails, a file of the folder is damaged or cannot be written
+/// @throw IoError  a file of the folder is damaged or cannot be written
 /// @throw GlError
 /// @pre `context` is current
 StudyOutcome runStudy(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
                       const StudySettings& settings, const std::filesystem::path& folder,
-                      const std::function<bool(const StudyProgress&)>& progress = {},
-                      const std::filesystem::path& earlier = {});
+                      const StudyOptions& options = {});
 
 }  // namespace umbrick

@@ -13,20 +13,19 @@ namespace umbrick {
 
 /// A way to compute a picture. One entry of studyMethods() is all that a study needs to know of it.
 struct StudyMethod {
-  std::string name;   // as on the command line: "dos"
+  std::string name;   // in settings and records: "dos"
   std::string title;  // for readers: "dos, Algorithm 3"
   Model model;        // that it approximates: emission or cone; the reference of this model is the truth
   /// What makes it finer beside the slices; empty: nothing does.
   struct Detail {
     std::string name;     // "footprint": field and column name
-    std::string plural;   // "footprints": option of the study
+    std::string plural;   // "footprints": what messages call the list
     std::string symbol;   // "n": in plots and names of cases
-    std::string meaning;  // "n x n samples over the cone's footprint": help text
+    std::string meaning;  // "n x n samples over the cone's footprint": for readers
     int least = 1, most = 1;
     std::vector<int> full, quick;  // values that are swept unless the user says others
   } detail;
   void (*apply)(int detail, ResolvedScene& scene);  // makes a scene of the model one of this method
-  std::string (*options)(int detail);               // the same as options of `umbrick render`
   double (*work)(int detail);                       // of a slice, about so many times that of emission
   std::vector<int> slices, quickSlices;             // where it is worth using; swept unless the user says others
   bool usual = true;                                // part of a study unless the user says otherwise

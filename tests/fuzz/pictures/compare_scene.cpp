@@ -68,7 +68,7 @@ struct Rendering {
 };
 
 Rendering render(const GlContext& context, const ScalarGrid& grid, ResolvedScene scene,
-                 const RenderOptions& options = {}) {
+                 const RenderOptions& options = {}, const AtlasLimits& limits = {}) {
   const glm::dmat4 toWorld = grid.indexToWorld();
   scene.bricks.interior = brickInterior(scene, toWorld, grid.worldBounds());
   BrickOptions cut;
@@ -77,7 +77,7 @@ Rendering render(const GlContext& context, const ScalarGrid& grid, ResolvedScene
   cut.gradients = scene.transfer.is2d();
   Rendering rendering;
   rendering.bricks = scene.bricks.bricked ? brickGrid(grid, cut) : unbrickedGrid(grid, cut);
-  rendering.renderer = std::make_unique<SliceRenderer>(context, *rendering.bricks, scene, options);
+  rendering.renderer = std::make_unique<SliceRenderer>(context, *rendering.bricks, scene, options, limits);
   Picture picture = rendering.renderer->render();
   rendering.colour = std::move(picture.colour);
   rendering.depth = std::move(picture.depth);
@@ -303,12 +303,12 @@ class Comparer {
 
   // The smallest pool that holds what one slice needs, by a few trials; none where there are few bricks.
   std::optional<Image> withSmallPool() const {
-    if (base_.stats.uploadedBricks < 4) return std::nullopt;
+    if (base_.stats.brickSlots < 4) return std::nullopt;
     for (double share = 1.0 / 8; share < 1; share *= 1.7) {
-      RenderOptions pool;
+      AtlasLimits pool;
       pool.budgetBytes = static_cast<std::uint64_t>(share * static_cast<double>(base_.stats.textureBytes));
       try {
-        return render(context_, grid_, scene_, pool).colour;
+        return render(context_, grid_, scene_, {}, pool).colour;
       } catch (const InvalidArgument&) {
         // A slice needs more than this.
       }

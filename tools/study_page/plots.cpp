@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/study_plots.h"
+#include "study_page/plots.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <set>
 #include <vector>
 
-#include "study/study_findings.h"
+#include "umbrick/study/study_findings.h"
 
-namespace umbrick {
+namespace umbrick::tools {
 namespace {
 
 const char* const kErrorLabel = "RMSE against the reference";
@@ -126,4 +126,4 @@ Plot detailPlot(const StudyRecord& record, const StudyMethod::Detail& detail) {
   return plot;
 }
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

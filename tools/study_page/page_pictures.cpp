@@ -3,12 +3,13 @@
 #include <cstdio>
 
 #include "core/json_writer.h"
-#include "study/case_scene.h"
-#include "study/page.h"
-#include "study/study_pictures.h"
+#include "study_page/commands.h"
+#include "study_page/page.h"
+#include "study_page/pictures.h"
 #include "umbrick/image/colour_map.h"
+#include "umbrick/study/case_scene.h"
 
-namespace umbrick {
+namespace umbrick::tools {
 namespace {
 
 // The colours of error pictures, from 0 to their scale.
@@ -33,7 +34,7 @@ std::string heads(const std::string& first, const std::string& second, const std
   return html + "\n";
 }
 
-std::string row(const StudyFolder& folder, const std::string& truth, const std::string& test, const std::string& note) {
+std::string row(const PageFolder& folder, const std::string& truth, const std::string& test, const std::string& note) {
   const auto cell = [&](const std::string& id) {
     return "<div>" + embeddedPicture(folder.thumbnail(id), id) + "</div>";
   };
@@ -49,7 +50,7 @@ std::string errorText(const ErrorMeasures& error) {
 
 }  // namespace
 
-std::string casePictures(const StudyRecord& record, const StudyFolder& folder, const ComparableCases& group) {
+std::string casePictures(const StudyRecord& record, const PageFolder& folder, const ComparableCases& group) {
   std::string html = scaleBar(errorScale(group.model)) + "<div class=\"pictures\">\n" +
                      heads("reference", "case of the Pareto front", "error");
   for (const CaseResult* result : group.front)
@@ -59,7 +60,7 @@ std::string casePictures(const StudyRecord& record, const StudyFolder& folder, c
   return html + "</div>\n";
 }
 
-std::string modelPictures(const StudyRecord& record, const StudyFolder& folder) {
+std::string modelPictures(const StudyRecord& record, const PageFolder& folder) {
   if (record.modelErrors.empty()) return {};
   std::string html =
       scaleBar(errorScale(Model::cone)) + "<div class=\"pictures\">\n" + heads("whole sphere", "cone", "model error");
@@ -84,4 +85,4 @@ std::string commandList(const StudyRecord& record) {
   return html;
 }
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "study/plot_script.h"
-#include "study/study_record.h"
+#include "study_page/plot_script.h"
+#include "umbrick/study/study_record.h"
 
-namespace umbrick {
+namespace umbrick::tools {
 
 /// Of one model at the base size and theta.
 Plot paretoPlot(const StudyRecord& record, Model model);       // error over time ratio, front marked
@@ -15,4 +15,4 @@ Plot convergencePlot(const StudyRecord& record, Model model);  // error over the
 /// Error over the detail of the methods that have it, a line per number of slices.
 Plot detailPlot(const StudyRecord& record, const StudyMethod::Detail& detail);
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

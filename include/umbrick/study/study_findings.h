@@ -1,4 +1,5 @@
-// What follows from the measurements of a study: who is on the Pareto front, the orders of convergence.
+// What follows from the measurements of a study: which cases are on the Pareto front, the orders of convergence.
+// All findings point into the record that they were made from, and are valid as long as it stays as it is.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
@@ -6,39 +7,39 @@
 #include <string>
 #include <vector>
 
-#include "study/study_record.h"
+#include "umbrick/study/study_record.h"
 
 namespace umbrick {
 
 /// The cases that are comparable in time and error: of one model, size and theta.
 struct ComparableCases {
   Model model = Model::emission;
-  int size = 0;
-  double theta = 0;
+  int size = 0;      // height of the picture, pixels
+  double theta = 0;  // rad; 0 for emission
   std::vector<const CaseResult*> all;
   std::vector<const CaseResult*> front;  // Pareto front of time ratio and RMSE, cheapest first
 };
 
-/// Groups in the order of the plan, of the cases that are measured. Valid as long as the record.
+/// Groups in the order of the plan, of the cases that are measured.
 std::vector<ComparableCases> comparableCases(const StudyRecord& record);
 
-/// All that are on a front, but for cases that nothing compares with.
+/// All cases that are on the front of their group; a case that is alone in its group is not one of them.
 std::set<const CaseResult*> frontCases(const std::vector<ComparableCases>& groups);
 
-/// The group at the base size (and theta); nothing measured: none.
+/// The group of a model at the base size (and theta); null when nothing of it is measured.
 const ComparableCases* baseGroup(const std::vector<ComparableCases>& groups, const StudyPlan& plan, Model model);
 
 /// Cases of one method and detail that differ in their slices alone, coarsest first.
 struct SliceSeries {
   std::string title;  // "dos, Algorithm 3, n = 3"
   const StudyMethod* method = nullptr;
-  int detail = 0;
+  int detail = 0;  // 0 when the method has none
   std::vector<const CaseResult*> cases;
   /// p of RMSE = c d^p by least squares, over the cases whose error is above twice that of the reference.
   std::optional<double> order;
 };
 
-/// At the base of everything else.
+/// The series of all methods of a model, at the base of everything but slices and detail.
 std::vector<SliceSeries> sliceSeries(const StudyRecord& record, Model model);
 
 /// A case with windows beside one without, of the same model, size and theta.

@@ -7,7 +7,8 @@
 
 namespace umbrick {
 
-/// See ImageDifference; of R, G and B alone, so that an exact alpha does not hide an error of colour.
+/// The measures of ImageDifference (each is explained there), of linear premultiplied R, G and B alone: an exact alpha
+/// must not hide an error of colour. SSIM is missing for pictures below 11 x 11 pixels.
 struct ErrorMeasures {
   double rmse = 0, maxError = 0, p999 = 0, relMse = 0;
   std::optional<double> ssim, flip;
@@ -17,7 +18,7 @@ struct ErrorMeasures {
 /// @throw InvalidArgument  sizes that differ
 ErrorMeasures measureError(const Image& test, const Image& reference);
 
-/// R, G and B of a picture.
+/// The picture without its alpha: three channels.
 Image colourOf(const Image& picture);
 
 }  // namespace umbrick

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/plot_script.h"
+#include "study_page/plot_script.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include <set>
 
 #include "core/json_writer.h"
-#include "study/gnuplot.h"
+#include "study_page/gnuplot.h"
 #include "umbrick/core/pending_file.h"
 
-namespace umbrick {
+namespace umbrick::tools {
 namespace {
 
 // Okabe and Ito 2008: colours that colour-blind readers tell apart. Their yellow is too pale for a line.
@@ -210,4 +210,4 @@ bool drawPlot(const std::filesystem::path& folder, const Plot& given) {
   return true;
 }
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

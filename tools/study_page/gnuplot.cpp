@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/gnuplot.h"
+#include "study_page/gnuplot.h"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -15,7 +15,7 @@
 
 extern char** environ;
 
-namespace umbrick {
+namespace umbrick::tools {
 namespace {
 
 struct Outcome {
@@ -87,4 +87,4 @@ void runGnuplot(const std::filesystem::path& script) {
   if (!succeeded(outcome)) throw IoError(script.string() + ": gnuplot failed: " + reason(outcome));
 }
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

@@ -18,14 +18,15 @@ struct Spread {
 /// @throw InvalidArgument  no values
 Spread spreadOf(std::vector<double> values);
 
-/// @throw InvalidArgument  lists of different length
+/// Each numerator over the denominator at its place. @throw InvalidArgument  lists of different length
 std::vector<double> ratios(std::span<const double> numerators, std::span<const double> denominators);
 
+/// What a picture costs, in any unit, and how far it is from the truth.
 struct CostAndError {
   double cost = 0, error = 0;
 };
 
-/// One may be as good as the other in one of the two, and must be better in the other.
+/// Is `a` at least as good as `b` in cost and in error, and better in one of them?
 inline bool dominates(const CostAndError& a, const CostAndError& b) {
   return a.cost <= b.cost && a.error <= b.error && (a.cost < b.cost || a.error < b.error);
 }

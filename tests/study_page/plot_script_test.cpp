@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/plot_script.h"
+#include "study_page/plot_script.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 
-#include "study/gnuplot.h"
+#include "study_page/gnuplot.h"
 #include "support/complaint.h"
 #include "support/files.h"
 #include "support/temporary_folder.h"
 #include "umbrick/core/error.h"
 
 using namespace umbrick;
+using namespace umbrick::tools;
 using Catch::Contains;
 
-TEST_CASE("A logarithmic axis has between 3 and 10 tics, inside its range", "[report]") {
+TEST_CASE("A logarithmic axis has between 3 and 10 tics, inside its range", "[study_page]") {
   for (const double low : {3e-7, 0.04, 1.0, 70.0})
     for (const double factor : {3.0, 12.0, 90.0, 900.0, 1e5}) {
       CAPTURE(low, factor);
@@ -26,7 +27,7 @@ TEST_CASE("A logarithmic axis has between 3 and 10 tics, inside its range", "[re
     }
 }
 
-TEST_CASE("Texts reach the plot as they are", "[report]") {
+TEST_CASE("Texts reach the plot as they are", "[study_page]") {
   const TemporaryFolder folder;
   Plot plot;
   plot.name = "names";
@@ -38,7 +39,7 @@ TEST_CASE("Texts reach the plot as they are", "[report]") {
   CHECK_THAT(readBytes(folder.path() / "names.svg"), Contains("a \"b\" \\c {/d} x_y^2 $e `f` &lt;g> &amp; 'h'"));
 }
 
-TEST_CASE("Points that a logarithmic axis does not have are left out, and an empty plot is none", "[report]") {
+TEST_CASE("Points that a logarithmic axis does not have are left out, and an empty plot is none", "[study_page]") {
   const TemporaryFolder folder;
   Plot plot;
   plot.name = "zeros";
@@ -50,7 +51,7 @@ TEST_CASE("Points that a logarithmic axis does not have are left out, and an emp
   CHECK_THAT(readBytes(folder.path() / "zeros.dat"), Contains("\n3 0.25 ") && !Contains("nan") && !Contains("\n1 0 "));
 }
 
-TEST_CASE("Lines of a family share their colour and differ in symbols, and families differ in colour", "[report]") {
+TEST_CASE("Lines of a family share their colour and differ in symbols, and families differ in colour", "[study_page]") {
   const TemporaryFolder folder;
   Plot plot;
   plot.name = "families";
@@ -70,7 +71,7 @@ TEST_CASE("Lines of a family share their colour and differ in symbols, and famil
   CHECK(symbols[0] == symbols[2]);
 }
 
-TEST_CASE("A script that gnuplot cannot read is reported with what it says", "[report]") {
+TEST_CASE("A script that gnuplot cannot read is reported with what it says", "[study_page]") {
   const TemporaryFolder folder;
   writeBytes(folder.path() / "bad.gp", "set terminal svg\nset nonsense 3\n");
   const std::string message = complaint<IoError>([&] { runGnuplot(folder.path() / "bad.gp"); });

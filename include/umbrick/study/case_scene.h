@@ -1,8 +1,6 @@
-// The scenes of a study, and the commands that make their pictures again.
+// The scenes that a study renders.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <string>
-
 #include "umbrick/reference/reference.h"
 #include "umbrick/study/study_plan.h"
 
@@ -19,19 +17,15 @@ struct StudyGeometry {
 /// @param voxelEdge  the shortest, world units
 ResolvedScene studyScene(const ResolvedScene& resolved, const StudyPlan& plan, double voxelEdge);
 
-/// @param scene  of studyScene
+/// What a case renders. @param scene  of studyScene
 ResolvedScene caseScene(const ResolvedScene& scene, const StudyCase& what, const StudyGeometry& geometry);
+/// What a reference integrates. @param scene  of studyScene
 ResolvedScene referenceScene(const ResolvedScene& scene, const StudyReference& what);
 /// Emission with `kBaselineSlices`, 1 segment and 32 bits, what times are a multiple of.
 ResolvedScene baselineScene(const ResolvedScene& scene, int size, const StudyGeometry& geometry);
 inline constexpr int kBaselineSlices = 256;
 
-/// @param coarser  with half of the directions and four times the tolerance
+/// With what care references are integrated. @param coarser  with half of the directions and four times the tolerance
 ReferenceOptions referenceOptions(const StudySettings& settings, bool coarser = false);
-
-/// Commands for a shell in the folder of the report; file names of a study need no quotes.
-std::string renderCommand(const StudyCase& what, const ResolvedScene& scene, const StudyGeometry& geometry);
-std::string referenceCommand(const StudyReference& what, const ResolvedScene& scene, const StudySettings& settings);
-std::string compareCommand(const StudyCase& what, const StudyReference& reference);
 
 }  // namespace umbrick

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/page_parts.h"
+#include "study_page/page_parts.h"
 
 #include <cmath>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 #include "core/text_file.h"
 
-namespace umbrick {
+namespace umbrick::tools {
 
 std::string escapeHtml(std::string_view text) {
   std::string escaped;
@@ -89,4 +89,4 @@ std::string printHtml(const HtmlTable& table) {
   return html + "</tbody></table></div>\n";
 }
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

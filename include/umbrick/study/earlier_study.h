@@ -24,7 +24,7 @@ struct EarlierStudy {
   std::string version;             // of the program
   std::vector<EarlierCase> front;  // Pareto fronts, one after the other, cheapest first
 
-  /// At the base of the new study.
+  /// The cases of its fronts that are of the model and of the size and theta of the new study's base.
   std::vector<EarlierCase> comparable(const StudyRecord& record, Model model) const;
 };
 

@@ -5,10 +5,10 @@
 #include <set>
 
 #include "core/json_writer.h"
-#include "study/case_scene.h"
-#include "study/page.h"
+#include "study_page/page.h"
+#include "umbrick/study/case_scene.h"
 
-namespace umbrick {
+namespace umbrick::tools {
 namespace {
 
 using Cell = HtmlTable::Cell;
@@ -287,4 +287,4 @@ std::string referenceTable(const StudyRecord& record) {
          printHtml(table);
 }
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

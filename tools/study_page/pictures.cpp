@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/study_pictures.h"
+#include "study_page/pictures.h"
 
 #include <algorithm>
 
-#include "study/error_measures.h"
 #include "umbrick/image/colour_map.h"
 #include "umbrick/image/image_difference.h"
 #include "umbrick/image/png.h"
+#include "umbrick/study/error_measures.h"
 
-namespace umbrick {
+namespace umbrick::tools {
 namespace {
 
-void writeWithThumbnail(const StudyFolder& folder, const std::string& id, const Image& picture) {
+void writeWithThumbnail(const PageFolder& folder, const std::string& id, const Image& picture) {
   if (picture.height > kThumbnailHeight) writePng(folder.smallPicture(id), shrunk(picture, kThumbnailHeight));
   writePng(folder.picture(id), picture);
 }
@@ -22,15 +22,15 @@ double errorScale(Model model) { return model == Model::emission ? 0.05 : 0.5; }
 
 std::string errorPictureId(const std::string& id) { return id + ".error"; }
 
-void writeStudyPicture(const StudyFolder& folder, const std::string& id, const Image& picture) {
-  Image opaque = picture;
+void writePictures(const PageFolder& folder, const StudyPicture& picture, const glm::dvec3& ambient) {
+  folder.create();
+  Image opaque = picture.image;
   for (std::size_t i = 3; i < opaque.pixels.size(); i += 4) opaque.pixels[i] = 1;
-  writeWithThumbnail(folder, id, opaque);
-}
-
-void writeErrorPicture(const StudyFolder& folder, const std::string& id, const Image& test, const Image& reference,
-                       double scale) {
-  writeWithThumbnail(folder, errorPictureId(id), colourMapped(errorMap(colourOf(test), colourOf(reference)), 0, scale));
+  writeWithThumbnail(folder, picture.id, opaque);
+  if (!picture.truth) return;
+  const double scale = errorScale(picture.model) * std::max({ambient.r, ambient.g, ambient.b, 1e-12});
+  const Image error = errorMap(colourOf(picture.image), colourOf(*picture.truth));
+  writeWithThumbnail(folder, errorPictureId(picture.id), colourMapped(error, 0, scale));
 }
 
 Image shrunk(const Image& image, int height) {
@@ -49,4 +49,4 @@ Image shrunk(const Image& image, int height) {
   return small;
 }
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace umbrick {
+namespace umbrick::tools {
 
 /// "gnuplot 5.4 patchlevel 4". @throw IoError  it cannot be run, or draws no SVG
 std::string gnuplotVersion();
@@ -12,4 +12,4 @@ std::string gnuplotVersion();
 /// Runs a script in its folder. @throw IoError  names the script and the last line that gnuplot said
 void runGnuplot(const std::filesystem::path& script);
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

@@ -1,4 +1,4 @@
-// Where a study runs.
+// The machine that a study runs on.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -9,16 +9,17 @@ namespace umbrick {
 
 struct Machine {
   std::string cpu;       // model name
-  int cores = 0;         // that threads may run on
+  int cores = 0;         // how many threads run at once
   std::string renderer;  // GlContext::description()
   bool software = true;  // OpenGL draws on the CPU
   std::string version;   // of this project
-  std::string compiler, gnuplot;
+  std::string compiler;
+  std::string plotter;  // what plots of the study are drawn with; see StudyOptions
   bool operator==(const Machine&) const = default;
 };
 
-/// @param gnuplot  its version
-Machine describeMachine(const GlContext& context, const std::string& gnuplot);
+/// This machine, without a plotter.
+Machine describeMachine(const GlContext& context);
 /// 1-minute load average; 0 where the system does not tell.
 double loadAverage();
 

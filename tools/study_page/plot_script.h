@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace umbrick {
+namespace umbrick::tools {
 
 struct PlotPoint {
   double x = 0, y = 0;
@@ -53,4 +53,4 @@ std::string gnuplotString(const std::string& text);
 /// @throw IoError
 bool drawPlot(const std::filesystem::path& folder, const Plot& plot);
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

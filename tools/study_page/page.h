@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "study/page_parts.h"
-#include "study/study_findings.h"
-#include "study/study_folder.h"
-#include "study/study_record.h"
+#include "study_page/page_folder.h"
+#include "study_page/page_parts.h"
+#include "umbrick/study/study_findings.h"
+#include "umbrick/study/study_record.h"
 
-namespace umbrick {
+namespace umbrick::tools {
 
 /// Draws the plots, then writes the page with all that it shows inside. An unfinished study says so.
 /// @throw IoError
-void writePage(const StudyRecord& record, const StudyFolder& folder);
+void writePage(const StudyRecord& record, const PageFolder& folder);
 
 // --- sections, each a piece of HTML; empty where there is nothing to tell ---
 
@@ -35,9 +35,9 @@ std::string caseTable(const StudyRecord& record, const std::vector<ComparableCas
 std::string referenceTable(const StudyRecord& record);
 
 /// Reference, case and error of the front of the base groups; and cone, ambient and error of the models.
-std::string casePictures(const StudyRecord& record, const StudyFolder& folder, const ComparableCases& group);
-std::string modelPictures(const StudyRecord& record, const StudyFolder& folder);
+std::string casePictures(const StudyRecord& record, const PageFolder& folder, const ComparableCases& group);
+std::string modelPictures(const StudyRecord& record, const PageFolder& folder);
 
 std::string commandList(const StudyRecord& record);
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

@@ -9,17 +9,18 @@
 #include <string_view>
 #include <vector>
 
-#include "study/case_scene.h"
-#include "study/earlier_study.h"
-#include "study/error_measures.h"
-#include "study/machine.h"
-#include "study/statistics.h"
-#include "study/volume_identity.h"
 #include "umbrick/shade/slice_renderer.h"
+#include "umbrick/study/case_scene.h"
+#include "umbrick/study/earlier_study.h"
+#include "umbrick/study/error_measures.h"
+#include "umbrick/study/machine.h"
+#include "umbrick/study/statistics.h"
 #include "umbrick/study/study_plan.h"
+#include "umbrick/study/volume_identity.h"
 
 namespace umbrick {
 
+/// What was measured of one case.
 struct CaseResult {
   StudyCase what;
   double spacing = 0;                 // of slices, world units
@@ -32,15 +33,16 @@ struct CaseResult {
   std::uint64_t bufferBytes = 0, textureBytes = 0;
   std::uint64_t fragments = 0;                       // of bricks that passed the depth test, all passes
   PassTimes passes;                                  // of one picture that waits for every pass and is not timed else
-  double windowTexel = 0;                            // edge, world units; the windows of methods that have them
+  double windowTexel = 0;                            // edge of a texel of the light windows, world units; 0: no windows
   std::uint64_t windowBytes = 0, windowUpdates = 0;  // bytes; texels that slices were taken through
   int directions = 0;                                // of the light
   double load = 0;                                   // 1-minute load average when it was timed
 };
 
-/// Of extinction, windows and eye: they sum up to 1.
+/// Shares of extinction, windows and eye in the time of a picture; they sum up to 1.
 std::array<double, 3> passShares(const PassTimes& passes);
 
+/// What was measured of one reference; its picture is a file of the study's folder.
 struct ReferenceResult {
   StudyReference what;
   double integrateMs = 0;
@@ -56,7 +58,7 @@ struct ModelError {
 };
 
 struct StudyRecord {
-  StudyPlan plan = {};
+  StudyPlan plan = {};  // what is to be measured; the rest says where, and what is measured already
   ResolvedScene scene;  // what the plan sweeps has a fixed value
   VolumeIdentity volume = {};
   Machine machine = {};
@@ -66,13 +68,15 @@ struct StudyRecord {
   std::vector<CaseResult> cases = {};
   std::optional<EarlierStudy> earlier = {};  // shown beside, no part of the study
 
+  /// Is every case and every reference of the plan measured?
   bool complete() const;
+  /// Null when it is not measured.
   const CaseResult* find(const StudyCase& what) const;
   const ReferenceResult* find(const StudyReference& what) const;
   const ModelError* findModelError(const StudyReference& cone) const;
 };
 
-/// JSON; parseRecord reads back the same.
+/// JSON, the text of study.json; restoreRecord reads back the same.
 std::string printRecord(const StudyRecord& record);
 /// Takes over what was measured from the text of a study.json.
 /// @param record  what is to be studied

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace umbrick {
+namespace umbrick::tools {
 
 /// For element text and attribute values.
 std::string escapeHtml(std::string_view text);
@@ -36,4 +36,4 @@ struct HtmlTable {
 };
 std::string printHtml(const HtmlTable& table);
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

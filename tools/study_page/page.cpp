@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/page.h"
+#include "study_page/page.h"
 
 #include <algorithm>
 #include <glm/common.hpp>
@@ -7,14 +7,15 @@
 
 #include "core/json_writer.h"
 #include "core/text_file.h"
-#include "study/case_scene.h"
-#include "study/study_plots.h"
+#include "study_page/plots.h"
 #include "umbrick/core/pending_file.h"
+#include "umbrick/study/case_scene.h"
 
 namespace umbrick {
-
 std::string_view pageText(std::string_view name);  // page.css, page.js
+}  // namespace umbrick
 
+namespace umbrick::tools {
 namespace {
 
 std::string fact(const std::string& value, const std::string& meaning) {
@@ -25,7 +26,7 @@ std::string section(const std::string& id, const std::string& title, const std::
   return body.empty() ? "" : "<h2 id=\"" + id + "\">" + escapeHtml(title) + "</h2>\n" + body;
 }
 
-std::string plotFigure(const StudyFolder& folder, const Plot& plot, const std::string& caption) {
+std::string plotFigure(const PageFolder& folder, const Plot& plot, const std::string& caption) {
   if (!drawPlot(folder.plots(), plot)) return {};
   return "<figure class=\"plot\">\n" + inlineSvg(readTextFile(folder.plots() / (plot.name + ".svg")), plot.name) +
          "<figcaption>" + caption + "</figcaption></figure>\n";
@@ -83,7 +84,7 @@ std::string modelFacts(const StudyRecord& record, const std::vector<ComparableCa
   return html.empty() ? "" : "<div class=\"facts\">\n" + html + "</div>\n";
 }
 
-std::string speedSections(const StudyRecord& record, const StudyFolder& folder,
+std::string speedSections(const StudyRecord& record, const PageFolder& folder,
                           const std::vector<ComparableCases>& groups) {
   std::string html;
   for (const Model model : {Model::cone, Model::emission}) {
@@ -113,7 +114,7 @@ std::string speedSections(const StudyRecord& record, const StudyFolder& folder,
   return html;
 }
 
-std::string pictureSections(const StudyRecord& record, const StudyFolder& folder,
+std::string pictureSections(const StudyRecord& record, const PageFolder& folder,
                             const std::vector<ComparableCases>& groups) {
   std::string html;
   for (const Model model : {Model::cone, Model::emission})
@@ -137,7 +138,7 @@ std::string machineSection(const StudyRecord& record) {
   row("OpenGL", machine.renderer);
   if (!record.cases.empty())
     row("Load average while timing", printShort(least) + " to " + printShort(most) + " (1 minute)");
-  row("Versions", "umbrick " + machine.version + ", " + machine.compiler + ", " + machine.gnuplot);
+  row("Versions", "umbrick " + machine.version + ", " + machine.compiler + ", " + machine.plotter);
   row("Volume", record.volume.file + ", " + std::to_string(record.volume.bytes) + " bytes");
   row("Visible extent along the view axis", printShort(record.geometry.extent) + " world units");
   row("Base point", baseText(record.plan));
@@ -176,7 +177,7 @@ std::string intro(const StudyRecord& record, const std::vector<ComparableCases>&
   return html;
 }
 
-std::string assembled(const StudyRecord& record, const StudyFolder& folder) {
+std::string assembled(const StudyRecord& record, const PageFolder& folder) {
   const std::vector<ComparableCases> groups = comparableCases(record);
   struct Part {
     std::string id, title, html;
@@ -210,8 +211,9 @@ std::string assembled(const StudyRecord& record, const StudyFolder& folder) {
 
 }  // namespace
 
-void writePage(const StudyRecord& record, const StudyFolder& folder) {
+void writePage(const StudyRecord& record, const PageFolder& folder) {
+  folder.create();
   writeTextFile(folder.page(), assembled(record, folder));
 }
 
-}  // namespace umbrick
+}  // namespace umbrick::tools

@@ -1,45 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/page.h"
+#include "study_page/page.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "study/invented_study.h"
-#include "study/study_pictures.h"
-#include "study/study_table.h"
+#include "study_page/pictures.h"
 #include "support/files.h"
 #include "support/temporary_folder.h"
 #include "support/xml.h"
 
 using namespace umbrick;
+using namespace umbrick::tools;
 using Catch::Contains;
 
 namespace {
 
 std::string pageOf(const StudyRecord& record, const TemporaryFolder& parent) {
-  const StudyFolder folder(parent.path() / "report");
-  folder.create(record);
+  const PageFolder folder(parent.path() / "report");
   Image grey(16, 16);
   std::fill(grey.pixels.begin(), grey.pixels.end(), 0.5f);
-  if (!record.cases.empty()) writeStudyPicture(folder, record.cases.front().what.id(), grey);
+  if (!record.cases.empty())
+    writePictures(folder, {record.cases.front().what.id(), Model::emission, grey}, glm::dvec3(1));
   writePage(record, folder);
   return readBytes(folder.page());
 }
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream in(text);
-  for (std::string part; std::getline(in, part, separator);) parts.push_back(part);
-  return parts;
-}
-
 }  // namespace
 
-TEST_CASE("The check of well-formedness finds what is not", "[report]") {
+TEST_CASE("The check of well-formedness finds what is not", "[study_page]") {
   CHECK(xmlFault("<!DOCTYPE html>\n<a b='<'></a>") != "");
   CHECK(xmlFault("<a><b></a></b>") != "");
   CHECK(xmlFault("<a>") != "");
@@ -48,7 +40,7 @@ TEST_CASE("The check of well-formedness finds what is not", "[report]") {
   CHECK(xmlFault("<a title='x > y'>1 &lt; 2<br/><script>if (a < b) c();</script></a>").empty());
 }
 
-TEST_CASE("The page is well-formed, whatever names there are", "[report]") {
+TEST_CASE("The page is well-formed, whatever names there are", "[study_page]") {
   const TemporaryFolder folder;
   const std::string page = pageOf(inventedStudy(), folder);
   CHECK(xmlFault(page) == "");
@@ -65,7 +57,7 @@ TEST_CASE("The page is well-formed, whatever names there are", "[report]") {
 }
 
 TEST_CASE("The page shows an earlier study in the plots of time and in tables, and says where it has nothing",
-          "[report]") {
+          "[study_page]") {
   const TemporaryFolder folder;
   StudyRecord record = inventedStudy();
   record.earlier = readEarlierStudy(printRecord(record), "old & <grey>.json", record);
@@ -77,7 +69,7 @@ TEST_CASE("The page shows an earlier study in the plots of time and in tables, a
                        Contains("old &amp; &lt;grey&gt;.json</code> (umbrick 0.0) has no case"));
 }
 
-TEST_CASE("The page loads nothing from elsewhere", "[report]") {
+TEST_CASE("The page loads nothing from elsewhere", "[study_page]") {
   const TemporaryFolder folder;
   const std::string page = pageOf(inventedStudy(), folder);
   for (const std::string attribute : {"src", "href"})
@@ -95,7 +87,7 @@ TEST_CASE("The page loads nothing from elsewhere", "[report]") {
   CHECK_THAT(page, !Contains("@import") && !Contains("url(http") && !Contains("<link"));
 }
 
-TEST_CASE("Every anchor of the page leads somewhere", "[report]") {
+TEST_CASE("Every anchor of the page leads somewhere", "[study_page]") {
   const TemporaryFolder folder;
   const std::string page = pageOf(inventedStudy(), folder);
   int anchors = 0;
@@ -108,7 +100,7 @@ TEST_CASE("Every anchor of the page leads somewhere", "[report]") {
   CHECK(anchors > 20);
 }
 
-TEST_CASE("A page of a study that has not begun, or is not done, says so", "[report]") {
+TEST_CASE("A page of a study that has not begun, or is not done, says so", "[study_page]") {
   const TemporaryFolder folder;
   StudyRecord record = inventedStudy();
   const std::size_t all = record.cases.size();
@@ -122,40 +114,7 @@ TEST_CASE("A page of a study that has not begun, or is not done, says so", "[rep
   CHECK(xmlFault(pageOf(record, folder)) == "");
 }
 
-TEST_CASE("The table has a row per case, of as many columns as the head, that read back", "[report]") {
-  const StudyRecord record = inventedStudy();
-  const std::vector<std::string> lines = split(printTable(record), '\n');
-  REQUIRE(lines.size() == 1 + record.cases.size());
-  const std::vector<std::string> head = split(lines[0], ',');
-  const auto column = [&](const std::string& name) {
-    const auto at = std::find(head.begin(), head.end(), name);
-    REQUIRE(at != head.end());
-    return static_cast<std::size_t>(at - head.begin());
-  };
-  for (std::size_t i = 0; i < record.cases.size(); ++i) {
-    const std::vector<std::string> cells = split(lines[i + 1], ',');
-    REQUIRE(cells.size() == head.size());
-    CHECK(cells[column("id")] == record.cases[i].what.id());
-    CHECK(std::stod(cells[column("rmse")]) == record.cases[i].error.rmse);
-    CHECK(std::stod(cells[column("time_ratio")]) == record.cases[i].timeRatio.median);
-    CHECK(std::stod(cells[column("reference_error_rmse")]) == 0.001);
-  }
-  // Only ordinates has windows; the shares of the passes are those of its picture.
-  for (const std::string& line : std::vector<std::string>(lines.begin() + 1, lines.end())) {
-    const std::vector<std::string> cells = split(line, ',');
-    const bool windows = cells[column("method")] == "ordinates";
-    CHECK(cells[column("window_texel_world")].empty() == !windows);
-    CHECK(cells[column("windows_share")] == (windows ? "0.375" : "0"));
-    CHECK(cells[column("eye_share")] == (windows ? "0.5" : "1"));
-  }
-  // Milliseconds say something of hardware only.
-  CHECK(std::find(head.begin(), head.end(), "case_ms") == head.end());
-  StudyRecord hardware = record;
-  hardware.machine.software = false;
-  CHECK_THAT(split(printTable(hardware), '\n')[0], Contains(",case_ms,baseline_ms"));
-}
-
-TEST_CASE("Base64 is that of RFC 4648", "[report]") {
+TEST_CASE("Base64 is that of RFC 4648", "[study_page]") {
   CHECK(base64("") == "");
   CHECK(base64("f") == "Zg==");
   CHECK(base64("fo") == "Zm8=");
@@ -164,7 +123,20 @@ TEST_CASE("Base64 is that of RFC 4648", "[report]") {
   CHECK(base64(std::string("\xff\x00\xfe", 3)) == "/wD+");
 }
 
-TEST_CASE("A thumbnail keeps the mean of a picture that it divides", "[report]") {
+TEST_CASE("A picture is written with its error, and a small copy of a tall one", "[study_page]") {
+  const TemporaryFolder parent;
+  const PageFolder folder(parent.path());
+  const Image low(8, 8), tall(8, kThumbnailHeight + 1);
+  writePictures(folder, {"reference", Model::cone, low}, glm::dvec3(1));
+  CHECK(std::filesystem::exists(folder.picture("reference")));
+  CHECK(!std::filesystem::exists(folder.picture("reference.error")));
+  CHECK(folder.thumbnail("reference") == folder.picture("reference"));
+  writePictures(folder, {"case", Model::cone, tall, &tall}, glm::dvec3(1));
+  CHECK(std::filesystem::exists(folder.picture("case")));
+  for (const char* id : {"case", "case.error"}) CHECK(folder.thumbnail(id) == folder.smallPicture(id));
+}
+
+TEST_CASE("A thumbnail keeps the mean of a picture that it divides", "[study_page]") {
   Image image(12, 8);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(i % 7);
   const Image small = shrunk(image, 4);
