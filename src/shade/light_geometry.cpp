@@ -34,7 +34,7 @@ void cover(LightLattice& lattice, const Rectangle& all, int mostTexels) {
   const glm::dvec2 texels = high - low;
   // The windows, which are as large, have the same limit.
   if (!(std::max(texels.x, texels.y) <= mostTexels))
-    throw InvalidArgument("occlusion.ordinates.scale: window texels of " + std::to_string(lattice.texel) +
+    throw InvalidArgument("occlusion.scale: window texels of " + std::to_string(lattice.texel) +
                           " are too small, light needs more of them side by side than the driver's limit of " +
                           std::to_string(mostTexels));
   lattice.first = glm::ivec2(low);
