@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "ingest/dicom/dicom_series.h"
 #include "ingest/header_text.h"
 #include "ingest/streams/packed_stream.h"
 #include "umbrick/core/error.h"
@@ -108,7 +109,14 @@ std::optional<Format> formatOf(const fs::path& path) {
   const auto named = [&](const char* name) {
     return *std::find_if(all.begin(), all.end(), [&](const Format& format) { return format.row.name == name; });
   };
-  if (fs::is_directory(path) && hasDicom(path)) return named("DICOM");
+  if (fs::is_directory(path))
+    if (auto series = readDicomSeries(path)) {
+      Format dicom = named("DICOM");
+      dicom.open = [series = std::move(*series)](const fs::path& folder, const OpenOptions& options) {
+        return openDicomSeries(folder, pickSeries(folder, series, options.series));
+      };
+      return dicom;
+    }
   if (isImageStack(path)) return named("images");
   if (isHdf5Dataset(path)) return named("HDF5");
   for (const Format& format : all)
@@ -176,10 +184,9 @@ std::optional<std::string> formatOfName(const fs::path& path) {
 std::vector<FormatRow> listFormats() {
   std::vector<FormatRow> rows;
   for (const Format& format : formats()) rows.push_back(format.row);
-  rows.push_back(
-      {"raw",
-       {".raw", ".raw.gz", ".raw.xz", ".raw.zst", ".raw.bz2"},
-       "headerless voxels of any name, plain or packed by gzip, xz, zstd or bzip2; needs --dims and --type"});
+  rows.push_back({"raw",
+                  {".raw", ".raw.gz", ".raw.xz", ".raw.zst", ".raw.bz2"},
+                  "headerless voxels of any name, plain or packed by gzip, xz, zstd or bzip2; needs --dims and --type"});
   return rows;
 }
 

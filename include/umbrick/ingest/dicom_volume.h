@@ -20,9 +20,6 @@ struct DicomSeries {
 /// are passed over. @throw IoError  missing, or a DICOM file that cannot be read
 std::vector<DicomSeries> listDicomSeries(const std::filesystem::path& path);
 
-/// True when the folder or one in it has a DICOM file.
-bool hasDicom(const std::filesystem::path& folder);
-
 /// Opens a series of grey slices, single- or multi-frame, also enhanced, in every transfer syntax that GDCM decodes
 /// (raw of both byte orders, deflated, RLE, JPEG, JPEG-LS, JPEG 2000).
 ///

@@ -8,9 +8,10 @@
 
 #include <array>
 #include <cassert>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <set>
+#include <fstream>
 #include <string_view>
 
 #include "ingest/dicom/dicom_structure.h"
@@ -178,11 +179,14 @@ void readPixelLayout(const Tags& tags, DicomFile& file) {
               "a table: " + Tags(file.path, table).text(Tag(0x0028, 0x3003)));
 }
 
+const Tag kModality(0x0008, 0x0060), kSeriesDescription(0x0008, 0x103e), kSeriesUid(0x0020, 0x000e),
+    kSeriesNumber(0x0020, 0x0011);
+
 void readSeries(const Tags& tags, DicomFile& file) {
-  file.seriesUid = tags.text(Tag(0x0020, 0x000e));
-  file.seriesDescription = tags.text(Tag(0x0008, 0x103e));
-  file.modality = tags.text(Tag(0x0008, 0x0060));
-  file.seriesNumber = integer(tags.text(Tag(0x0020, 0x0011))).value_or(0);
+  file.seriesUid = tags.text(kSeriesUid);
+  file.seriesDescription = tags.text(kSeriesDescription);
+  file.modality = tags.text(kModality);
+  file.seriesNumber = integer(tags.text(kSeriesNumber)).value_or(0);
 }
 
 // One JPEG stream for each frame, or all fragments of the only one.
@@ -207,6 +211,23 @@ void checkJpeg(const DicomFile& file, const gdcm::DataElement& pixels) {
   }
 }
 
+IoError unreadable(const fs::path& path) {
+  return IoError(path.string() + ": expected a DICOM file, found one that cannot be read: truncated or corrupt");
+}
+
+std::ifstream opened(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw IoError(path.string() + ": cannot read: " + std::strerror(errno));
+  return in;
+}
+
+// To be read from its start by GDCM, which by a name would open the file again.
+void giveTo(gdcm::Reader& reader, std::ifstream& in) {
+  in.clear();
+  in.seekg(0);
+  reader.SetStream(in);
+}
+
 // Runs `read`, whose GDCM prints nothing meanwhile and whose exceptions become ours.
 template <class Read>
 auto quietly(const fs::path& path, const Read& read) {
@@ -218,74 +239,93 @@ auto quietly(const fs::path& path, const Read& read) {
   } catch (const Error&) {
     throw;
   } catch (const std::exception&) {
-    throw IoError(path.string() + ": expected a DICOM file, found one that cannot be read: truncated or corrupt");
+    throw unreadable(path);
   }
+}
+
+// Frames and pixels of an image.
+void readImage(const DicomStructure& structure, const Tags& tags, DicomFile& file) {
+  readPixelLayout(tags, file);
+  file.valueUnit = tags.has(Tag(0x0028, 0x1054)) ? tags.text(Tag(0x0028, 0x1054)) : tags.text(Tag(0x0054, 0x1001));
+  file.gantryTilt = tags.number1(Tag(0x0018, 0x1120), "GantryDetectorTilt", 0);
+  file.sliceDistance = tags.number1(Tag(0x0018, 0x0050), "SliceThickness", 0);
+  file.sliceDistance = std::abs(tags.number1(Tag(0x0018, 0x0088), "SpacingBetweenSlices", file.sliceDistance));
+  const std::string text = tags.text(Tag(0x0028, 0x0008));
+  const auto frames = text.empty() ? std::optional<std::int64_t>(1) : integer(text);
+  // A frame has at least some bytes of its own in the file, also when it is packed.
+  const std::int64_t size = checkedFileSize(file.path);
+  if (!frames || *frames < 1 || *frames > size)
+    failField(file.path, "NumberOfFrames", "a number from 1 that the file can hold", text);
+  const std::int64_t bytes = file.rows * file.columns * *frames * voxelBytes(file.layout.type);
+  if (structure.pixelOffset < 0) failField(file.path, "PixelData", "the element", "");
+  if (!structure.encapsulated && tags.unsignedShort(Tag(0x0028, 0x0100), 0) != 12) {
+    // A byte may have been added to make the length even.
+    if (structure.pixelBytes < bytes || structure.pixelBytes > bytes + 1)
+      throw IoError(file.path.string() + ": PixelData: expected " + std::to_string(file.columns) + " x " +
+                    std::to_string(file.rows) + " x " + std::to_string(*frames) + " " +
+                    std::string(voxelTypeName(file.layout.type)) + " = " + std::to_string(bytes) + " bytes, found " +
+                    std::to_string(structure.pixelBytes));
+    file.pixelOffset = structure.pixelOffset;
+    file.layout.endian = structure.bigEndian ? std::endian::big : std::endian::little;
+  }
+  readFrames(tags, file, static_cast<std::size_t>(*frames));
+}
+
+bool readUpToPixels(gdcm::Reader& reader, std::ifstream& in) {
+  giveTo(reader, in);
+  try {
+    return reader.ReadUpToTag(Tag(0x7fe0, 0x0010));
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+// Leaves in file.refused what does not concern other series.
+void readAll(const DicomStructure& structure, std::ifstream& in, DicomFile& file) {
+  gdcm::Reader reader;
+  if (readUpToPixels(reader, in)) {
+    const Tags tags(file.path, reader.GetFile().GetDataSet());
+    readSeries(tags, file);
+    try {
+      quietly(file.path, [&] { readImage(structure, tags, file); });
+    } catch (const Error&) {
+      file.refused = std::current_exception();
+    }
+    return;
+  }
+  // What tells series apart may be whole.
+  gdcm::Reader beginning;
+  giveTo(beginning, in);
+  if (!beginning.ReadSelectedTags({kModality, kSeriesDescription, kSeriesUid, kSeriesNumber, Tag(0x0028, 0x0010)}))
+    throw unreadable(file.path);
+  readSeries(Tags(file.path, beginning.GetFile().GetDataSet()), file);
+  file.refused = std::make_exception_ptr(unreadable(file.path));
+}
+
+DicomFile readTags(const fs::path& path, std::ifstream& in) {
+  return quietly(path, [&] {
+    DicomFile file;
+    file.path = path;
+    const DicomStructure structure = readDicomStructure(path, in);
+    file.rows = structure.rows;
+    if (file.rows > 0) readAll(structure, in, file);
+    return file;
+  });
 }
 
 }  // namespace
 
-bool isDicom(const fs::path& path) {
+std::optional<DicomFile> readDicomTagsIfAny(const fs::path& path) {
+  std::ifstream in = opened(path);
   std::array<char, 132> bytes{};
-  const std::size_t got = openPlain(path)->read(std::as_writable_bytes(std::span(bytes)));
-  return got == bytes.size() && std::string_view(bytes.data() + 128, 4) == "DICM";
-}
-
-DicomFile readDicomSeriesTags(const fs::path& path) {
-  return quietly(path, [&] {
-    readDicomStructure(path);
-    gdcm::Reader reader;
-    reader.SetFileName(path.c_str());
-    const std::set<Tag> wanted{Tag(0x0008, 0x0060), Tag(0x0008, 0x103e), Tag(0x0020, 0x000e), Tag(0x0020, 0x0011),
-                               Tag(0x0028, 0x0010)};
-    DicomFile file;
-    file.path = path;
-    if (!reader.ReadSelectedTags(wanted))
-      throw IoError(path.string() + ": expected a DICOM file, found one that cannot be read: truncated or corrupt");
-    const Tags tags(path, reader.GetFile().GetDataSet());
-    readSeries(tags, file);
-    file.rows = tags.unsignedShort(Tag(0x0028, 0x0010), 0);
-    return file;
-  });
+  if (!in.read(bytes.data(), bytes.size()) || std::string_view(bytes.data() + 128, 4) != "DICM") return std::nullopt;
+  return readTags(path, in);
 }
 
 DicomFile readDicomTags(const fs::path& path) {
-  return quietly(path, [&] {
-    const DicomStructure structure = readDicomStructure(path);
-    gdcm::Reader reader;
-    reader.SetFileName(path.c_str());
-    if (!reader.ReadUpToTag(Tag(0x7fe0, 0x0010)))
-      throw IoError(path.string() + ": expected a DICOM file, found one that cannot be read: truncated or corrupt");
-    const gdcm::DataSet& set = reader.GetFile().GetDataSet();
-    const Tags tags(path, set);
-    DicomFile file;
-    file.path = path;
-    readSeries(tags, file);
-    readPixelLayout(tags, file);
-    file.valueUnit = tags.has(Tag(0x0028, 0x1054)) ? tags.text(Tag(0x0028, 0x1054)) : tags.text(Tag(0x0054, 0x1001));
-    file.gantryTilt = tags.number1(Tag(0x0018, 0x1120), "GantryDetectorTilt", 0);
-    file.sliceDistance = tags.number1(Tag(0x0018, 0x0050), "SliceThickness", 0);
-    file.sliceDistance = std::abs(tags.number1(Tag(0x0018, 0x0088), "SpacingBetweenSlices", file.sliceDistance));
-    const std::string text = tags.text(Tag(0x0028, 0x0008));
-    const auto frames = text.empty() ? std::optional<std::int64_t>(1) : integer(text);
-    // A frame has at least some bytes of its own in the file, also when it is packed.
-    const std::int64_t size = checkedFileSize(path);
-    if (!frames || *frames < 1 || *frames > size)
-      failField(path, "NumberOfFrames", "a number from 1 that the file can hold", text);
-    const std::int64_t bytes = file.rows * file.columns * *frames * voxelBytes(file.layout.type);
-    if (structure.pixelOffset < 0) failField(path, "PixelData", "the element", "");
-    if (!structure.encapsulated && tags.unsignedShort(Tag(0x0028, 0x0100), 0) != 12) {
-      // A byte may have been added to make the length even.
-      if (structure.pixelBytes < bytes || structure.pixelBytes > bytes + 1)
-        throw IoError(path.string() + ": PixelData: expected " + std::to_string(file.columns) + " x " +
-                      std::to_string(file.rows) + " x " + std::to_string(*frames) + " " +
-                      std::string(voxelTypeName(file.layout.type)) + " = " + std::to_string(bytes) + " bytes, found " +
-                      std::to_string(structure.pixelBytes));
-      file.pixelOffset = structure.pixelOffset;
-      file.layout.endian = structure.bigEndian ? std::endian::big : std::endian::little;
-    }
-    readFrames(tags, file, static_cast<std::size_t>(*frames));
-    return file;
-  });
+  checkedFileSize(path);
+  std::ifstream in = opened(path);
+  return readTags(path, in);
 }
 
 std::vector<std::byte> readDicomPixels(const DicomFile& file, std::size_t first, std::size_t count) {
@@ -301,11 +341,12 @@ std::vector<std::byte> readDicomPixels(const DicomFile& file, std::size_t first,
   assert(first == 0 && count == file.frames.size());
   return quietly(file.path, [&] {
     // Before the image reader, which unpacks as it reads and gives a JPEG that it cannot to another program.
+    std::ifstream in = opened(file.path);
     gdcm::Reader packed;
-    packed.SetFileName(file.path.c_str());
+    giveTo(packed, in);
     if (packed.Read()) checkJpeg(file, packed.GetFile().GetDataSet().GetDataElement(Tag(0x7fe0, 0x0010)));
     gdcm::ImageReader reader;
-    reader.SetFileName(file.path.c_str());
+    giveTo(reader, in);
     const std::int64_t expected = frameBytes * static_cast<std::int64_t>(count);
     if (!reader.Read())
       throw IoError(

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -26,22 +27,23 @@ struct DicomFile {
   std::filesystem::path path;
   std::string seriesUid, seriesDescription, modality, valueUnit, photometric;
   std::int64_t seriesNumber = 0;
-  std::int64_t columns = 0, rows = 0;
+  std::int64_t columns = 0, rows = 0;  // 0: no image
   VoxelLayout layout;
   std::vector<DicomFrame> frames;
   std::int64_t pixelOffset = -1;  // of native pixels in the file; -1: GDCM unpacks them
   double sliceDistance = 0;       // SpacingBetweenSlices or SliceThickness; 0 unknown
   double gantryTilt = 0;          // degrees
+  // Why the pixels cannot be those of a volume, such as colour: thrown when the series of the file is opened. Others of
+  // the same folder can be read all the same.
+  std::exception_ptr refused;
 };
 
-/// True for the magic bytes of DICOM.
-bool isDicom(const std::filesystem::path& path);
+/// Opens the file once and reads all tags before its pixels. Nothing when it has not the magic bytes of DICOM.
+/// @throw IoError  unreadable
+std::optional<DicomFile> readDicomTagsIfAny(const std::filesystem::path& path);
 
-/// Reads all tags before the pixels. @throw IoError  unreadable, or pixels that are not grey integers
+/// The same of a file that must be DICOM. @throw IoError
 DicomFile readDicomTags(const std::filesystem::path& path);
-
-/// Reads only what tells series apart: UID, number, description, modality.
-DicomFile readDicomSeriesTags(const std::filesystem::path& path);
 
 /// The pixels of `count` frames from `first` on, as `layout` says. Native ones are read from their place in the file;
 /// for packed ones, of which all must be asked for, the whole file is unpacked.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fstream>
 #include <string_view>
 
 #include "ingest/streams/byte_stream.h"
@@ -14,8 +13,10 @@ namespace umbrick {
 namespace {
 
 constexpr std::uint32_t kUndefined = 0xffffffff;
-constexpr std::uint32_t kItem = 0xfffee000, kItemEnd = 0xfffee00d, kSequenceEnd = 0xfffee0dd, kPixels = 0x7fe00010;
+constexpr std::uint32_t kItem = 0xfffee000, kItemEnd = 0xfffee00d, kSequenceEnd = 0xfffee0dd, kRows = 0x00280010,
+                        kPixels = 0x7fe00010;
 constexpr int kMaxDepth = 32;
+constexpr std::int64_t kShortSeek = 4096;
 
 // Value representations whose length has 16 bits, and those with 32.
 constexpr std::string_view kShort = "AE AS AT CS DA DS DT FL FD IS LO LT PN SH SL SS ST TM UI UL US ";
@@ -23,13 +24,10 @@ constexpr std::string_view kLong = "OB OD OF OL OV OW SQ SV UC UN UR UT UV ";
 
 class Walker {
  public:
-  explicit Walker(const std::filesystem::path& path)
-      : path_(path), size_(checkedFileSize(path)), in_(path, std::ios::binary) {
-    if (!in_) throw IoError(path.string() + ": cannot read");
-  }
+  Walker(const std::filesystem::path& path, std::istream& in) : path_(path), size_(checkedFileSize(path)), in_(in) {}
 
   DicomStructure walk() {
-    in_.seekg(128);
+    seek(128);
     if (bytes<4>() != std::array<char, 4>{'D', 'I', 'C', 'M'}) fail("DICM at byte 128", "other bytes");
     // Group 2 says in which way all others are written.
     explicit_ = true;
@@ -64,7 +62,7 @@ class Walker {
   std::array<char, count> bytes() {
     std::array<char, count> out{};
     if (!in_.read(out.data(), count)) fail("more of a DICOM file", "its end");
-    at_ = static_cast<std::int64_t>(in_.tellg());
+    at_ += static_cast<std::int64_t>(count);
     return out;
   }
   std::uint32_t unsignedNumber(std::size_t count) {
@@ -89,8 +87,12 @@ class Walker {
     seek(at_ - 2);
     return group;
   }
+  // Over short values by reading on: a stream that seeks drops what it holds.
   void seek(std::int64_t to) {
-    in_.seekg(to);
+    if (to >= at_ && to - at_ < kShortSeek)
+      in_.ignore(to - at_);
+    else
+      in_.seekg(to);
     at_ = to;
   }
 
@@ -123,7 +125,7 @@ class Walker {
     const std::int64_t start = at_;
     in_.read(out.data(), static_cast<std::streamsize>(out.size()));
     in_.clear();
-    seek(start);
+    in_.seekg(start);
     while (!out.empty() && (out.back() == '\0' || out.back() == ' ')) out.pop_back();
     return out;
   }
@@ -184,20 +186,28 @@ class Walker {
         found_.pixelOffset = at_;
         found_.pixelBytes = found_.encapsulated ? 0 : element.length;
       }
+      if (depth == 0 && element.tag == kRows && element.length >= 2 && at_ + 2 <= end) {
+        found_.rows = unsignedNumber(2);
+        seek(at_ - 2);
+      }
       skip(element, end, depth);
     }
   }
 
   std::filesystem::path path_;
   std::int64_t size_;
-  std::ifstream in_;
-  std::int64_t at_ = 128;
+  std::istream& in_;
+  std::int64_t at_ = 0;
   bool explicit_ = true, big_ = false;
   DicomStructure found_;
 };
 
 }  // namespace
 
-DicomStructure readDicomStructure(const std::filesystem::path& path) { return Walker(path).walk(); }
+DicomStructure readDicomStructure(const std::filesystem::path& path, std::istream& in) {
+  in.clear();
+  in.seekg(0);
+  return Walker(path, in).walk();
+}
 
 }  // namespace umbrick

@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <istream>
 #include <string>
 
 namespace umbrick {
@@ -13,10 +14,12 @@ struct DicomStructure {
   bool bigEndian = false;
   bool encapsulated = false;                      // pixels are packed, in fragments
   std::int64_t pixelOffset = -1, pixelBytes = 0;  // of native PixelData in the file; -1: there is none
+  std::int64_t rows = 0;                          // 0: no image, such as a report
 };
 
-/// Walks all elements, also of sequences. Source: DICOM PS3.5 7.1 to 7.5, PS3.10 7.1
+/// Walks all elements, also of sequences, of the file at `path` that `in` has open. Source: DICOM PS3.5 7.1 to 7.5,
+/// PS3.10 7.1
 /// @throw IoError  no DICOM file, an element that is none or that ends beyond what holds it, or a deflated data set
-DicomStructure readDicomStructure(const std::filesystem::path& path);
+DicomStructure readDicomStructure(const std::filesystem::path& path, std::istream& in);
 
 }  // namespace umbrick

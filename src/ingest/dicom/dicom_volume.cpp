@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <glm/geometric.hpp>
-#include <map>
 #include <sstream>
 #include <utility>
 
 #include "ingest/dicom/dicom_file.h"
+#include "ingest/dicom/dicom_series.h"
 #include "ingest/header_text.h"
 #include "ingest/place.h"
 #include "ingest/provenance.h"
@@ -30,39 +31,6 @@ std::string text(const glm::dvec3& v) {
   std::ostringstream out;
   out << '(' << v.x << ' ' << v.y << ' ' << v.z << ')';
   return out.str();
-}
-
-template <class Visit>
-void visitFiles(const fs::path& folder, const Visit& visit) {
-  std::error_code error;
-  auto each = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, error);
-  if (error) throw IoError(folder.string() + ": cannot read: " + error.message());
-  for (; each != fs::recursive_directory_iterator(); each.increment(error)) {
-    if (error) throw IoError(folder.string() + ": cannot read: " + error.message());
-    std::error_code ignored;
-    if (each->is_regular_file(ignored) && !visit(each->path())) return;
-  }
-}
-
-std::string listing(const std::vector<DicomSeries>& all) {
-  std::string out;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    out += (i ? "; " : "") + std::to_string(i + 1) + ": " + all[i].modality + " \"" + all[i].description + "\", " +
-           std::to_string(all[i].files.size()) + " files, " + all[i].uid;
-  return out;
-}
-
-const DicomSeries& pick(const fs::path& path, const std::vector<DicomSeries>& all, const std::string& series) {
-  if (all.empty()) throw IoError(path.string() + ": expected DICOM images, found none");
-  if (series.empty()) {
-    if (all.size() == 1) return all.front();
-    throw InvalidArgument(path.string() + ": " + std::to_string(all.size()) +
-                          " series, pick one with --series by number or UID: " + listing(all));
-  }
-  const auto number = integer(series);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].uid == series || (number && *number == static_cast<std::int64_t>(i) + 1)) return all[i];
-  throw InvalidArgument(path.string() + ": no series \"" + series + "\": there are " + listing(all));
 }
 
 // What all slices have in common must not differ.
@@ -240,49 +208,14 @@ void describe(const Stack& stack, VolumeInfo& info) {
 
 }  // namespace
 
-bool hasDicom(const fs::path& folder) {
-  bool found = false;
-  visitFiles(folder, [&](const fs::path& path) { return !(found = isDicom(path)); });
-  return found;
-}
-
-std::vector<DicomSeries> listDicomSeries(const fs::path& path) {
-  std::vector<fs::path> paths;
-  if (fs::is_directory(path)) {
-    visitFiles(path, [&](const fs::path& each) {
-      if (isDicom(each)) paths.push_back(each);
-      return true;
-    });
-    std::sort(paths.begin(), paths.end());
-  } else {
-    checkedFileSize(path);
-    paths.push_back(path);
-  }
-  std::map<std::string, DicomSeries> byUid;
-  for (const fs::path& each : paths) {
-    const DicomFile file = readDicomSeriesTags(each);
-    if (file.rows == 0) continue;  // no image: a directory, a report
-    DicomSeries& series = byUid[file.seriesUid];
-    if (series.files.empty()) series = {file.seriesUid, file.seriesDescription, file.modality, file.seriesNumber, {}};
-    series.files.push_back(each);
-  }
-  std::vector<DicomSeries> out;
-  for (auto& [uid, series] : byUid) out.push_back(std::move(series));
-  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
-  return out;
-}
-
-std::unique_ptr<VoxelSource> openDicom(const fs::path& path, const std::string& series) {
-  const std::vector<DicomSeries> all = listDicomSeries(path);
-  const DicomSeries& picked = pick(path, all, series);
+std::unique_ptr<VoxelSource> openDicomSeries(const fs::path& path, DicomSeriesFiles series) {
   VolumeInfo info;
   info.name = path.string();
-  std::vector<DicomFile> files;
-  for (const fs::path& each : picked.files) {
-    files.push_back(readDicomTags(each));
-    info.fileBytes += checkedFileSize(each);
+  for (const DicomFile& file : series.files) {
+    if (file.refused) std::rethrow_exception(file.refused);
+    info.fileBytes += checkedFileSize(file.path);
   }
-  Stack stack(info.name, std::move(files));
+  Stack stack(info.name, std::move(series.files));
   const DicomFile& first = stack.files().front();
   info.dims = {first.columns, first.rows, std::ssize(stack.slices())};
   info.type = first.layout.type;
@@ -292,6 +225,11 @@ std::unique_ptr<VoxelSource> openDicom(const fs::path& path, const std::string& 
   describe(stack, info);
   checkPlace(info, "ImagePositionPatient, ImageOrientationPatient and PixelSpacing");
   return std::make_unique<DicomSource>(std::move(info), std::move(stack));
+}
+
+std::unique_ptr<VoxelSource> openDicom(const fs::path& path, const std::string& series) {
+  return openDicomSeries(path,
+                         pickSeries(path, readDicomSeries(path).value_or(std::vector<DicomSeriesFiles>()), series));
 }
 
 }  // namespace umbrick
