@@ -2,6 +2,7 @@
 #include "convert_source.h"
 
 #include <bit>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "convert_grids.h"
 #include "umbrick/core/error.h"
 #include "umbrick/grid/grid_filters.h"
+#include "umbrick/ingest/dicom_volume.h"
 #include "umbrick/ingest/open_volume.h"
 #include "umbrick/vdb/read_grid.h"
 
@@ -39,6 +41,10 @@ std::unique_ptr<VoxelSource> openInput(const ConvertOptions& options) {
   }
   try {
     return openVolume(options.input, open);
+  } catch (const UnknownFormat& error) {
+    throw UsageError(std::string(error.what()) + ": give --dims and --type");
+  } catch (const SeveralSeries& error) {
+    throw UsageError(std::string(error.what()) + "; give --series");
   } catch (const InvalidArgument& error) {
     throw UsageError(error.what());
   }

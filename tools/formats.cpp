@@ -11,8 +11,16 @@
 namespace umbrick::tools {
 namespace {
 
+// What to say of some formats on the command line.
+std::string hint(const std::string& format) {
+  if (format == "DICOM") return "; --series picks one";
+  if (format == "raw") return "; needs --dims and --type";
+  return {};
+}
+
 std::vector<FormatRow> rows() {
   std::vector<FormatRow> all = listFormats();
+  for (FormatRow& row : all) row.reads += hint(row.name);
   all.push_back({"OpenVDB", {".vdb"}, "scalar grids, each by itself"});
   all.push_back({"NanoVDB", {".nvdb"}, "scalar grids and quantised ones; plain, ZIP and Blosc"});
   return all;

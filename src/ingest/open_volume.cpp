@@ -60,7 +60,7 @@ std::vector<Format> formats() {
        [](const fs::path& path, const OpenOptions&) { return openNifti(path); }},
       {{"DICOM",
         {".dcm", ".ima"},
-        "a file or a folder of them: grey series, single- and multi-frame, raw and compressed; --series picks one"},
+        "a file or a folder of them: grey series, single- and multi-frame, raw and compressed"},
        [](Bytes b) { return b.size() >= 132 && b.substr(128, 4) == "DICM"; },
        true,
        [](const fs::path& path, const OpenOptions& options) { return openDicom(path, options.series); }},
@@ -149,7 +149,7 @@ std::unique_ptr<VoxelSource> openVolume(const fs::path& path, const OpenOptions&
   const auto format = formatOf(path);
   if (!format) {
     checkedFileSize(path);
-    throw InvalidArgument(path.string() + ": taken for headerless raw, which needs --dims and --type");
+    throw UnknownFormat(path.string() + ": taken for headerless raw, which needs dims and type");
   }
   auto source = format->open(path, options);
   if (!options.spacing && !options.origin) return source;
@@ -186,7 +186,7 @@ std::vector<FormatRow> listFormats() {
   for (const Format& format : formats()) rows.push_back(format.row);
   rows.push_back({"raw",
                   {".raw", ".raw.gz", ".raw.xz", ".raw.zst", ".raw.bz2"},
-                  "headerless voxels of any name, plain or packed by gzip, xz, zstd or bzip2; needs --dims and --type"});
+                  "headerless voxels of any name, plain or packed by gzip, xz, zstd or bzip2"});
   return rows;
 }
 

@@ -15,7 +15,7 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kHint = "; does it begin with a header (--header-bytes), or are the dims or the type wrong?";
+constexpr const char* kHint = "; does it begin with a header (headerBytes), or are the dims or the type wrong?";
 
 template <class Vector>
 std::string text(const Vector& v, const char* between) {

@@ -207,7 +207,8 @@ TEST_CASE("Several DICOM series are listed, and one is picked by number or UID",
   for (int z = 0; z < 3; ++z)
     files.write("more/" + std::to_string(z),
                 slice(z, double(z) * kNormal).text(0x20, 0xe, "UI", "1.2.77").text(0x20, 0x11, "IS", "2"));
-  CHECK_THROWS_WITH(files.open(), Contains("2 series, pick one with --series") &&
+  CHECK_THROWS_AS(files.open(), SeveralSeries);
+  CHECK_THROWS_WITH(files.open(), Contains("2 series, pick one by number or UID") &&
                                       Contains("1: CT \"thorax\", 3 files, 1.2.77; 2: CT \"thorax\", 2 files, 1.2.3"));
   CHECK(openDicom(files.folder.path(), "1")->info().dims.z == 3);
   CHECK(openDicom(files.folder.path(), "1.2.3")->info().dims.z == 2);

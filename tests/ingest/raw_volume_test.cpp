@@ -149,7 +149,7 @@ TEST_CASE("A raw file of the wrong size is refused with both sizes", "[ingest]")
   writeBytes(path, std::string(47, 'x'));
   CHECK_THROWS_WITH(openRaw(path, options), path.string() + ": expected 4 x 3 x 2 u16 = 48 bytes, found 47");
   writeBytes(path, std::string(50, 'x'));
-  CHECK_THROWS_WITH(openRaw(path, options), Contains("= 48 bytes, found 50") && Contains("--header-bytes"));
+  CHECK_THROWS_WITH(openRaw(path, options), Contains("= 48 bytes, found 50") && Contains("headerBytes"));
   options.headerBytes = 2;
   CHECK_NOTHROW(openRaw(path, options));
   options.headerBytes = 100;

@@ -142,7 +142,8 @@ TEST_CASE("Wrong usage exits 2", "[tools]") {
   const Failing failing;
   writeBytes(failing.folder.path() / "v.raw", std::string(120, 'x'));
   const std::string start = "convert v.raw -o o.vdb --dims 4 5 6 --type u8 ";
-  failing.check("convert v.raw -o o.vdb", 2, "needs --dims and --type");
+  failing.check("convert v.raw -o o.vdb", 2,
+                "v.raw: taken for headerless raw, which needs dims and type: give --dims and --type");
   failing.check("convert v.raw", 2, "--output is required");
   failing.check("convert v.raw -o o.vdb --dims 4 5 --type u8", 2, "--dims");
   failing.check("convert v.raw -o o.vdb --dims 4 5 x --type u8", 2, "--dims");

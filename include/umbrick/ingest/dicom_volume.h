@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "umbrick/core/error.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
@@ -14,6 +15,11 @@ struct DicomSeries {
   std::string uid, description, modality;
   std::int64_t number = 0;                   // SeriesNumber, which need not differ between series
   std::vector<std::filesystem::path> files;  // in order of their names
+};
+
+/// A folder holds several series and none was picked; the message lists them.
+struct SeveralSeries : InvalidArgument {
+  using InvalidArgument::InvalidArgument;
 };
 
 /// The series of a folder and the folders in it, by number and then UID; or the one of a file. Files that are no DICOM
@@ -31,7 +37,8 @@ std::vector<DicomSeries> listDicomSeries(const std::filesystem::path& path);
 /// a whole. Source: DICOM PS3.3 C.7.6.2 (image plane), C.11.1 (modality LUT), C.7.6.16 (functional groups)
 ///
 /// @param series  which one of several: its UID, or its place in the list, from 1; empty: the only one
-/// @throw InvalidArgument  several series and none picked, or none like it (lists those there are)
+/// @throw SeveralSeries    there are several series and none is picked
+/// @throw InvalidArgument  there is no such series; the message lists those there are
 /// @throw IoError          missing, unreadable, colour, slices of different kinds, positions that make no volume
 std::unique_ptr<VoxelSource> openDicom(const std::filesystem::path& path, const std::string& series = {});
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "umbrick/core/error.h"
 #include "umbrick/ingest/raw_volume.h"
 #include "umbrick/ingest/voxel_source.h"
 
@@ -19,10 +20,15 @@ struct OpenOptions {
   std::optional<glm::dvec3> origin = {};   // world position of the centre of the first voxel, of the same formats
 };
 
+/// No format is known by the name or the first bytes of the file: OpenOptions::raw has to say what its bytes mean.
+struct UnknownFormat : InvalidArgument {
+  using InvalidArgument::InvalidArgument;
+};
+
 /// Opens a volume by the extension of its name, or else by its first bytes.
-/// @throw InvalidArgument  no format is known by that name or those bytes and `raw` is not given; spacing or origin for
-/// a
-///                         format that states its own, or not positive and finite; see also the formats
+/// @throw UnknownFormat    no format is known by that name or those bytes, and `raw` is not given
+/// @throw InvalidArgument  spacing or origin for a format that states its own, or not positive and finite; the formats
+///                         throw it too
 /// @throw IoError          as the formats do
 std::unique_ptr<VoxelSource> openVolume(const std::filesystem::path& path, const OpenOptions& options = {});
 

@@ -73,8 +73,8 @@ DicomSeriesFiles pickSeries(const fs::path& path, std::vector<DicomSeriesFiles> 
   if (all.empty()) throw IoError(path.string() + ": expected DICOM images, found none");
   if (series.empty()) {
     if (all.size() == 1) return std::move(all.front());
-    throw InvalidArgument(path.string() + ": " + std::to_string(all.size()) +
-                        " series, pick one with --series by number or UID: " + listing(all));
+    throw SeveralSeries(path.string() + ": " + std::to_string(all.size()) +
+                        " series, pick one by number or UID: " + listing(all));
   }
   const auto number = integer(series);
   for (std::size_t i = 0; i < all.size(); ++i)
