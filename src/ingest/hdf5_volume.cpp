@@ -37,7 +37,7 @@ class Quiet {
   void* data_ = nullptr;
 };
 
-// The innermost complaint, which is the first.
+// libhdf5 stacks its complaints: the innermost one is the first and says most.
 std::string complaint() {
   std::string text;
   const auto take = [](unsigned n, const H5E_error2_t* error, void* out) -> herr_t {
@@ -91,7 +91,7 @@ std::vector<hsize_t> shapeOf(hid_t dataset) {
   return shape;
 }
 
-// Axes that count: the last three when those before have length 1, fewer when there are fewer.
+// The axes that count are the last three when those before have length 1, or all when there are fewer.
 std::size_t axesOf(const std::vector<hsize_t>& shape) {
   std::size_t dropped = 0;
   while (shape.size() - dropped > 3 && shape[dropped] == 1) ++dropped;
@@ -126,7 +126,7 @@ std::optional<NumberType> numberType(hid_t dataset) {
   return NumberType{found, found == f16 ? f32 : found};  // libhdf5 widens halves, exactly
 }
 
-// What a type that is not read is, in the words of those who write such files.
+// Names a type that is not read, in the words of those who write such files.
 std::string typeText(hid_t dataset) {
   const Handle type(H5Dget_type(dataset), H5Tclose);
   const std::string bits = std::to_string(8 * H5Tget_size(type.get())) + " bits";

@@ -26,7 +26,6 @@ std::string_view trimmed(std::string_view text) {
   return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-// Words between blanks; a word in quotes may hold blanks.
 std::vector<std::string> words(std::string_view text) {
   std::vector<std::string> out;
   for (text = trimmed(text); !text.empty(); text = trimmed(text)) {

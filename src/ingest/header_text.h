@@ -1,4 +1,4 @@
-// Pieces that headers written as text have in common.
+// Words, numbers and file names in headers that are written as text.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -11,16 +11,16 @@
 
 namespace umbrick {
 
-/// ASCII letters only.
+/// The text with its capital ASCII letters made small.
 std::string lower(std::string_view text);
-/// Without blanks, tabs and returns at both ends.
+/// The text without blanks, tabs and carriage returns at both ends.
 std::string_view trimmed(std::string_view text);
-/// Words between blanks; a word in quotes may hold blanks.
+/// The words between blanks; a word in quotes may hold blanks.
 std::vector<std::string> words(std::string_view text);
 /// The whole text as a number, or nothing.
 std::optional<std::int64_t> integer(std::string_view text);
 std::optional<double> number(std::string_view text);
-/// In quotes and not too long for a message; "nothing" when empty.
+/// The text in quotes and short enough for a message, or "nothing" when it is empty.
 std::string shortened(std::string_view text);
 
 /// @throw IoError  "path: field: expected ..., found ..."
@@ -37,14 +37,15 @@ auto valueNamed(const Table& table, std::string_view name) {
 /// A file name with one number in it: "slice%03d.raw". Patterns come from files, so printf never sees them.
 struct NamePattern {
   std::string before, after;
-  std::size_t digits = 0;  // at least
+  std::size_t digits = 0;  // how many characters the number has at least
   char padding = ' ';
   std::string name(std::int64_t number) const;
 };
 /// Nothing when `text` has not exactly one %d, %4d or %04d.
 std::optional<NamePattern> namePattern(std::string_view text);
 
-/// The names from `first` to `last`; empty when a number or the pattern is none or there would be a million files.
+/// The names from `first` to `last`. There are none when one of the texts is no number, the pattern is none, or there
+/// would be a million files.
 std::vector<std::string> numberedNames(std::string_view pattern, std::string_view first, std::string_view last,
                                        std::string_view step);
 

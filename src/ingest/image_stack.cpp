@@ -40,7 +40,7 @@ std::vector<fs::path> filesOf(const fs::path& folder) {
   return out;
 }
 
-// "s9" before "s10": digits compare as numbers.
+// Digits compare as numbers, so that "s9" comes before "s10".
 bool beforeByNumbers(const std::string& a, const std::string& b) {
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   std::size_t i = 0, j = 0;
@@ -63,7 +63,7 @@ bool beforeByNumbers(const std::string& a, const std::string& b) {
   return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
 }
 
-// All numbers there are, which must follow each other.
+// Finds all numbers that there are; they must follow each other.
 std::vector<fs::path> numberedFiles(const fs::path& path) {
   const std::vector<NumberedFile> files = listFrames(path);
   std::vector<fs::path> out;
@@ -206,7 +206,7 @@ std::unique_ptr<VoxelSource> openImageStack(const fs::path& path) {
     info.fileBytes += checkedFileSize(file);
   }
   const auto bytes = volumeBytes(info.dims, info.type);
-  // Nothing that images are packed with makes a hundred thousand pixels of a byte.
+  // No packing of images makes a hundred thousand pixels of one byte, so such a head is false.
   if (!bytes || *bytes / 100000 > info.fileBytes * 8)
     throw IoError(info.name + ": expected images that their files can hold, found " + describeBytes(info) + " in " +
                   std::to_string(info.fileBytes));

@@ -11,6 +11,7 @@
 #include "ingest/streams/dense_source.h"
 #include "ingest/streams/text_stream.h"
 #include "umbrick/core/error.h"
+// Own code for legacy VTK files, since VTK's vtkStructuredPointsReader reads whole arrays and not slabs.
 #include "umbrick/ingest/vtk_volume.h"
 
 namespace umbrick {
@@ -39,7 +40,7 @@ VoxelType legacyTypeOf(const fs::path& path, const std::string& text) {
   return found->second;
 }
 
-// The lines of the head up to the first scalars; what lies behind these is left alone.
+// Reads the lines of the head up to the first scalars. What lies behind the values of these is left alone.
 class LegacyHeadReader {
  public:
   explicit LegacyHeadReader(const fs::path& path) : path_(path), in_(path, std::ios::binary) {}
@@ -150,7 +151,7 @@ std::unique_ptr<VoxelSource> openLegacyVtk(const fs::path& path) {
   layout.type = info.type;
   layout.endian = head.ascii ? std::endian::native : std::endian::big;
   const std::int64_t left = info.fileBytes - head.bytes;
-  // A digit and a blank for each voxel, but for the last blank.
+  // Text has at least a digit and a blank for each voxel, but for the last blank.
   if (const std::int64_t least = head.ascii ? *bytes / voxelBytes(info.type) * 2 - 1 : *bytes; left < least)
     throw IoError(path.string() + ": expected " + describeBytes(info) + " after a header of " +
                   std::to_string(head.bytes) + ", found " + std::to_string(left) + (head.ascii ? " of text" : ""));

@@ -7,10 +7,12 @@
 
 namespace umbrick {
 
-/// Of "mm", "um", "micron", "cm", "m", "inch", ... in any case; nothing for what is no known unit of length.
+/// How long the unit is that is called "mm", "um", "micron", "cm", "m", "inch", ..., in any case; nothing for a name
+/// that is no known unit of length.
 std::optional<double> millimetresPer(std::string_view unit);
 
-/// "left-posterior-superior" and "LPS" are both "LPS"; so for RAS and LAS; other names stay as they are.
+/// The short name of a space: "LPS" for "left-posterior-superior" or "lps", and so for RAS and LAS. Other names stay as
+/// they are.
 std::string spaceName(std::string_view name);
 
 }  // namespace umbrick

@@ -1,4 +1,5 @@
-// The text at the head of a MetaImage.
+// The text at the head of a MetaImage. Own code, since ITK's MetaImageIO reads a part of a volume only where the
+// file is not compressed; a compressed one is held as a whole.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>

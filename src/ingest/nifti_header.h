@@ -1,4 +1,6 @@
-// The fixed header of NIfTI-1, NIfTI-2 and Analyze 7.5 files.
+// The fixed header of NIfTI-1, NIfTI-2 and Analyze 7.5 files. Own code, although niftilib can read a part of a volume
+// (nifti_read_subregion_image): it opens the file for each part anew, so a .nii.gz would be unpacked from its beginning
+// for each slab.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -9,7 +11,7 @@
 
 namespace umbrick {
 
-/// Fields by their names in the standards, in this machine's byte order, not checked.
+/// The fields are called as in the standards. They are in this machine's byte order and not checked.
 /// Sources: https://nifti.nimh.nih.gov/pub/dist/src/niftilib/nifti1.h, .../pub/dist/doc/nifti2.h
 struct NiftiHeader {
   enum class Kind { analyze, single, pair };  // voxels in an .img beside, in the file itself, in an .img beside
@@ -27,7 +29,7 @@ struct NiftiHeader {
   std::string description;
 };
 
-/// Unpacks on the way. @throw IoError  too short, or none of the three
+/// Reads the header, also of a packed file. @throw IoError  the file is too short or of none of the three kinds
 NiftiHeader readNiftiHeader(const std::filesystem::path& path);
 
 }  // namespace umbrick

@@ -1,3 +1,5 @@
+// Own code for the header of a NumPy array, which is one line of text: the libraries for it, such as cnpy, give the
+// array as one piece and not as slabs.
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/ingest/npy_volume.h"
 

@@ -1,4 +1,5 @@
-// The text at the head of a NRRD file.
+// The text at the head of a NRRD file. Own code, since the library for the format, teem, gives the voxels of a file by
+// nrrdLoad as one array and not as slabs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -14,7 +15,7 @@ namespace umbrick {
 
 enum class NrrdEncoding { raw, gzip, bzip2, text, hex };
 
-/// What the header says, checked; three axes, whatever the file had.
+/// What the header says. It is checked, and has three axes however many the file had.
 struct NrrdHeader {
   glm::i64vec3 dims{1};
   VoxelType type = VoxelType::u8;
@@ -22,9 +23,9 @@ struct NrrdHeader {
   bool bigEndian = false;
   std::int64_t lineSkip = 0, byteSkip = 0;       // byteSkip -1: the voxels are the last bytes of the file
   std::vector<std::filesystem::path> dataFiles;  // empty: the data follow the header
-  std::int64_t bytes = 0;                        // of the header, with its closing blank line
+  std::int64_t bytes = 0;                        // size of the header with its closing blank line
   glm::dmat4 indexToWorld{1};
-  std::map<std::string, std::string> metadata;  // what does not change voxels, and the key/value pairs
+  std::map<std::string, std::string> metadata;  // fields that do not change voxels, and the key/value pairs
 };
 
 /// @throw IoError  naming the file, the field, what was expected and what was found

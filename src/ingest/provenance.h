@@ -1,4 +1,4 @@
-// What every source says about where its voxels came from.
+// Metadata that every source has: which file its voxels came from, and of which format.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
@@ -8,7 +8,8 @@
 
 namespace umbrick {
 
-/// Adds the metadata source_format and source_file (its name without folders), in place of what the file says.
+/// Sets the metadata source_format and source_file (the name of the file without its folders). Keys of the same names
+/// that the file itself states are replaced.
 void addProvenance(VolumeInfo& info, const std::filesystem::path& path, std::string_view format);
 
 }  // namespace umbrick

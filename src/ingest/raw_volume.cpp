@@ -1,3 +1,4 @@
+// No library serves headerless files: there is nothing to parse, and the packings are those of streams/packed_stream.
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/ingest/raw_volume.h"
 

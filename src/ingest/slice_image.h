@@ -1,4 +1,4 @@
-// One grey image of a stack. libtiff and libpng are seen by the .cpp files alone.
+// One grey image of a stack. Only the .cpp files see libtiff and libpng.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace umbrick {
 
-/// The pages of one file.
+/// The pages of one image file.
 class SliceImages {
  public:
   virtual ~SliceImages() = default;

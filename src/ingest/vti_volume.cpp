@@ -17,6 +17,8 @@
 #include "ingest/streams/text_stream.h"
 #include "ingest/vtk_blocks.h"
 #include "umbrick/core/error.h"
+// Expat parses the XML; what it says and the blocks of the arrays are read by own code. VTK's vtkXMLImageDataReader can
+// read a part of an extent too, but the Debian package libvtk9-dev brings about 170 others.
 #include "umbrick/ingest/vtk_volume.h"
 
 namespace umbrick {
@@ -36,7 +38,7 @@ struct VtiArray {
   std::int64_t begin = 0, end = 0;  // bytes of its text in the file
 };
 
-// What the elements say, and where in the file the data lie: these may be large, so they stay there.
+// What the elements say, and where in the file the data lie. The data may be large, so they stay in the file.
 struct VtiHead {
   Attributes file, image;
   std::vector<Attributes> pieces;
@@ -157,7 +159,7 @@ std::array<double, n> numbers(const fs::path& path, const Attributes& of, const 
   return out;
 }
 
-// Checked to be integers of 32 bits, so that differences and doubles hold them.
+// The numbers are checked to be integers of 32 bits, so that their differences and doubles are exact.
 std::array<std::int64_t, 6> extentOf(const fs::path& path, const VtiHead& head) {
   if (head.pieces.size() != 1) failField(path, "pieces", "1", std::to_string(head.pieces.size()));
   const auto whole = numbers<6>(path, head.image, "WholeExtent", "");

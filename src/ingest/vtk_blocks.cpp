@@ -32,7 +32,7 @@ class BlockStream : public ByteStream {
       fail("bytes of a block", "1 to " + std::to_string(kMaxBlock), std::to_string(blockBytes_));
     expect("number of blocks", (expected + blockBytes_ - 1) / blockBytes_, blocks_);
     if (last != 0 || expected % blockBytes_ != 0) expect("bytes of the last block", expected % blockBytes_, last);
-    // One at a time: a false number of blocks ends with the file, not with the memory.
+    // Sizes are read one at a time, so that a false number of blocks ends with the file and not with the memory.
     for (std::uint64_t i = 0; i < blocks_; ++i) packedSizes_.push_back(number());
   }
 
@@ -78,7 +78,7 @@ class BlockStream : public ByteStream {
   void unpackNext() {
     const std::string field = "block " + std::to_string(next_ + 1);
     const std::uint64_t packedSize = packedSizes_[next_++];
-    // No packer needs more than this for what does not pack.
+    // No packer needs more than this for data that cannot be packed.
     if (packedSize > blockBytes_ + blockBytes_ / 8 + 4096)
       fail(field, "packed bytes for " + std::to_string(blockBytes_), std::to_string(packedSize));
     packed_.resize(static_cast<std::size_t>(packedSize));

@@ -66,7 +66,7 @@ TEST_CASE("A MetaImage data file may be called list", "[ingest]") {
   CHECK(file.read() == kFloats);
 }
 
-TEST_CASE("MetaImage geometry: a row of TransformMatrix is an axis of the image, units become mm", "[ingest]") {
+TEST_CASE("A row of TransformMatrix is an axis of a MetaImage, and units become mm", "[ingest]") {
   const MetaFile file;
   file.write(kMetaStart +
                  "TransformMatrix = 0 1 0 -1 0 0 0.5 0 1\nOffset = 10 -20 0.1\nCenterOfRotation = 5 5 5\n"

@@ -106,7 +106,7 @@ TEST_CASE("NIfTI slope and intercept are applied once", "[ingest]") {
   CHECK(readVolume(*source)[10] == -1150);
 }
 
-TEST_CASE("NIfTI geometry: sform before qform before pixdim, sheared and mirrored, in mm and RAS", "[ingest]") {
+TEST_CASE("NIfTI places voxels by the sform, else the qform, else pixdim, in mm and RAS", "[ingest]") {
   const NiftiFile file;
   // The sform is any matrix; in metres here.
   Header header;

@@ -42,7 +42,7 @@ void checkType(const NpyFile& file, const std::string& type) {
 
 }  // namespace
 
-TEST_CASE("NumPy arrays of every plain type and both byte orders", "[ingest]") {
+TEST_CASE("NumPy arrays of every plain type are read in either byte order", "[ingest]") {
   const NpyFile file;
   checkType<std::int8_t>(file, "i1");
   checkType<std::uint16_t>(file, "u2");

@@ -66,7 +66,7 @@ void waitUntil(const Condition& condition) {
 
 }  // namespace
 
-TEST_CASE("Volumes read ahead are the volumes", "[ingest]") {
+TEST_CASE("Volumes that are read ahead equal those that are read one by one", "[ingest]") {
   Counts counts, plain;
   ReadAhead ahead(volumes(counts, 3));
   for (int i = 0; i < 3; ++i) {

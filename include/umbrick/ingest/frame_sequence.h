@@ -1,4 +1,4 @@
-// Volumes in numbered files: the frames of a sequence.
+// The frames of a sequence: volumes in numbered files.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -16,11 +16,11 @@ struct NumberedFile {
 /// stands behind the name of an HDF5 file: "run/file_%04d.h5:/density" is a pattern.
 bool isFramePattern(const std::filesystem::path& path);
 
-/// The path of one frame. @pre isFramePattern(pattern), but for a file that is called so
+/// The path of one frame. @pre isFramePattern(pattern), or the only reason against it is a file of that very name
 std::filesystem::path framePath(const std::filesystem::path& pattern, std::int64_t number);
 
-/// The files and folders there are of a pattern, in ascending order; numbers may be missing.
-/// @throw IoError  none, or a folder that cannot be read  @throw InvalidArgument  not a pattern
+/// The files and folders whose names fit a pattern, in ascending order of their numbers, of which some may be missing.
+/// @throw IoError  there is none, or a folder that cannot be read  @throw InvalidArgument  not a pattern
 std::vector<NumberedFile> listFrames(const std::filesystem::path& pattern);
 
 }  // namespace umbrick

@@ -8,10 +8,10 @@
 
 namespace umbrick {
 
-/// Opens "file.h5:/group/dataset", or of "file.h5" the only dataset of three axes. Integers of 8 to 64 bits and floats
-/// of 16 to 64 bits, either byte order, contiguous or in chunks with every filter that libhdf5 has; two axes are one
-/// slice, axes of length 1 beyond three are dropped. Slabs are read one by one; chunks that reach into the next stay
-/// unpacked.
+/// Opens the dataset "file.h5:/group/dataset", or the only one of three axes for "file.h5". It may hold integers of 8
+/// to 64 bits or floats of 16 to 64 bits, in either byte order, contiguous or in chunks with every filter that libhdf5
+/// has. Two axes make one slice; axes of length 1 beyond three are dropped. Slabs are read one by one; a chunk that
+/// reaches into the next slab is unpacked once and kept.
 ///
 /// The last axis, which is the fastest, is x. A dataset states no place: voxels are 1 apart and the first is at 0.
 ///

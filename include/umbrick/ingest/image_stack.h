@@ -13,11 +13,11 @@ namespace umbrick {
 /// - a name with one number in it, "slice_%04d.tif": all files of that name, without a gap,
 /// - a name with * or ?: all files that fit, in the order of the numbers in their names,
 /// - a folder that holds images of one kind.
-/// Grey of 8 to 64 bits, integers or floats; strips, tiles and every compression that libtiff unpacks. Reduced pages
-/// (thumbnails) are passed over. One image is held at a time.
+/// Pixels are grey, integers or floats of 8 to 64 bits; a TIFF may have strips or tiles and every compression that
+/// libtiff unpacks. Its reduced pages (thumbnails) are passed over. One image is held at a time.
 ///
 /// Images state no place: pixels are 1 apart and the first is at 0, except that ImageJ's TIFF states unit, resolution
-/// and spacing. Values are as stored, also where white is zero, which is then kept as metadata.
+/// and spacing. Values are those that are stored, even where 0 stands for white; the metadata then say so.
 ///
 /// @throw IoError  no file, a gap in the numbers, unreadable, colour, or images of different sizes or types
 std::unique_ptr<VoxelSource> openImageStack(const std::filesystem::path& path);

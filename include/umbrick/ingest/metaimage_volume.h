@@ -8,14 +8,15 @@
 
 namespace umbrick {
 
-/// Opens a scalar volume of three axes, or of two as one slice; axes of size 1 beyond that are dropped. Binary of both
-/// byte orders, ASCII, compressed; voxels in the file itself (LOCAL), in one other file, in a LIST or in numbered
-/// files.
+/// Opens a scalar volume of three axes, or of two as one slice; axes of size 1 beyond that are dropped. The
+/// voxels may be binary of either byte order, ASCII or compressed, and lie in the file itself (LOCAL), in one other
+/// file, in a LIST of files or in numbered files.
 ///
 /// World space is what Offset, TransformMatrix (one axis of the image after the other) and ElementSpacing say, in mm
 /// where DistanceUnits is known; it is recorded as LPS, the convention of ITK, whose format this is.
 /// ElementToIntensityFunctionSlope and ...Offset are applied. CenterOfRotation moves nothing: Offset is the place of
-/// the first voxel. Format: https://itk.org/Wiki/ITK/MetaIO/Documentation
+/// the first voxel.
+/// Format: https://itk.org/Wiki/ITK/MetaIO/Documentation
 ///
 /// @throw IoError  a file is missing, short, long or malformed, or voxels have several channels
 std::unique_ptr<VoxelSource> openMetaImage(const std::filesystem::path& path);

@@ -9,12 +9,14 @@
 namespace umbrick {
 
 /// Opens .nii, .nii.gz or a pair of .hdr and .img (either name); a volume of three axes, or of two as one slice.
-/// Integers of 8 to 64 bits and floats of 32 and 64, in both byte orders; scl_slope and scl_inter are applied.
+/// Voxels may be integers of 8 to 64 bits or floats of 32 or 64, in either byte order. scl_slope and scl_inter are
+/// applied.
 ///
-/// World space is that of the sform where the file has one (sheared or not), else of the qform, else voxels pixdim
-/// apart with the first at 0; in mm whatever xyzt_units says (unknown is taken for mm). It is RAS where the file has a
-/// form, never converted. Analyze says nothing about its axes, so no space is recorded. Source:
-/// https://nifti.nimh.nih.gov/nifti-1/documentation/nifti1fields
+/// World space is that of the sform where the file has one, sheared or not, or else that of the qform. Without either,
+/// voxels lie pixdim apart and the first at 0. Lengths become mm, whichever unit xyzt_units names; an unknown one is
+/// taken for mm. The space is RAS where the file has a form, and never converted. Analyze says nothing about its axes,
+/// so no space is recorded.
+/// Source: https://nifti.nimh.nih.gov/nifti-1/documentation/nifti1fields
 ///
 /// @throw IoError  missing, short, long, malformed, several volumes or components, RGB, complex or 128-bit voxels
 std::unique_ptr<VoxelSource> openNifti(const std::filesystem::path& path);

@@ -8,8 +8,9 @@
 
 namespace umbrick {
 
-/// Opens an array of three axes, or of two as one slice; axes of length 1 beyond three are dropped. Format 1 to 3, both
-/// byte orders, integers of 8 to 64 bits, bool, floats of 16 to 64 bits; packed as raw files may be.
+/// Opens an array of three axes, or of two as one slice; axes of length 1 beyond three are dropped. The
+/// file may be of format version 1 to 3 and of either byte order, with integers of 8 to 64 bits, bool or floats of 16
+/// to 64 bits, and packed by whatever a raw file may be packed by.
 ///
 /// x is the axis that is fastest in the file, so that both orders stream: an array written in C order is indexed
 /// [z, y, x], one in Fortran order [x, y, z]. An array states no place: voxels are 1 apart and the first is at 0.

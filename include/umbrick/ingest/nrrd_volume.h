@@ -8,11 +8,13 @@
 
 namespace umbrick {
 
-/// Opens a scalar volume of three axes, or of two as one slice; axes of size 1 beyond that are dropped. Encodings raw,
-/// gzip, bzip2, text and hex; data in the file itself, in one other file, in a list of files or in numbered files.
+/// Opens a scalar volume of three axes, or of two as one slice; axes of size 1 beyond that are dropped. The
+/// voxels may be encoded as raw, gzip, bzip2, text or hex, and lie in the file itself, in one other file, in a list of
+/// files or in numbered files.
 ///
-/// World space is the space of the file (`space`: LPS, RAS, ...), not converted; its name and the other fields of the
-/// header that do not change voxels are kept as metadata. Lengths become mm where their units are known.
+/// World space is the space that the file names in its field `space` (LPS, RAS, ...); it is not converted. Its name and
+/// the other fields of the header that do not change voxels are kept as metadata. Lengths become mm where their units
+/// are known.
 /// Format: https://teem.sourceforge.net/nrrd/format.html
 ///
 /// @throw IoError  a file is missing, short, long or malformed, or it holds what is not read: several components per

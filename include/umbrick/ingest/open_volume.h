@@ -14,10 +14,10 @@
 namespace umbrick {
 
 struct OpenOptions {
-  std::optional<RawOptions> raw = {};      // the file is headerless raw, whatever its name
-  std::string series = {};                 // of DICOM: UID, or number in the list of series, from 1
-  std::optional<glm::dvec3> spacing = {};  // world units between voxel centres, of formats that state no place
-  std::optional<glm::dvec3> origin = {};   // world position of the centre of the first voxel, of the same formats
+  std::optional<RawOptions> raw = {};      // when given, the file is read as headerless raw, whatever its name
+  std::string series = {};                 // of DICOM: the UID of a series, or its number in the list, from 1
+  std::optional<glm::dvec3> spacing = {};  // world units between voxel centres, for formats that state no place
+  std::optional<glm::dvec3> origin = {};   // world position of the first voxel's centre, for the same formats
 };
 
 /// No format is known by the name or the first bytes of the file: OpenOptions::raw has to say what its bytes mean.
@@ -25,7 +25,7 @@ struct UnknownFormat : InvalidArgument {
   using InvalidArgument::InvalidArgument;
 };
 
-/// Opens a volume by the extension of its name, or else by its first bytes.
+/// Opens a volume. Its format is told by the extension of its name, or else by its first bytes.
 /// @throw UnknownFormat    no format is known by that name or those bytes, and `raw` is not given
 /// @throw InvalidArgument  spacing or origin for a format that states its own, or not positive and finite; the formats
 ///                         throw it too
@@ -37,10 +37,10 @@ std::optional<std::string> formatOfName(const std::filesystem::path& path);
 
 struct FormatRow {
   std::string name;
-  std::vector<std::string> extensions;  // with their dot, lower case; empty for formats without
-  std::string reads;                    // in one line
+  std::vector<std::string> extensions;  // in lower case, with their dot
+  std::string reads;                    // what is read of the format, in one line
 };
-/// What openVolume reads.
+/// The formats that openVolume reads.
 std::vector<FormatRow> listFormats();
 
 }  // namespace umbrick

@@ -14,14 +14,15 @@ struct RawOptions {
   glm::i64vec3 dims{0};  // voxels along x (fastest), y, z
   VoxelType type = VoxelType::u8;
   std::endian endian = std::endian::little;
-  std::int64_t headerBytes = 0;  // skipped at the start, after unpacking
-  std::optional<int> bitsStored =
-      {};                 // of integers; bits above them are flags and masked off, signed types sign-extended
+  std::int64_t headerBytes = 0;  // these are skipped at the start of the unpacked file
+  // The bits of an integer that hold its value. Those above are flags and masked off; signed types are sign-extended.
+  std::optional<int> bitsStored = {};
   glm::dvec3 spacing{1};  // world units between voxel centres
   glm::dvec3 origin{0};   // world position of the centre of voxel (0, 0, 0)
 };
 
-/// Opens a raw file, plain or packed by gzip, xz, zstd or bzip2 (told by its first bytes, unless the plain size fits).
+/// Opens a raw file, plain or packed by gzip, xz, zstd or bzip2. A file of just the size that the options ask for is
+/// plain; of others the first bytes tell how they are packed.
 /// The size of a plain file is checked at once, that of a packed one as it is read.
 /// @throw InvalidArgument  dims outside [1, 2^31), spacing not positive and finite, origin not finite, headerBytes < 0,
 ///                         bitsStored outside [1, width of the type] or for floats

@@ -1,4 +1,4 @@
-// Volumes read one after the other in a thread of their own, while those before are used.
+// Volumes that a thread reads one after the other, while the caller still uses those before.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -17,20 +17,20 @@ class ReadAhead {
  public:
   using Open = std::function<std::unique_ptr<VoxelSource>()>;
 
-  /// @param volumes  each is called in the thread, and what it returns ends there as soon as it is read
+  /// @param volumes  opens one volume each; it is called in the thread, which drops the volume once it is read
   explicit ReadAhead(std::vector<Open> volumes, std::int64_t maxBytes = std::int64_t(1) << 28);
-  /// Ends the thread, when the slab at hand has been read.
+  /// Waits until the slab at hand has been read, and ends the thread.
   ~ReadAhead();
   ReadAhead(const ReadAhead&) = delete;
   ReadAhead& operator=(const ReadAhead&) = delete;
 
-  /// Waits until the next volume is open. It gives the same slabs as that would, and throws the same errors where they
-  /// were met. What is left of the one before is dropped.
+  /// Waits until the next volume is open. The source that is returned gives the same slabs as that volume would, and
+  /// throws the same errors at the slabs where they were met. What is left of the volume before is dropped.
   /// @return a source that must not outlive this  @throw Error  as the volume does when it is opened
   /// @pre there are more volumes
   std::unique_ptr<VoxelSource> next();
 
-  struct Queue;  // of what has been read
+  struct Queue;  // what has been read and waits to be used
 
  private:
   std::unique_ptr<Queue> queue_;

@@ -15,46 +15,48 @@ namespace umbrick {
 
 enum class VoxelType { u8, i8, u16, i16, u32, i32, i64, u64, f16, f32, f64 };
 
-/// "u8" ... "f64"
+/// The name of a type, "u8" to "f64".
 std::string_view voxelTypeName(VoxelType type);
 /// The type of that name, or nothing.
 std::optional<VoxelType> voxelTypeFromName(std::string_view name);
-/// Bytes of one voxel.
+/// How many bytes one voxel takes.
 int voxelBytes(VoxelType type);
-/// Not an integer.
+/// True for f16, f32 and f64.
 bool isFloat(VoxelType type);
 
 struct VolumeInfo {
   std::string name;                // what messages call the source, usually its file name
   glm::i64vec3 dims{0};            // voxels along x (fastest), y, z
-  glm::dmat4 indexToWorld{1};      // voxel centres at integers; mm where the file states its unit of length
-  VoxelType type = VoxelType::u8;  // as stored
-  /// source_format and source_file; where the file states them: space (which way the axes of the world point: "LPS" is
-  /// towards left, posterior and superior of the patient, "RAS" right, anterior, superior; never converted),
-  /// length_unit, modality, rescale (slope and intercept, already applied); and what else is format's own.
+  glm::dmat4 indexToWorld{1};      // voxel centres lie at integers; the world is in mm where the file states a unit
+  VoxelType type = VoxelType::u8;  // of the voxels as they are stored
+  /// What the file says beside its voxels. Every source gives source_format and source_file. Where the file states
+  /// them, there are length_unit, modality, rescale (a slope and an intercept that are already applied) and space,
+  /// which says which way the axes of the world point: "LPS" is towards left, posterior and superior of the patient,
+  /// "RAS" towards right, anterior and superior. Spaces are never converted. Other keys belong to one format.
   std::map<std::string, std::string> metadata;
-  std::int64_t fileBytes = 0;  // of the files that hold it, packed as they are
+  std::int64_t fileBytes = 0;  // size of all files that hold the volume, packed as they are
 };
 
-/// Slabs of a dense volume, read in order of z.
+/// A dense volume that is read as slabs, in order of z.
 class VoxelSource {
  public:
   virtual ~VoxelSource() = default;
   const VolumeInfo& info() const { return info_; }
   /// The next `count` slices, x fastest, as 32-bit float: out.size() == dims.x * dims.y * count.
   /// With the last slice the source also checks that nothing is left over.
-  /// @return the largest error of the conversion to float in this slab (0 but for integers beyond 24 bits, f64 and
-  ///         rescaled values)
+  /// @return the largest error that the conversion to float made in this slab; it can only differ from 0 for integers
+  ///         beyond 24 bits, f64 and rescaled values
   /// @throw IoError  the file ends early or late (expected and found bytes) or cannot be decoded
   virtual double readSlab(std::int64_t count, std::span<float> out) = 0;
   /// Moves past the next `count` slices, as if they had been read. @throw IoError
   virtual void skipSlices(std::int64_t count);
-  /// Whether that takes no longer the more is skipped: then a part of the volume can be looked at quickly.
+  /// True when skipping many slices takes no longer than skipping one: then a part of the volume is reached quickly.
   virtual bool skipsFast() const { return false; }
   /// The type of what readStored gives, one of u8, i8, u16, i16 and f32; nothing where there is only readSlab.
   virtual std::optional<VoxelType> storedType() const { return std::nullopt; }
-  /// As readSlab, but the values as they are stored, in the byte order of this machine and without flag bits. They are
-  /// what readSlab gives, without an error: out.size() == dims.x * dims.y * count * voxelBytes(*storedType()).
+  /// Reads as readSlab does, but gives the values in their stored type, in the byte order of this machine and without
+  /// flag bits. They equal those of readSlab exactly.
+  /// out.size() == dims.x * dims.y * count * voxelBytes(*storedType())
   virtual void readStored(std::int64_t count, std::span<std::byte> out);
 
  protected:

@@ -9,10 +9,11 @@
 namespace umbrick {
 
 /// Opens an image with one scalar array on its points or its cells: the one that the file names as its scalars, or else
-/// the only one of one component. Voxels of cells lie at their centres. Origin, spacing, direction and the start of the
-/// extent become the transform.
-/// - .vti: ascii, base64 and raw, inline and appended; plain or in blocks of zlib, LZ4 or LZMA; one piece
-/// - .vtk: ASCII and binary
+/// the only one that has one component. Values of cells become voxels at the centres of the cells. Origin, spacing,
+/// direction and the start of the extent become the transform.
+/// - A .vti may hold its array as ascii, base64 or raw, inline or appended, plain or in blocks of zlib, LZ4 or
+///   LZMA. It must have one piece.
+/// - A .vtk may be ASCII or binary.
 /// Format: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
 ///
 /// @throw IoError  missing, short, malformed, another kind of dataset, several pieces, vectors

@@ -26,7 +26,7 @@ namespace {
 
 using gdcm::Tag;
 
-// A data set, or one in a sequence of it.
+// The tags of a data set, or of an item in a sequence of it.
 class Tags {
  public:
   Tags(const fs::path& path, const gdcm::DataSet& set) : path_(path), set_(&set) {}
@@ -41,7 +41,7 @@ class Tags {
   }
   bool has(Tag tag) const { return !text(tag).empty(); }
 
-  /// Numbers written as text, between backslashes.
+  /// Numbers that are written as text, with backslashes between them.
   std::optional<std::vector<double>> numbers(Tag tag, const char* name, std::size_t count) const {
     const std::string all = text(tag);
     if (all.empty()) return std::nullopt;
@@ -73,7 +73,7 @@ class Tags {
     return number;
   }
 
-  /// The items of a sequence; none where there is no such.
+  /// The items of a sequence, or none where there is no such sequence.
   std::vector<gdcm::DataSet> items(Tag tag) const {
     std::vector<gdcm::DataSet> out;
     if (!set_->FindDataElement(tag)) return out;
@@ -88,7 +88,7 @@ class Tags {
   const gdcm::DataSet* set_;
 };
 
-// Plane position, plane orientation, pixel measures.
+// The functional groups that state the plane of a frame: its position, its orientation and the measures of its pixels.
 constexpr std::array<std::pair<std::uint16_t, std::uint16_t>, 3> kPlaneGroups{
     {{0x0020, 0x9113}, {0x0020, 0x9116}, {0x0028, 0x9110}}};
 
@@ -108,7 +108,7 @@ void readRescale(const Tags& tags, DicomFrame& frame) {
   frame.intercept = tags.number1(Tag(0x0028, 0x1052), "RescaleIntercept", frame.intercept);
 }
 
-// Functional groups of enhanced images: those of all frames, then those of each.
+// Reads the functional groups of an enhanced image. Those that all frames share come first, then those of each frame.
 void readGroups(const fs::path& path, const gdcm::DataSet& set, DicomFrame& frame, double& sliceDistance) {
   const Tags groups(path, set);
   for (const auto& [group, element] : kPlaneGroups)
@@ -189,7 +189,7 @@ void readSeries(const Tags& tags, DicomFile& file) {
   file.seriesNumber = integer(tags.text(kSeriesNumber)).value_or(0);
 }
 
-// One JPEG stream for each frame, or all fragments of the only one.
+// Each fragment is the JPEG stream of one frame, or all fragments together are that of the only frame.
 void checkJpeg(const DicomFile& file, const gdcm::DataElement& pixels) {
   const gdcm::SequenceOfFragments* fragments = pixels.GetSequenceOfFragments();
   if (!fragments) return;
@@ -228,7 +228,7 @@ void giveTo(gdcm::Reader& reader, std::ifstream& in) {
   reader.SetStream(in);
 }
 
-// Runs `read`, whose GDCM prints nothing meanwhile and whose exceptions become ours.
+// Runs `read` with the messages of GDCM turned off, and makes its exceptions ours.
 template <class Read>
 auto quietly(const fs::path& path, const Read& read) {
   gdcm::Trace::DebugOff();
@@ -259,7 +259,7 @@ void readImage(const DicomStructure& structure, const Tags& tags, DicomFile& fil
   const std::int64_t bytes = file.rows * file.columns * *frames * voxelBytes(file.layout.type);
   if (structure.pixelOffset < 0) failField(file.path, "PixelData", "the element", "");
   if (!structure.encapsulated && tags.unsignedShort(Tag(0x0028, 0x0100), 0) != 12) {
-    // A byte may have been added to make the length even.
+    // DICOM adds a byte where the length would be odd.
     if (structure.pixelBytes < bytes || structure.pixelBytes > bytes + 1)
       throw IoError(file.path.string() + ": PixelData: expected " + std::to_string(file.columns) + " x " +
                     std::to_string(file.rows) + " x " + std::to_string(*frames) + " " +

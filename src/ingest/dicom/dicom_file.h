@@ -1,4 +1,10 @@
-// One DICOM file: what its tags say about its frames, and its pixels. GDCM is seen by the .cpp alone.
+// One DICOM file: what its tags say about its frames, and its pixels. Only the .cpp sees GDCM.
+//
+// DCMTK 3.6.7 was tried beside GDCM 3.0.21 on 13 small files and 2080 damaged copies of them. DCMTK never crashed and
+// took at most 24 MB, while GDCM alone ended by an assertion on 4 of the first 17 files, which dicom_structure.h is
+// for: of 151 of these files the reader with its checks read or refused every one. But DCMTK as Debian builds it
+// decodes no JPEG 2000, and it gave 36 damaged files pixels that are not as many as their tags say, so checks would be
+// needed as well.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>

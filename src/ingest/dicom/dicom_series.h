@@ -1,4 +1,5 @@
 // Which series a file or a folder holds, and the tags of their files.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <memory>

@@ -19,7 +19,7 @@ struct DicomStructure {
 
 /// Walks all elements, also of sequences, of the file at `path` that `in` has open. Source: DICOM PS3.5 7.1 to 7.5,
 /// PS3.10 7.1
-/// @throw IoError  no DICOM file, an element that is none or that ends beyond what holds it, or a deflated data set
+/// @throw IoError  the file is no DICOM, an element is none or ends beyond what holds it, or the data set is deflated
 DicomStructure readDicomStructure(const std::filesystem::path& path, std::istream& in);
 
 }  // namespace umbrick

@@ -33,7 +33,7 @@ std::string text(const glm::dvec3& v) {
   return out.str();
 }
 
-// What all slices have in common must not differ.
+// All slices must have the same size and type.
 void checkAlike(const DicomFile& a, const DicomFile& b) {
   const auto size = [](const DicomFile& file) {
     return std::to_string(file.columns) + " x " + std::to_string(file.rows);

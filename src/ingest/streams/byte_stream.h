@@ -1,4 +1,4 @@
-// Bytes in order.
+// A stream of bytes that are read in order, from a file or from another stream.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -14,16 +14,16 @@ namespace umbrick {
 class ByteStream {
  public:
   virtual ~ByteStream() = default;
-  /// Fills `out`; less only at the end. @return bytes read  @throw IoError
+  /// Fills `out`, or less of it only at the end of the stream. @return bytes read  @throw IoError
   virtual std::size_t read(std::span<std::byte> out) = 0;
   /// @return bytes skipped, less than `count` only at the end
   virtual std::int64_t skip(std::int64_t count);
-  /// Whether that takes no longer the more is skipped.
+  /// True when skipping many bytes takes no longer than skipping one.
   virtual bool skipsFast() { return false; }
 };
 
-/// Checks that `path` can be opened and is not a directory. @return its size, or -1 for pipes and devices @throw
-/// IoError
+/// Checks that `path` exists and is not a directory. @return its size, or -1 for pipes and devices
+/// @throw IoError
 std::int64_t checkedFileSize(const std::filesystem::path& path);
 
 std::unique_ptr<ByteStream> openPlain(const std::filesystem::path& path, std::int64_t offset = 0);
@@ -31,7 +31,7 @@ std::unique_ptr<ByteStream> openPlain(const std::filesystem::path& path, std::in
 /// The first `count` bytes of what is left of a stream.
 std::unique_ptr<ByteStream> firstBytes(std::unique_ptr<ByteStream> stream, std::int64_t count);
 
-/// One after the other, each opened when the one before has ended: a volume may lie in thousands of files.
+/// Streams one after the other. Each is opened when the one before has ended: a volume may lie in thousands of files.
 std::unique_ptr<ByteStream> joinStreams(std::vector<std::function<std::unique_ptr<ByteStream>()>> parts);
 
 }  // namespace umbrick

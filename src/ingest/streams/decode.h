@@ -1,4 +1,4 @@
-// Stored voxels to float.
+// Turns voxels as they are stored into floats.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
@@ -13,7 +13,7 @@ namespace umbrick {
 struct VoxelLayout {
   VoxelType type = VoxelType::u8;
   std::endian endian = std::endian::little;
-  int bitsStored = 0;  // 0: all; else bits above them are masked off, signed types sign-extended from the last one
+  int bitsStored = 0;  // 0: all; else the bits above are masked off and signed types sign-extended from the last one
   double slope = 1, intercept = 0;  // value = slope * stored + intercept
 };
 
@@ -21,7 +21,7 @@ struct VoxelLayout {
 /// @return the largest |value - float| of the finite values
 double decodeVoxels(const VoxelLayout& layout, std::span<const std::byte> in, std::span<float> out);
 
-/// The same values in place, stored as this machine stores them and without flag bits.
+/// Makes the stored values those of this machine, in place: its byte order, and no flag bits.
 void normaliseVoxels(const VoxelLayout& layout, std::span<std::byte> voxels);
 
 }  // namespace umbrick

@@ -1,4 +1,4 @@
-// Slabs out of a stream of bytes, whatever file format they came from.
+// A volume as a stream of bytes, read as slabs. Every format whose voxels lie in one dense array ends here.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
@@ -18,11 +18,12 @@ std::optional<std::int64_t> volumeBytes(const glm::i64vec3& dims, VoxelType type
 /// "256 x 256 x 94 u16 = 12320768 bytes"
 std::string describeBytes(const VolumeInfo& info);
 
-/// The voxels of a file that holds them all, from byte `offset` of the unpacked file on; packing by the first bytes.
+/// Opens a file that holds all voxels, from byte `offset` of the unpacked file on. The first bytes tell its packing.
 /// @throw IoError  a plain file of another size, or a packed one too small to hold so much
 std::unique_ptr<ByteStream> openVoxels(const VolumeInfo& info, const std::filesystem::path& path, std::int64_t offset);
 
-/// @throw IoError  gzip or zlib data of `packedBytes` cannot become `bytes`: told before anything is allocated for them
+/// Refuses gzip or zlib data that are too small to become so many voxels, before anything is allocated for these.
+/// @throw IoError
 void checkDeflateRatio(const std::filesystem::path& path, const VolumeInfo& info, std::int64_t packedBytes);
 
 /// "-1000 + 2.5 * stored", or nothing when there is nothing to rescale

@@ -1,4 +1,4 @@
-// Files packed by gzip, zlib, xz, zstd or bzip2, unpacked as they are read.
+// Unpacks files of gzip, zlib, xz, zstd or bzip2 while they are read.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string_view>
@@ -9,7 +9,7 @@ namespace umbrick {
 
 enum class Packing { none, gzip, zlib, xz, zstd, bzip2 };
 
-/// By the first bytes at `offset`: all but zlib, whose streams have no magic bytes.
+/// The packing that the first bytes at `offset` tell. zlib is never found, since its streams have no magic bytes.
 Packing packingOf(const std::filesystem::path& path, std::int64_t offset = 0);
 
 /// "gzip" ... "bzip2"; "plain" for none

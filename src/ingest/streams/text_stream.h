@@ -1,4 +1,4 @@
-// Voxels written as text, as the bytes that they stand for.
+// Turns voxels that are written as text into the bytes that they stand for.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
