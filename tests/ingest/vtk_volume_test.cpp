@@ -190,7 +190,8 @@ TEST_CASE("Malformed VTK ImageData is refused with the field and both values", "
   }
 }
 
-TEST_CASE("Legacy VTK files of structured points are read as ASCII and binary, and other kinds are refused", "[ingest]") {
+TEST_CASE("Legacy VTK files of structured points are read as ASCII and binary, and other kinds are refused",
+          "[ingest]") {
   VtkFile file;
   file.path = file.folder.path() / "v.vtk";
   const auto head = [](const std::string& form, const std::string& data) {
