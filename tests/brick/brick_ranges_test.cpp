@@ -218,8 +218,8 @@ TEST_CASE("Bricks up to the last 32-bit coordinate work, and those beyond are re
   bricks->read({kLargest - 63, 0, 0}, voxels);
   CHECK(std::count(voxels.begin(), voxels.end(), 1.0f) == 1);
 
-  CHECK_THROWS_AS(brickGrid(makeVoxels({{{0, kLargest - 5, 0}, 1.0f}})), InvalidArgument);
-  CHECK_THROWS_WITH(brickGrid(makeVoxels({{{0, kLargest - 5, 0}, 1.0f}})), Catch::Contains("y = 2147483648"));
+  CHECK_THROWS_AS(brickGrid(makeVoxels({{{0, kLargest - 5, 0}, 1.0f}}), {16}), InvalidArgument);
+  CHECK_THROWS_WITH(brickGrid(makeVoxels({{{0, kLargest - 5, 0}, 1.0f}}), {16}), Catch::Contains("y = 2147483648"));
   CHECK_THROWS_WITH(brickGrid(makeVoxels({{{0, 0, kLargest}, 1.0f}})), Catch::Contains("z = 2147483648"));
   CHECK_THROWS_WITH(brickGrid(makeVoxels({{{-kLargest - 1, 0, 0}, 1.0f}})), Catch::Contains("x = -2147483649"));
 }

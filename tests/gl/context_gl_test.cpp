@@ -10,8 +10,10 @@
 #include <iostream>
 #include <string>
 
+#include "gl/shared_library.h"
 #include "support/field_bricks.h"
 #include "support/gl_fixture.h"
+#include "umbrick/gl/functions.h"
 #include "umbrick/gl/objects.h"
 #include "umbrick/shade/slice_renderer.h"
 
@@ -96,6 +98,28 @@ TEST_CASE("A context says what it is, and has OpenGL 4.5", "[gl]") {
     CHECK(context->maxTextureEdge3d() >= 2048);
     clearAndCheck(*context, 0.25f);
   }
+}
+
+// Another library made the context and keeps it: here it is one of ours, taken for a foreign one.
+TEST_CASE("A foreign context is adopted, draws the same picture and is left alive", "[gl]") {
+  const auto made = testContext(Backend::osmesa);
+  if (!made) return;
+  const Image expected = samplePicture(*made);
+  const SharedLibrary library({"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"});
+  const auto find = library.function<GlProcedure (*)(const char*)>("OSMesaGetProcAddress");
+  int madeCurrent = 0;
+  {
+    const auto foreign = adoptGlContext(find, [&] { ++madeCurrent; });
+    CHECK(foreign->backend() == Backend::foreign);
+    CHECK(foreign->renderer() == made->renderer());
+    CHECK(foreign->maxTextureEdge3d() == made->maxTextureEdge3d());
+    CHECK(maxDifference(samplePicture(*foreign), expected) == 0);
+    foreign->makeCurrent();
+    CHECK(madeCurrent == 1);
+  }
+  CHECK(maxDifference(samplePicture(*made), expected) == 0);
+  CHECK_THROWS_WITH(adoptGlContext([](const char*) -> GlProcedure { return nullptr; }), Contains("has no gl"));
+  CHECK_THROWS_WITH(createGlContext(Backend::foreign), Contains("adopted"));
 }
 
 TEST_CASE("OSMesa and EGL draw the same picture", "[gl]") {
