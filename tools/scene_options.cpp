@@ -123,7 +123,7 @@ void addFieldOptions(CLI::App& command, SceneOptions& options, std::string_view 
           ->group(std::string(field.group));
 }
 
-// What is wrong with a field that an option has set is wrong usage, and is said by the option's name.
+// What is wrong with a field that an option has set is said by the option's name.
 void validate(const SceneOptions& options, const Scene& scene) {
   try {
     validateScene(scene);
@@ -131,7 +131,7 @@ void validate(const SceneOptions& options, const Scene& scene) {
     const std::string message = error.what();
     const SceneField* field = findSceneField(message.substr(0, message.find(':')));
     if (!field || !options.has(field->option)) throw;
-    throw UsageError("--" + std::string(field->option) + message.substr(message.find(':')));
+    throw InvalidArgument("--" + std::string(field->option) + message.substr(message.find(':')));
   }
 }
 
