@@ -7,7 +7,9 @@
 #include <sstream>
 
 #include "command.h"
+#include "convert_source.h"
 #include "formats.h"
+#include "umbrick/core/names.h"
 #include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/ingest/open_volume.h"
 #include "validators.h"
@@ -16,225 +18,231 @@ namespace umbrick::tools {
 namespace {
 namespace fs = std::filesystem;
 
+constexpr Name<VdbCodec> kCodecs[] = {{"blosc", VdbCodec::blosc}, {"zip", VdbCodec::zip}, {"none", VdbCodec::none}};
+constexpr Name<NanoValues> kQuantise[] = {
+    {"4", NanoValues::bits4}, {"8", NanoValues::bits8}, {"16", NanoValues::bits16}, {"n", NanoValues::adaptive}};
+
 CLI::Validator voxelType() {
   return CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "i64", "u64", "f16", "f32", "f64"});
 }
 
-void addRawOptions(CLI::App& command, const std::shared_ptr<ConvertOptions>& options) {
+void addRawOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
   const std::string raw = "Headerless raw";
-  command.add_option("--dims", options->dims, "voxels along x (fastest), y and z")->expected(3)->group(raw);
-  command.add_option("--type", options->type, "of a voxel: u8, i8, u16, i16, u32, i32, i64, u64, f16, f32, f64")
+  app.add_option("--dims", command->dims, "voxels along x (fastest), y and z")->expected(3)->group(raw);
+  app.add_option("--type", command->type, "of a voxel: u8, i8, u16, i16, u32, i32, i64, u64, f16, f32, f64")
       ->check(voxelType())
       ->group(raw);
-  command.add_option("--endian", options->endian, "little or big")
+  app.add_option("--endian", command->endian, "little or big")
       ->check(CLI::IsMember({"little", "big"}))
       ->capture_default_str()
       ->group(raw);
-  command.add_option("--header-bytes", options->headerBytes, "to skip at the start, after unpacking")
+  app.add_option("--header-bytes", command->headerBytes, "to skip at the start, after unpacking")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->group(raw);
-  command.add_option("--bits-stored", options->bitsStored, "of an integer; bits above are masked off [all]")
+  app.add_option("--bits-stored", command->bitsStored, "of an integer; bits above are masked off [all]")
       ->check(CLI::PositiveNumber)
       ->group(raw);
-  command
-      .add_option("--spacing", options->spacing,
-                  "world units between voxel centres along x, y, z; also of other formats that state none [1 1 1]")
+  app.add_option("--spacing", command->spacing,
+                 "world units between voxel centres along x, y, z; also of other formats that state none [1 1 1]")
       ->group(raw);
-  command
-      .add_option("--origin", options->origin,
-                  "world position of the centre of voxel (0, 0, 0); also of other formats that state none [0 0 0]")
+  app.add_option("--origin", command->origin,
+                 "world position of the centre of voxel (0, 0, 0); also of other formats that state none [0 0 0]")
       ->group(raw);
 }
 
-// What the options that name values say, as the library takes it.
-void setLimits(ConvertOptions& options) {
-  if (!options.background.empty() && options.background != "auto")
-    options.build.background = static_cast<float>(std::strtod(options.background.c_str(), nullptr));
+// What is read and written.
+void addFileOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
+  app.add_option("input", command->inputs,
+                 "a volume, told by its name or first bytes (--list-formats), or headerless raw (--dims, --type); "
+                 "several become grids of one file, numbered ones (frame_%04d.nrrd) a file each, where the output is "
+                 "numbered too")
+      ->required();
+  addListFormats(app);
+  app.add_option("--frames", command->frames,
+                 "of a sequence, where input and output have a number in their names (frame_%04d.nrrd, out_%04d.vdb): "
+                 "A, A-B or A-B:step [all there are]");
+  app.add_option("-o,--output", command->output,
+                 "the file to write: .vdb, .nvdb (NanoVDB), or the dense box of the active voxels, up to 16 GiB, as "
+                 ".nrrd or as .mhd with a .raw beside it, in the type of the input if it holds all values, else as "
+                 "32-bit float");
+}
+
+void addPackingOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
+  app.add_option("--codec", command->codec, "of a .vdb: blosc, zip or none [blosc]")
+      ->check(CLI::IsMember(listNames(kCodecs)));
+  app.add_option("--quantise", command->quantise,
+                 "of a .nvdb: bits of a value, between the smallest and the largest of its leaf: 4, 8, 16, or n, in "
+                 "each leaf as few as keep --max-error; the loss is measured and printed [32-bit floats]")
+      ->check(CLI::IsMember(listNames(kQuantise)));
+}
+
+// Which grids, and what they are called.
+void addGridOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
+  app.add_option("--name", command->options.names,
+                 "name of the grid, once for each volume; not for .vdb and .nvdb, whose grids have names [density; of "
+                 "several, the stems of the file names]")
+      ->allow_extra_args(false);
+  app.add_option("--unit", command->options.units,
+                 "unit of the values, kept as value_unit in the metadata of the grid; once, or once for each input "
+                 "[none]")
+      ->allow_extra_args(false);
+  app.add_option("--grid", command->gridName,
+                 "of a .vdb or .nvdb: only this grid, \"name\" or \"name[1]\" [all scalar ones]");
+  app.add_option("--series", command->options.source.open.series,
+                 "of a DICOM folder: the UID of a series, or its number in the list that is printed [the only one]");
+}
+
+// Which values stay.
+void addValueOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
+  const CLI::Validator finite = finiteNumber();
+  const CLI::Validator autoOrFinite(
+      [](const std::string& value) { return value == "auto" ? std::string() : finiteNumber()(value); }, "");
+  app.add_option("--background", command->background,
+                 "value of what is left out, grid units; auto: the value that most voxels on the faces of the volume "
+                 "have, for which the input is read once before [0, or that of the .vdb or .nvdb]")
+      ->check(autoOrFinite);
+  app.add_option("--tolerance", command->options.build.tolerance,
+                 "leave out voxels this close to the background and merge what is this close, grid units")
+      ->check(nonNegativeNumber())
+      ->capture_default_str();
+  CLI::Option* threshold = app.add_option("--threshold", command->threshold,
+                                          "voxels at and below this value become background, grid units [none]")
+                               ->check(finite);
+  CLI::Option* clipBelow = app.add_option("--clip-below", command->options.build.clipBelow,
+                                          "as --threshold, but voxels at the value itself stay, grid units [none]")
+                               ->check(finite)
+                               ->excludes(threshold);
+  app.add_option("--range", command->range,
+                 "lowest and highest value that stay, both included; the rest becomes background, grid units [all]")
+      ->check(finite)
+      ->excludes(threshold, clipBelow);
+}
+
+// Which voxels stay.
+void addPartOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
+  app.add_option("--mask", command->options.source.mask,
+                 "a volume of the same size and place, or a .vdb: voxels where it is 0 become background; headerless "
+                 "raw has the same --dims");
+  app.add_option("--mask-type", command->maskType, "of a voxel of a headerless mask, as --type")
+      ->check(voxelType())
+      ->capture_default_str();
+  app.add_option(
+      "--crop", command->crop,
+      "only the voxels from x0 y0 z0 to x1 y1 z1, both included; they stay where they are in the world; of a .vdb or "
+      ".nvdb by its indices");
+  app.add_option(
+         "--resample", command->resample,
+         "spacing of the voxels to be made, one for all axes or one for each, world units (mm, where the file states "
+         "its unit): each has the mean of what it covers, so that the integral stays; the last ones along an axis may "
+         "reach beyond the volume and have the mean of their part inside; stands behind the input [as in the file]")
+      ->expected(1, 3)
+      ->check(positiveNumber());
+}
+
+// What else may be lost.
+void addLossOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
+  CLI::Option* half = app.add_flag("--half", command->options.build.half, "save 16-bit floats; their error counts");
+  CLI::Option* step = app.add_option("--step", command->options.build.step,
+                                     "round values to multiples of this, grid units, so that they pack better; best "
+                                     "a power of two [not rounded]")
+                          ->check(positiveNumber());
+  app.add_option("--max-error", command->options.build.maxError,
+                 "no voxel that is kept or left out by tolerance is off by more, grid units: picks tolerance, half "
+                 "floats and steps, or with --quantise n tolerance and bits")
+      ->check(nonNegativeNumber())
+      ->excludes(app.get_option("--tolerance"), half, step);
+}
+
+void addJobOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
+  CLI::Option* verify =
+      app.add_flag("--verify", command->options.verify,
+                   "read the file back before it takes its name and compare it with the input; if it is worse than "
+                   "stated, exit 1 and write nothing");
+  app.add_flag("--plan", command->plan,
+               "write nothing (-o is not needed): tell from a tenth of the volume, or all of a small one, how many "
+               "voxels become active, and how large the grid, a .vdb of --codec and the memory to convert it are, "
+               "each with its 95 % confidence; the rest is skipped, but for --background auto, which reads all")
+      ->excludes(verify);
+}
+
+// Excludes options that are declared before.
+void addIsosurfaceOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
+  CLI::Option* isosurface =
+      app.add_option("--isosurface", command->isosurface,
+                     "write the surface where the volume has this value, grid units, as a level set: signed distance "
+                     "in world units, negative where the value is this or more; it must be above the background, "
+                     "which is what lies beyond the volume; voxels become cubes of the smallest spacing [none]")
+          ->check(finiteNumber());
+  app.add_option("--half-width", command->halfWidth, "of the level set on each side of its surface, voxels")
+      ->check(numberIn(1, 100, "1 to 100"))
+      ->capture_default_str()
+      ->needs(isosurface);
+  for (const char* other : {"--tolerance", "--threshold", "--clip-below", "--range", "--half", "--step", "--max-error",
+                            "--plan", "--verify"})
+    isosurface->excludes(app.get_option(other));
+}
+
+// What the options that name values say.
+void setLimits(const ConvertCommand& command, BuildOptions& build) {
+  if (!command.background.empty() && command.background != "auto")
+    build.background = static_cast<float>(std::strtod(command.background.c_str(), nullptr));
   // What lies at the threshold is left out: the smallest value that stays is the next one.
-  if (options.threshold)
-    options.build.clipBelow = std::nextafter(*options.threshold, std::numeric_limits<float>::infinity());
-  if (!options.range) return;
-  const auto [low, high] = *options.range;
+  if (command.threshold) build.clipBelow = std::nextafter(*command.threshold, std::numeric_limits<float>::infinity());
+  if (!command.range) return;
+  const auto [low, high] = *command.range;
   if (low > high) {
     std::ostringstream text;
     text << "--range: expected the lower limit first, found " << low << ' ' << high;
     throw UsageError(text.str());
   }
-  options.build.clipBelow = low;
-  options.build.clipAbove = high;
+  build.clipBelow = low;
+  build.clipAbove = high;
 }
 
-// Half of the error is for what is left out and merged, half for what is quantised: left-out voxels in leaves are both.
-void setQuantising(ConvertOptions& options) {
-  const std::string& quantise = options.output.quantise;
-  std::optional<float>& maxError = options.build.maxError;
-  if (quantise == "n" && !maxError) throw UsageError("--quantise n: expected a --max-error to keep, found none");
-  if (quantise.empty() || !maxError) return;
-  if (quantise != "n")
-    throw UsageError("--quantise " + quantise + ": expected no --max-error, which only --quantise n can keep");
-  options.build.tolerance = options.output.quantiseError = *maxError / 2;
-  maxError.reset();
+OutputOptions outputOptions(const ConvertCommand& command) {
+  OutputOptions output;
+  if (!command.codec.empty()) output.codec = parseName(kCodecs, command.codec, "--codec");
+  if (!command.quantise.empty()) output.nano = NanoOptions{parseName(kQuantise, command.quantise, "--quantise")};
+  output.creator = "umbrick " UMBRICK_VERSION;
+  return output;
 }
 
 // A plan writes nothing, and all else needs an output.
-void checkPlan(const ConvertOptions& options) {
-  if (!options.plan && options.output.path.empty()) throw UsageError("--output is required");
-  if (!options.plan) return;
-  for (const fs::path& input : options.inputs)
-    if (!options.frames.empty() || (isFramePattern(input) && (options.raw() || formatOfName(input) != "images")))
+void checkPlan(const ConvertCommand& command) {
+  if (!command.plan && command.output.empty()) throw UsageError("--output is required");
+  if (!command.plan) return;
+  for (const fs::path& input : command.inputs)
+    if (!command.frames.empty() || (isFramePattern(input) && (command.raw() || formatOfName(input) != "images")))
       throw UsageError("--plan: expected volumes, found a sequence: " + input.string() + "; name one of its frames");
 }
 
 }  // namespace
 
-IndexBox cropBox(const ConvertOptions& options) {
-  const auto& c = *options.crop;
-  return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
+ConvertOptions settledOptions(const ConvertCommand& command) {
+  checkPlan(command);
+  ConvertOptions options = command.options;
+  options.output = outputOptions(command);
+  if (!command.output.empty()) checkOutput(command.output, options.output, command.inputs);
+  setLimits(command, options.build);
+  options.source = sourceOptions(command);
+  if (command.isosurface) options.isosurface = {*command.isosurface, command.halfWidth};
+  return options;
 }
 
-void settleOptions(ConvertOptions& options) {
-  checkPlan(options);
-  if (!options.output.path.empty()) checkOutput(options.output, options.inputs);
-  setLimits(options);
-  setQuantising(options);
-  if (!options.output.quantise.empty() && options.isosurface)
-    throw UsageError("--isosurface: expected no --quantise, whose error is not that of a distance, found " +
-                     options.output.quantise);
-  if (options.resample.size() == 2) throw UsageError("--resample: expected one spacing or three, found 2");
-}
-
-void addConvertOptions(CLI::App& command, const std::shared_ptr<ConvertOptions>& options) {
-  const CLI::Validator finite = finiteNumber();
-  command
-      .add_option("input", options->inputs,
-                  "a volume, told by its name or first bytes (--list-formats), or headerless raw (--dims, --type); "
-                  "several become grids of one file, numbered ones (frame_%04d.nrrd) a file each, where the output is "
-                  "numbered too")
-      ->required();
-  addListFormats(command);
-  command.add_option(
-      "--frames", options->frames,
-      "of a sequence, where input and output have a number in their names (frame_%04d.nrrd, out_%04d.vdb): "
-      "A, A-B or A-B:step [all there are]");
-  command.add_option(
-      "-o,--output", options->output.path,
-      "the file to write: .vdb, .nvdb (NanoVDB), or the dense box of the active voxels, up to 16 GiB, as "
-      ".nrrd or as .mhd with a .raw beside it, in the type of the input if it holds all values, else as "
-      "32-bit float");
-  command.add_option("--codec", options->output.codec, "of a .vdb: blosc, zip or none [blosc]")
-      ->check(CLI::IsMember({"blosc", "zip", "none"}));
-  command
-      .add_option("--quantise", options->output.quantise,
-                  "of a .nvdb: bits of a value, between the smallest and the largest of its leaf: 4, 8, 16, or n, in "
-                  "each leaf as few as keep --max-error; the loss is measured and printed [32-bit floats]")
-      ->check(CLI::IsMember({"4", "8", "16", "n"}));
-  command
-      .add_option("--name", options->names,
-                  "name of the grid, once for each volume; not for .vdb and .nvdb, whose grids have names [density; of "
-                  "several, the stems of the file names]")
-      ->allow_extra_args(false);
-  command
-      .add_option("--unit", options->units,
-                  "unit of the values, kept as value_unit in the metadata of the grid; once, or once for each input "
-                  "[none]")
-      ->allow_extra_args(false);
-  command.add_option("--grid", options->gridName,
-                     "of a .vdb or .nvdb: only this grid, \"name\" or \"name[1]\" [all scalar ones]");
-  command.add_option(
-      "--series", options->series,
-      "of a DICOM folder: the UID of a series, or its number in the list that is printed [the only one]");
-  const CLI::Validator autoOrFinite(
-      [](const std::string& value) { return value == "auto" ? std::string() : finiteNumber()(value); }, "");
-  command
-      .add_option("--background", options->background,
-                  "value of what is left out, grid units; auto: the value that most voxels on the faces of the volume "
-                  "have, for which the input is read once before [0, or that of the .vdb or .nvdb]")
-      ->check(autoOrFinite);
-  CLI::Option* tolerance =
-      command
-          .add_option("--tolerance", options->build.tolerance,
-                      "leave out voxels this close to the background and merge what is this close, grid units")
-          ->check(nonNegativeNumber())
-          ->capture_default_str();
-  CLI::Option* threshold = command
-                               .add_option("--threshold", options->threshold,
-                                           "voxels at and below this value become background, grid units [none]")
-                               ->check(finite);
-  CLI::Option* clipBelow = command
-                               .add_option("--clip-below", options->build.clipBelow,
-                                           "as --threshold, but voxels at the value itself stay, grid units [none]")
-                               ->check(finite)
-                               ->excludes(threshold);
-  CLI::Option* range =
-      command
-          .add_option(
-              "--range", options->range,
-              "lowest and highest value that stay, both included; the rest becomes background, grid units [all]")
-          ->check(finite)
-          ->excludes(threshold, clipBelow);
-  command.add_option(
-      "--mask", options->mask,
-      "a volume of the same size and place, or a .vdb: voxels where it is 0 become background; headerless "
-      "raw has the same --dims");
-  command.add_option("--mask-type", options->maskType, "of a voxel of a headerless mask, as --type")
-      ->check(voxelType())
-      ->capture_default_str();
-  command.add_option(
-      "--crop", options->crop,
-      "only the voxels from x0 y0 z0 to x1 y1 z1, both included; they stay where they are in the world; of a .vdb or "
-      ".nvdb by its indices");
-  command
-      .add_option(
-          "--resample", options->resample,
-          "spacing of the voxels to be made, one for all axes or one for each, world units (mm, where the file states "
-          "its unit): each has the mean of what it covers, so that the integral stays; the last ones along an axis may "
-          "reach beyond the volume and have the mean of their part inside; stands behind the input [as in the file]")
-      ->expected(1, 3)
-      ->check(positiveNumber());
-  CLI::Option* half = command.add_flag("--half", options->build.half, "save 16-bit floats; their error counts");
-  CLI::Option* step = command
-                          .add_option("--step", options->build.step,
-                                      "round values to multiples of this, grid units, so that they pack better; best "
-                                      "a power of two [not rounded]")
-                          ->check(positiveNumber());
-  CLI::Option* maxError =
-      command
-          .add_option(
-              "--max-error", options->build.maxError,
-              "no voxel that is kept or left out by tolerance is off by more, grid units: picks tolerance, half "
-              "floats and steps, or with --quantise n tolerance and bits")
-          ->check(nonNegativeNumber())
-          ->excludes(tolerance, half, step);
-  CLI::Option* verify =
-      command.add_flag("--verify", options->verify,
-                       "read the file back before it takes its name and compare it with the input; if it is worse than "
-                       "stated, exit 1 and write nothing");
-  CLI::Option* plan =
-      command
-          .add_flag(
-              "--plan", options->plan,
-              "write nothing (-o is not needed): tell from a tenth of the volume, or all of a small one, how many "
-              "voxels become active, and how large the grid, a .vdb of --codec and the memory to convert it are, "
-              "each with its 95 % confidence; the rest is skipped, but for --background auto, which reads all")
-          ->excludes(verify);
-  CLI::Option* isosurface =
-      command
-          .add_option("--isosurface", options->isosurface,
-                      "write the surface where the volume has this value, grid units, as a level set: signed distance "
-                      "in world units, negative where the value is this or more; it must be above the background, "
-                      "which is what lies beyond the volume; voxels become cubes of the smallest spacing [none]")
-          ->check(finite)
-          ->excludes(tolerance, threshold, clipBelow, range, half, step, maxError, plan, verify);
-  command.add_option("--half-width", options->halfWidth, "of the level set on each side of its surface, voxels")
-      ->check(numberIn(1, 100, "1 to 100"))
-      ->capture_default_str()
-      ->needs(isosurface);
-
-  command
-      .add_option("--threads", options->threads, "that build leaves; one more reads [0: as many as there are cores]")
+void addConvertOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
+  // In the order of the help.
+  addFileOptions(app, command);
+  addPackingOptions(app, command);
+  addGridOptions(app, command);
+  addValueOptions(app, command);
+  addPartOptions(app, command);
+  addLossOptions(app, command);
+  addJobOptions(app, command);
+  addIsosurfaceOptions(app, command);
+  app.add_option("--threads", command->threads, "that build leaves; one more reads [0: as many as there are cores]")
       ->check(CLI::Range(0, 4096));
-  addRawOptions(command, options);
+  addRawOptions(app, command);
 }
 
 }  // namespace umbrick::tools

@@ -10,32 +10,25 @@
 #include <string>
 #include <vector>
 
-#include "grid_output.h"
-#include "progress.h"
-#include "umbrick/core/box.h"
-#include "umbrick/grid/build_grid.h"
+#include "umbrick/convert/convert_options.h"
 
 namespace umbrick::tools {
 
-struct ConvertOptions {
+struct ConvertCommand {
   std::vector<std::filesystem::path> inputs;
-  std::vector<std::string> names, units;  // of the grids, given by the user
-  std::filesystem::path input;            // the one at hand
-  GridOutput output;
-  std::string unit;  // of its values
-  BuildOptions build;
-  std::string gridName, series;
-  bool allGrids = true, verify = false;
+  std::filesystem::path output;
+  ConvertOptions options;  // those that the program's options set as they are
+  std::string codec;       // "blosc", "zip" or "none"; empty: not given
+  std::string quantise;    // "4", "8", "16" or "n"; empty: not given
+  std::string gridName;    // of a file of grids: only this, where it is given
   std::vector<std::int64_t> dims;
   std::string type, endian = "little";
   std::int64_t headerBytes = 0;
   int bitsStored = 0, threads = 0;
-  std::array<double, 3> spacing{1, 1, 1}, origin{0, 0, 0};
-  bool hasSpacing = false, hasOrigin = false;
+  std::optional<std::array<double, 3>> spacing, origin;
   std::string background;                     // "auto", a number, or empty
   std::optional<float> threshold;             // grid units
   std::optional<std::array<float, 2>> range;  // grid units
-  std::filesystem::path mask;
   std::string maskType = "u8";
   std::optional<std::array<int, 6>> crop;  // first and last voxel
   std::vector<double> resample;            // spacing, world units: none, one for all axes, or three
@@ -43,19 +36,15 @@ struct ConvertOptions {
   float halfWidth = 3;                     // voxels
   std::string frames;                      // which of a sequence; empty: all
   bool plan = false;
-  ProgressBar* bar = nullptr;
 
   bool raw() const { return !dims.empty() || !type.empty(); }
 };
 
-/// Declares them. @param options  is filled when the program's arguments are parsed
-void addConvertOptions(CLI::App& command, const std::shared_ptr<ConvertOptions>& options);
+/// Declares them. @param command  is filled when the program's arguments are parsed
+void addConvertOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command);
 
-/// What options of several forms come to, and whether they go together.
-/// @throw UsageError
-void settleOptions(ConvertOptions& options);
-
-/// @pre options.crop
-IndexBox cropBox(const ConvertOptions& options);
+/// What options of several forms come to, as the library takes it.
+/// @throw UsageError  they do not go together
+ConvertOptions settledOptions(const ConvertCommand& command);
 
 }  // namespace umbrick::tools

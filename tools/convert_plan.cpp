@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "convert_plan.h"
+#include "convert_report.h"
 
 #include <cstdio>
 #include <iostream>
@@ -26,19 +26,25 @@ std::string megabytes(const Estimate& estimate) {
   return text;
 }
 
+const char* nameOf(VdbCodec codec) {
+  return codec == VdbCodec::zip ? "zip" : codec == VdbCodec::none ? "not packed" : "blosc";
+}
+
 }  // namespace
 
-void printPlan(const std::filesystem::path& input, const GridPlan& plan, const char* codec) {
+void printPlan(const VolumePlan& volume, VdbCodec codec) {
+  const GridPlan& plan = volume.grid;
+  if (volume.background) printBackground(*volume.background);
   char share[64];
   std::snprintf(share, sizeof share, "%.3g %%", 100 * double(plan.voxelsRead) / double(plan.voxels));
-  std::cout << "plan of " << input.string() << ", from " << share << " of its voxels: " << plan.layersRead << " of "
-            << plan.layers << " layers of 8 slices\n";
+  std::cout << "plan of " << volume.input.string() << ", from " << share << " of its voxels: " << plan.layersRead
+            << " of " << plan.layers << " layers of 8 slices\n";
   std::snprintf(share, sizeof share, " (%.2f %%)", 100 * plan.activeVoxels.value / double(plan.voxels));
   std::cout << "  active voxels   " << count(plan.activeVoxels) << " of " << plan.voxels << share << '\n'
             << "  leaves          " << count(plan.leaves) << '\n'
             << "  stored as       " << plan.storage << '\n'
             << "  grid in memory  " << megabytes(plan.gridBytes) << '\n'
-            << "  .vdb on disk    " << megabytes(plan.fileBytes) << ", " << codec << '\n'
+            << "  .vdb on disk    " << megabytes(plan.fileBytes) << ", " << nameOf(codec) << '\n'
             << "  converting      " << megabytes(plan.peakBytes)
             << " of memory, besides some 60 MB of the program's own\n";
 }

@@ -1,37 +1,27 @@
-// What umbrick convert prints about a grid that it built.
+// What umbrick convert prints about a file that it wrote.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cstdint>
-#include <filesystem>
-#include <string>
-
-#include "umbrick/grid/build_grid.h"
-#include "umbrick/grid/resample.h"
-#include "umbrick/grid/source_filters.h"
-#include "umbrick/grid/verify.h"
+#include "umbrick/convert/convert_options.h"
+#include "umbrick/convert/convert_report.h"
+#include "umbrick/convert/plan_volumes.h"
 
 namespace umbrick::tools {
 
-/// On stdout.
-/// @param dense  the source was a dense volume, not a grid
-void printReport(const std::string& label, const BuildReport& report, bool dense);
+/// What was lost in each grid, on stdout.
+/// @param options  that it was converted with
+void printReport(const ConvertReport& report, const ConvertOptions& options);
 
-/// The background that the border gave.
+/// One line about a frame that is written, on stdout.
+void printFrame(const ConvertReport& report);
+
+/// Grids that were left out, and options that did not apply, on stderr.
+void printWarnings(const ConvertReport& report);
+
+/// What a volume would become, on stdout.
+/// @param codec  of the .vdb
+void printPlan(const VolumePlan& plan, VdbCodec codec);
+
+/// The background that the border of a volume gave, on stdout.
 void printBackground(const BorderMode& mode);
-
-/// @param voxels  that a mask made background
-void printMasked(std::uint64_t voxels);
-
-void printResampled(const ResampleReport& report);
-/// Keeps the same in the metadata of the grid: resample_spacing, resample_error_max and _rms, resample_integral_before
-/// and _after.
-void describeResampling(openvdb::FloatGrid& grid, const ResampleReport& report);
-
-/// What reading the written grid back has shown.
-void printVerified(const VerifyReport& seen);
-
-/// @throw Error  that is worse than stated
-void checkVerified(const std::filesystem::path& output, const std::string& label, const VerifyReport& seen,
-                   const BuildReport& stated);
 
 }  // namespace umbrick::tools

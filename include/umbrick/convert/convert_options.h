@@ -1,0 +1,48 @@
+// What a conversion is asked for.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbrick/convert/convert_progress.h"
+#include "umbrick/convert/output_options.h"
+#include "umbrick/core/box.h"
+#include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/isosurface.h"
+#include "umbrick/ingest/open_volume.h"
+
+namespace umbrick {
+
+/// How the inputs are read, and which part of them. They are masked first, then cropped, then resampled.
+struct SourceOptions {
+  OpenOptions open = {};  // layout of headerless raw, DICOM series, spacing and origin; for volumes only
+  /// A volume of the size and place of the input, or a file with one scalar grid: where it is 0, the input becomes
+  /// background. Empty: no mask.
+  std::filesystem::path mask = {};
+  OpenOptions openMask = {};          // how the mask is opened where it is a volume
+  std::optional<IndexBox> crop = {};  // only these voxels, which stay where they are in the world; of grids by index
+  std::optional<glm::dvec3> resample = {};  // new spacing of the voxels, world units; for volumes only
+  /// The value of most voxels on the faces of the volume becomes the background, for which the input is read once
+  /// before. For volumes only.
+  bool backgroundFromBorder = false;
+};
+
+struct ConvertOptions {
+  SourceOptions source = {};
+  BuildOptions build = {};  // what may be lost; its `progress` is not used
+  /// Names of the grids, one for each volume. Where there are none, one volume alone becomes build.name, and several
+  /// take the stems of their file names: "head" for scans/head.nii.gz. Grids of a file keep their names.
+  std::vector<std::string> names = {};
+  std::vector<std::string> units = {};   // of the values, as metadata "value_unit": none, one for all, or one each
+  std::optional<std::string> grid = {};  // of a file of grids only this, "name" or "name[1]"; else all scalar ones
+  std::optional<IsosurfaceOptions> isosurface = {};  // writes level sets in place of the grids
+  OutputOptions output = {};
+  /// Reads the file back before it takes its name, and compares it with the input.
+  bool verify = false;
+  ConvertProgressCallback progress = {};  // may be empty
+};
+
+}  // namespace umbrick

@@ -1,0 +1,48 @@
+// How a conversion went: what each grid holds and what was lost.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbrick/grid/build_grid.h"
+#include "umbrick/grid/isosurface.h"
+#include "umbrick/grid/resample.h"
+#include "umbrick/grid/source_filters.h"
+#include "umbrick/grid/verify.h"
+
+namespace umbrick {
+
+/// A grid that was written. What was not asked for is not there.
+struct ConvertedGrid {
+  std::filesystem::path input;
+  std::string label;  // name of the grid, with "[k]" behind it where several of an input file share it
+  std::optional<VoxelType> volumeType;  // of the voxels as the input stores them; none where it was a grid
+  BuildReport build;
+  std::optional<BorderMode> background;  // what the border of the volume had
+  std::optional<std::uint64_t> masked;   // voxels that the mask made background
+  std::optional<ResampleReport> resampled;
+  std::optional<IsosurfaceReport> isosurface;
+  std::optional<VerifyReport> verified;
+  /// True for a grid that is a level set where a background, a tolerance or limits were asked for, which do not apply
+  /// to a level set.
+  bool keptLevelSet = false;
+};
+
+/// A grid of the input file that was not converted, since it is not scalar.
+struct LeftOutGrid {
+  std::string label, type;
+};
+
+/// A file that was written.
+struct ConvertReport {
+  std::filesystem::path output;
+  std::vector<ConvertedGrid> grids;  // in the order in which they were written
+  std::vector<LeftOutGrid> leftOut;
+  std::int64_t bytesIn = 0;   // of the files that hold the inputs, packed as they are
+  std::int64_t bytesOut = 0;  // of the files that were written
+};
+
+}  // namespace umbrick

@@ -1,0 +1,31 @@
+// What a conversion writes: the format by the extension of the output, and how it packs values.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbrick/grid/vdb_codec.h"
+#include "umbrick/vdb/write_volume.h"
+
+namespace umbrick {
+
+/// How an output is packed. Its format is told by its extension: .vdb, .nvdb, or the dense box of the active voxels as
+/// .nrrd or as .mhd with a .raw beside it.
+struct OutputOptions {
+  std::optional<VdbCodec> codec = {};  // of a .vdb only; blosc where none is given
+  /// Of a .nvdb only; 32-bit floats where none are given. With NanoValues::adaptive and no maxError of its own, the
+  /// values take half of BuildOptions::maxError, and what is left out or merged the other half.
+  std::optional<NanoOptions> nano = {};
+  std::string creator = "umbrick";  // is kept as metadata "creator" of a .vdb whose input states none
+};
+
+/// Asks whether the output can be written, before anything is read. Conversions begin with this.
+/// @throw OptionsError  another extension, a codec for another format than .vdb, packed values for another one than
+///                      .nvdb, several inputs for a format that holds one grid, or a dense output that would take the
+///                      place of an input
+void checkOutput(const std::filesystem::path& output, const OutputOptions& options,
+                 const std::vector<std::filesystem::path>& inputs);
+
+}  // namespace umbrick

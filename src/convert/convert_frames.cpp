@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "umbrick/convert/convert_frames.h"
+
+#include <exception>
+#include <future>
+#include <string>
+#include <utility>
+
+#include "convert/grid_job.h"
+#include "convert/settle_options.h"
+#include "convert/volume_job.h"
+#include "umbrick/convert/holds_grids.h"
+#include "umbrick/convert/options_error.h"
+#include "umbrick/ingest/frame_sequence.h"
+#include "umbrick/ingest/read_ahead.h"
+
+namespace umbrick {
+namespace {
+
+// The options with the mask of a frame.
+ConvertOptions optionsOf(const FrameFiles& frame, ConvertOptions options) {
+  std::filesystem::path& mask = options.source.mask;
+  // Numbered images are slices of one mask, as they are of one volume.
+  if (isFramePattern(mask) && formatOfName(mask) != "images") mask = framePath(mask, frame.number);
+  return options;
+}
+
+// Calls `convert`; an error that it meets names the frame.
+template <class Convert>
+ConvertReport naming(const FrameFiles& frame, const Convert& convert) try {
+  return convert();
+} catch (const OptionsError&) {
+  throw;
+} catch (const std::exception& error) {
+  std::throw_with_nested(Error("frame " + std::to_string(frame.number) + ": " + error.what()));
+}
+
+void convertVolumeFrames(const std::vector<FrameFiles>& frames, const ConvertOptions& options,
+                         const FrameWritten& written) {
+  // A thread opens and reads those that come while one is built and written. Each job is set before the source of its
+  // frame is handed on.
+  std::vector<VolumeJob> opened(frames.size());
+  std::vector<ReadAhead::Open> volumes;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    volumes.push_back([&, i] {
+      VolumeJob job = std::move(volumeJobs({frames[i].input}, optionsOf(frames[i], options)).front());
+      auto source = openJob(job);
+      opened[i] = std::move(job);
+      return source;
+    });
+  ReadAhead ahead(std::move(volumes));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const ConvertReport report = naming(frames[i], [&] {
+      const auto source = ahead.next();
+      buildVolume(*source, opened[i]);
+      return writeVolumes({&opened[i], 1}, frames[i].output);
+    });
+    opened[i] = {};
+    written(frames[i], report);
+  }
+}
+
+void convertGridFrames(const std::vector<FrameFiles>& frames, const ConvertOptions& options,
+                       const FrameWritten& written) {
+  // The next file is read while the grids of one are made sparse and written.
+  const auto read = [&](std::size_t i) {
+    return std::async(std::launch::async, [&, i] {
+      GridJob job = openGridJob(frames[i].input, optionsOf(frames[i], options));
+      readGrids(job);
+      return job;
+    });
+  };
+  std::future<GridJob> next = read(0);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const ConvertReport report = naming(frames[i], [&] {
+      GridJob job = next.get();
+      if (i + 1 < frames.size()) next = read(i + 1);
+      return writeGridJob(job, frames[i].output);
+    });
+    written(frames[i], report);
+  }
+}
+
+}  // namespace
+
+void convertFrames(const std::vector<FrameFiles>& frames, const ConvertOptions& options, const FrameWritten& written) {
+  if (frames.empty()) return;
+  for (const FrameFiles& frame : frames) checkOutput(frame.output, options.output, {frame.input});
+  const bool grids = holdGrids({frames.front().input}, options.source);
+  (grids ? convertGridFrames : convertVolumeFrames)(frames, settled(options), written);
+}
+
+}  // namespace umbrick

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <optional>
+#include <string>
+
+#include "umbrick/convert/convert_frames.h"
+#include "umbrick/convert/options_error.h"
+#include "umbrick/ingest/frame_sequence.h"
+#include "umbrick/ingest/image_stack.h"
+
+namespace umbrick {
+namespace fs = std::filesystem;
+namespace {
+
+// "12", "12-40" or "12-40:4".
+std::string text(const FrameRange& range) {
+  std::string out = std::to_string(range.first);
+  if (range.last != range.first) out += '-' + std::to_string(range.last);
+  return range.step == 1 ? out : out + ':' + std::to_string(range.step);
+}
+
+std::vector<FrameRange> missingFrames(const std::vector<FrameFiles>& frames, const FrameRange& wanted) {
+  std::vector<FrameRange> missing;
+  std::int64_t next = wanted.first;
+  const auto addGap = [&](std::int64_t last) {  // from `next` to there
+    if (next > last) return;
+    const std::int64_t more = (last - next) / wanted.step;
+    missing.push_back({next, next + more * wanted.step, wanted.step});
+  };
+  for (const FrameFiles& frame : frames) {
+    addGap(frame.number - 1);
+    next = frame.number + wanted.step;
+  }
+  addGap(wanted.last);
+  return missing;
+}
+
+// A number in the names of images stands for slices of one volume, unless each file has slices of its own.
+void checkImages(const FrameFiles& first) {
+  const std::int64_t slices = openImageStack(first.input)->info().dims.z;
+  if (slices < 2)
+    throw OptionsError(first.input.string() +
+                       ": expected a TIFF of several pages for each frame, found one image; images that are slices of "
+                       "one volume need an output without a number in its name");
+}
+
+}  // namespace
+
+FrameSequence findFrames(const fs::path& input, const fs::path& output, const std::optional<FrameRange>& wanted,
+                         const ConvertOptions& options) {
+  const std::vector<NumberedFile> all = listFrames(input);
+  const FrameRange range = wanted.value_or(FrameRange{all.front().number, all.back().number});
+  if (range.last < range.first || range.step < 1)
+    throw OptionsError("wanted: expected first <= last and a step of at least 1, found frames " + text(range));
+  FrameSequence sequence;
+  for (const NumberedFile& frame : all)
+    if (range.contains(frame.number))
+      sequence.frames.push_back({frame.number, frame.path, framePath(output, frame.number)});
+  if (sequence.frames.empty()) throw IoError(input.string() + ": expected frames of " + text(range) + ", found none");
+  if (!options.source.open.raw && formatOfName(input) == "images") checkImages(sequence.frames.front());
+  for (const FrameFiles& frame : sequence.frames) checkOutput(frame.output, options.output, {frame.input});
+  sequence.missing = missingFrames(sequence.frames, range);
+  return sequence;
+}
+
+}  // namespace umbrick

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "convert/grid_job.h"
+
+#include <string>
+#include <utility>
+
+#include "convert/check_verified.h"
+#include "convert/pass.h"
+#include "convert/replace_by_isosurface.h"
+#include "convert/volume_source.h"
+#include "convert/write_output.h"
+#include "umbrick/convert/holds_grids.h"
+#include "umbrick/convert/options_error.h"
+#include "umbrick/grid/grid_filters.h"
+#include "umbrick/vdb/read_back.h"
+#include "umbrick/vdb/read_grid.h"
+
+namespace umbrick {
+namespace fs = std::filesystem;
+namespace {
+
+// Refuses what is for volumes.
+void checkOptions(const fs::path& input, const ConvertOptions& options) {
+  const auto refuse = [&](bool given, const char* field, const char* why) {
+    if (given) throw OptionsError(input.string() + ": " + field + " is for volumes: " + why);
+  };
+  refuse(options.source.backgroundFromBorder, "source.backgroundFromBorder",
+         "a grid states its background; give a number to change it");
+  refuse(options.source.resample.has_value(), "source.resample", "a grid keeps its voxels");
+  refuse(!options.names.empty(), "options.names", "grids have names");
+  refuse(!options.units.empty(), "options.units", "grids keep their metadata");
+}
+
+void selectGrids(GridJob& job) {
+  ConvertReport& report = job.report;
+  const auto select = [&](const std::string& label) {
+    report.grids.emplace_back();
+    report.grids.back().input = job.input;
+    report.grids.back().label = label;
+  };
+  if (job.options.grid) return select(*job.options.grid);
+  std::string others;
+  for (const GridListing::Row& row : job.listing.grids)
+    if (row.scalar) {
+      select(row.label);
+    } else {
+      report.leftOut.push_back({row.label, row.type});
+      others += (others.empty() ? ", but \"" : ", \"") + row.label + "\" of type " + row.type;
+    }
+  if (report.grids.empty()) throw InvalidArgument(job.input.string() + ": no scalar grid to convert" + others);
+}
+
+// Does what a mask or a box asks for. Where they do not fit, the options are wrong.
+template <class Filter>
+void filtering(const fs::path& input, const Filter& filter) try {
+  filter();
+} catch (const OptionsError&) {
+  throw;
+} catch (const InvalidArgument& error) {
+  throw OptionsError(input.string() + ": " + error.what());
+}
+
+ScalarGrid readMask(const SourceOptions& source) {
+  if (holdsGrids(source.mask)) return readScalarGrid(source.mask);
+  BuildOptions asItIs;
+  asItIs.name = source.mask.string();
+  return {buildGrid(*openMask(source), asItIs).grid, asItIs.name};
+}
+
+// Reads a grid as it is converted: masked, then cropped.
+// @param masked  is told how many voxels the mask left out, where there is one
+ScalarGrid readFiltered(const GridJob& job, const std::string& label, std::optional<std::uint64_t>& masked) {
+  ScalarGrid grid = readScalarGridAnyTransform(job.input, label);
+  const std::optional<IndexBox>& crop = job.options.source.crop;
+  if (!job.mask && !crop) return grid;
+  const auto part = grid.grid->deepCopy();
+  filtering(job.input, [&] {
+    if (job.mask) masked = maskGrid(*part, *job.mask->grid);
+    if (crop) cropGrid(*part, *crop);
+  });
+  grid.grid = part;
+  return grid;
+}
+
+bool keepsLevelSet(const openvdb::FloatGrid& grid, const BuildOptions& build) {
+  return grid.getGridClass() == openvdb::GRID_LEVEL_SET &&
+         (build.background || build.clipBelow || build.clipAbove || build.tolerance > 0);
+}
+
+// Makes a grid sparse, and a level set of it where that is asked for.
+openvdb::FloatGrid::ConstPtr build(GridJob& job, std::size_t i, const BuildOptions& options) {
+  ConvertedGrid& row = job.report.grids[i];
+  const ScalarGrid source =
+      job.grids.empty() ? readFiltered(job, row.label, row.masked) : std::exchange(job.grids[i], {});
+  row.keptLevelSet = keepsLevelSet(*source.grid, options);
+  BuiltGrid built = sparsifyGrid(source, options);
+  if (job.options.isosurface) row.isosurface = replaceByIsosurface(job.input, *job.options.isosurface, built);
+  row.build = std::move(built.report);
+  return built.grid;
+}
+
+// Reads a grid back from the file and compares it with the one it was made of.
+void verify(GridJob& job, std::size_t i, const openvdb::FloatGrid& grid, const fs::path& written,
+            const fs::path& output) {
+  ConvertedGrid& row = job.report.grids[i];
+  const auto back = readBack(written, grid, i);
+  BuildOptions options = job.options.build;
+  options.progress = beginPass(job.options.progress, ConvertStage::verifying, job.input);
+  std::optional<std::uint64_t> again;
+  row.verified = verifyGrid(readFiltered(job, row.label, again), *back, options, row.build.quantising.max);
+  checkVerified(output, row.label, *row.verified, row.build);
+}
+
+}  // namespace
+
+GridJob openGridJob(const fs::path& input, const ConvertOptions& options) {
+  checkOptions(input, options);
+  GridJob job;
+  job.input = input;
+  job.options = options;
+  job.listing = listGrids(input);
+  selectGrids(job);
+  job.report.bytesIn = static_cast<std::int64_t>(fs::file_size(input));
+  if (!options.source.mask.empty()) filtering(input, [&] { job.mask = readMask(options.source); });
+  return job;
+}
+
+void readGrids(GridJob& job) {
+  for (ConvertedGrid& row : job.report.grids) job.grids.push_back(readFiltered(job, row.label, row.masked));
+}
+
+ConvertReport writeGridJob(GridJob& job, const fs::path& output) {
+  BuildOptions options = job.options.build;
+  options.progress = beginPass(job.options.progress, ConvertStage::converting, job.input);
+  std::vector<openvdb::FloatGrid::ConstPtr> grids;
+  for (std::size_t i = 0; i < job.report.grids.size(); ++i) grids.push_back(build(job, i, options));
+  const NanoCheck check = [&](const fs::path& written, const std::vector<QuantiseError>& quantised) {
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+      if (!quantised.empty()) addQuantising(job.report.grids[i].build, quantised[i], /*activeOnly=*/true);
+      if (job.options.verify) verify(job, i, *grids[i], written, output);
+    }
+  };
+  job.report.output = output;
+  job.report.bytesOut = writeOutput(output, job.options.output, grids, job.listing.metadata, std::nullopt, check);
+  return std::move(job.report);
+}
+
+}  // namespace umbrick

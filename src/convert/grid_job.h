@@ -1,0 +1,36 @@
+// One file of grids on its way to another: read, made sparse, written, verified.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "umbrick/convert/convert_options.h"
+#include "umbrick/convert/convert_report.h"
+#include "umbrick/grid/scalar_grid.h"
+#include "umbrick/vdb/grid_listing.h"
+
+namespace umbrick {
+
+/// A file and its grids.
+struct GridJob {
+  std::filesystem::path input;
+  ConvertOptions options;
+  GridListing listing;
+  std::optional<ScalarGrid> mask;
+  ConvertReport report;           // has a row for each grid that is converted, which is filled step by step
+  std::vector<ScalarGrid> grids;  // those that are read already, in the order of the report
+};
+
+/// Lists the grids and opens the mask.
+/// @param options  settled  @throw OptionsError  options that are for volumes  @throw InvalidArgument  no scalar grid
+GridJob openGridJob(const std::filesystem::path& input, const ConvertOptions& options);
+
+/// Reads the grids ahead of writeGridJob, which else reads one after the other.
+void readGrids(GridJob& job);
+
+/// Makes the grids sparse and writes them; verifies the file before it takes its name where that is asked for.
+ConvertReport writeGridJob(GridJob& job, const std::filesystem::path& output);
+
+}  // namespace umbrick

@@ -1,0 +1,21 @@
+// Names of the grids that several volumes become.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "umbrick/convert/convert_options.h"
+
+namespace umbrick {
+
+/// One name for each input: options.names where there are any, else the stems of the file names, without the ending of
+/// a packing: "head" for scans/head.nii.gz. One input alone is build.name.
+/// @throw OptionsError  another number of names than inputs, or two that are equal
+std::vector<std::string> gridNames(const std::vector<std::filesystem::path>& inputs, const ConvertOptions& options);
+
+/// One unit for each input: one that is given is for all of them, none gives empty strings.
+/// @throw OptionsError  neither 0, 1 nor as many as inputs
+std::vector<std::string> gridUnits(std::size_t inputs, const std::vector<std::string>& given);
+
+}  // namespace umbrick

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "convert/write_output.h"
+
+#include <string>
+#include <system_error>
+
+#include "umbrick/convert/options_error.h"
+
+namespace umbrick {
+namespace fs = std::filesystem;
+namespace {
+
+bool isDense(const fs::path& path) { return path.extension() == ".mhd" || path.extension() == ".nrrd"; }
+
+// The file beside a .mhd.
+fs::path voxelsOf(fs::path path) { return path.replace_extension(".raw"); }
+
+}  // namespace
+
+void checkOutput(const fs::path& path, const OutputOptions& options, const std::vector<fs::path>& inputs) {
+  if (path.extension() != ".vdb" && path.extension() != ".nvdb" && !isDense(path))
+    throw OptionsError(path.string() + ": expected an output file that ends in .vdb, .nvdb, .mhd or .nrrd");
+  if (options.codec && path.extension() != ".vdb")
+    throw OptionsError(path.string() + ": output.codec is for .vdb, not for " + path.extension().string());
+  if (options.nano && path.extension() != ".nvdb")
+    throw OptionsError(path.string() + ": output.nano is for .nvdb, not for " + path.extension().string());
+  if (isDense(path) && inputs.size() > 1)
+    throw OptionsError(path.string() + ": expected one input for " + path.extension().string() + ", found " +
+                       std::to_string(inputs.size()));
+  std::error_code missing;
+  for (const fs::path& input : inputs) {
+    const bool voxels = path.extension() == ".mhd" && fs::equivalent(input, voxelsOf(path), missing);
+    if (voxels || (isDense(path) && fs::equivalent(input, path, missing)))
+      throw OptionsError(path.string() +
+                         ": expected another name than that of the input, which would be overwritten, found " +
+                         input.string());
+  }
+}
+
+std::int64_t writeOutput(const fs::path& path, const OutputOptions& output,
+                         const std::vector<openvdb::FloatGrid::ConstPtr>& grids, openvdb::MetaMap metadata,
+                         std::optional<VoxelType> type, const NanoCheck& check) {
+  const WrittenCheck exact = [&](const fs::path& written) { check(written, {}); };
+  if (isDense(path)) {
+    if (grids.size() != 1)
+      throw OptionsError(path.string() + ": expected one grid for " + path.extension().string() + ", found " +
+                         std::to_string(grids.size()));
+    DenseOptions dense;
+    dense.type = type;
+    writeDense(path, *grids.front(), dense, exact);
+  } else if (path.extension() == ".nvdb") {
+    writeNanoVdb(path, grids, output.nano.value_or(NanoOptions{}), check);
+  } else {
+    if (!metadata["creator"]) metadata.insertMeta("creator", openvdb::StringMetadata(output.creator));
+    writeGrids(path, grids, metadata, output.codec.value_or(VdbCodec::blosc), exact);
+  }
+  const auto bytes = static_cast<std::int64_t>(fs::file_size(path));
+  return path.extension() == ".mhd" ? bytes + static_cast<std::int64_t>(fs::file_size(voxelsOf(path))) : bytes;
+}
+
+}  // namespace umbrick

@@ -1,0 +1,23 @@
+// Grids to a file of the format that its extension names.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "umbrick/convert/output_options.h"
+#include "umbrick/grid/float_grid.h"
+#include "umbrick/vdb/write_volume.h"
+
+namespace umbrick {
+
+/// @param type   of the voxels of the source, for the dense formats
+/// @param check  is given the file before it takes its name, and the errors of grids that are quantised, else none
+/// @return bytes written
+/// @throw OptionsError  several grids for a format that holds one  @throw Error  as the writers do
+std::int64_t writeOutput(const std::filesystem::path& path, const OutputOptions& output,
+                         const std::vector<openvdb::FloatGrid::ConstPtr>& grids, openvdb::MetaMap metadata,
+                         std::optional<VoxelType> type, const NanoCheck& check);
+
+}  // namespace umbrick

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "option_words.h"
+
+#include <array>
+#include <exception>
+#include <string_view>
+#include <utility>
+
+#include "umbrick/ingest/dicom_volume.h"
+#include "umbrick/ingest/open_volume.h"
+
+namespace umbrick::tools {
+namespace {
+
+// The fields of ConvertOptions that the library's messages name, longer ones before those that they begin with.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kWords{{
+    {"options.isosurface", "--isosurface"},
+    {"options.names", "--name"},
+    {"options.units", "--unit"},
+    {"options.verify", "--verify"},
+    {"output.codec", "--codec"},
+    {"output.nano adaptive", "--quantise n"},
+    {"output.nano bits", "--quantise "},
+    {"output.nano", "--quantise"},
+    {"build.maxError", "--max-error"},
+    {"source.backgroundFromBorder", "--background auto"},
+    {"source.resample", "--resample"},
+}};
+
+// What an option can do about an error of a reader.
+std::string hint(const OptionsError& error) try {
+  std::rethrow_if_nested(error);
+  return {};
+} catch (const UnknownFormat&) {
+  return ": give --dims and --type";
+} catch (const SeveralSeries&) {
+  return "; give --series";
+} catch (const InvalidArgument&) {
+  return {};
+}
+
+}  // namespace
+
+std::string inOptionWords(const OptionsError& error) {
+  std::string text = error.what();
+  for (const auto& [field, option] : kWords)
+    for (std::size_t at = 0; (at = text.find(field, at)) != std::string::npos; at += option.size())
+      text.replace(at, field.size(), option);
+  return text + hint(error);
+}
+
+}  // namespace umbrick::tools
