@@ -44,8 +44,9 @@ ConvertOptions settled(ConvertOptions options) {
   NanoOptions& nano = *options.output.nano;
   shareError(options.build.maxError, options.build.tolerance, nano);
   if (options.isosurface && nano.values != NanoValues::float32)
-    throw OptionsError("options.isosurface: expected no output.nano, whose error is not that of a distance, found " +
-                       wordOf(nano.values));
+    throw OptionsError(
+        "options.isosurface: expected no output.nano, whose error is not that of a distance, found output.nano " +
+        wordOf(nano.values));
   return options;
 }
 
