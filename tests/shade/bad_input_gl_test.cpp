@@ -59,7 +59,7 @@ TEST_CASE("A budget that one slice does not fit is refused with both sizes", "[s
              Contains("2 MiB") && Contains("1 MiB"));
 }
 
-TEST_CASE("A renderer takes other cameras of the same image size", "[shade][gl]") {
+TEST_CASE("A renderer takes other cameras, of other image sizes too", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   ResolvedScene scene = plainScene(unitRamp(), camera(), 1);
@@ -68,12 +68,9 @@ TEST_CASE("A renderer takes other cameras of the same image size", "[shade][gl]"
       scene, [](const glm::ivec3& i) { return std::sin(0.3 * i.x) * std::sin(0.2 * i.y); }, kBlock);
   SliceRenderer renderer(*context, volume, scene);
   renderer.render();
-  Camera other = camera();
-  other.width = 25;
-  CHECK_THAT(complaint<InvalidArgument>([&] { renderer.render(other); }), Contains("another size"));
   // Of either projection; nothing of an earlier picture stays.
   for (const Camera& next : {perspectiveCamera({-30, 20, 40}, {16, 16, 16}, 0.5, 24),
-                             orthographicCamera({-30, 20, 40}, {16, 16, 16}, 30, 24)}) {
+                             orthographicCamera({-30, 20, 40}, {16, 16, 16}, 30, 31)}) {
     ResolvedScene same = scene;
     same.camera = next;
     CHECK(maxDifference(renderer.render(next).colour, renderPicture(*context, volume, same).colour) == 0);

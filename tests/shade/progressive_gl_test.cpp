@@ -343,9 +343,10 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
   CHECK(fine.reachedTarget);
   CHECK(fine.error.total() <= options.targetError);
   CHECK(fine.scene.sampling.spacing == spacings.back());
-  // The picture is one of the scene that it says.
+  // The picture is one of the scene that it says. Its bricks were resident already, at other places of the texture, whose
+  // coordinates are single precision.
   const ProgressivePicture again = renderProgressive(*context, *volume, fine.scene, {.passes = fine.passes});
-  CHECK((again.picture.colour.pixels == fine.picture.colour.pixels));
+  CHECK(maxDifference(again.picture.colour, fine.picture.colour) < 2e-5);
   CHECK(again.error.systematic < coarse.error.systematic);
 
   // Not at the expense of what there is: with no passes left that would tell the error of finer ones.
