@@ -5,7 +5,6 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include <Imath/half.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include <utility>
 
 #include "atlas/texel_format.h"
+#include "atlas/texels.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -27,72 +27,7 @@ std::string mebibytes(std::uint64_t bytes) {
 
 bool isUniform(const Brick& brick) { return brick.uniform() && brick.gradient.min == brick.gradient.max; }
 
-// Whole numbers are stored as they are when they fit; otherwise the range is spread over the codes.
-TexelScale unormScale(const Bricks& volume, VoxelFormat format) {
-  const double codes = format == VoxelFormat::unorm8 ? 255 : 65535;
-  const double extent = static_cast<double>(volume.value.max) - static_cast<double>(volume.value.min);
-  const bool wholeNumbers = volume.exactFormat == VoxelFormat::unorm8 || volume.exactFormat == VoxelFormat::unorm16;
-  const bool exact = wholeNumbers && extent <= codes;
-  const double step = exact ? 1 : extent > 0 ? extent / codes : 1;
-  return {step * codes, static_cast<double>(volume.value.min), exact ? 0 : step};
-}
-
-// Turns values into the codes of a fixed-point format, 0 to `most`.
-class UnormCodes {
- public:
-  UnormCodes(const TexelScale& scale, double most)
-      : offset_(scale.offset), perUnit_(1 / (scale.scale / most)), most_(most) {}
-  /// Returns a number that becomes the nearest code when the caller cuts it to a whole number.
-  double operator()(float value) const {
-    return std::clamp((static_cast<double>(value) - offset_) * perUnit_ + 0.5, 0.0, most_);
-  }
-
- private:
-  double offset_, perUnit_, most_;
-};
-
-Imath::half halfOf(float value) { return Imath::half(std::clamp(value, -65504.0f, 65504.0f)); }
-
 }  // namespace
-
-TexelScale texelScale(const Bricks& volume, VoxelFormat format) {
-  const double largest =
-      std::max(std::abs(static_cast<double>(volume.value.min)), std::abs(static_cast<double>(volume.value.max)));
-  switch (format) {
-    case VoxelFormat::unorm8:
-    case VoxelFormat::unorm16:
-      return unormScale(volume, format);
-    case VoxelFormat::half:
-      // The error is half of a unit in the last of 11 places, and half of 2^-24 near zero. Values beyond
-      // 65504 are cut off.
-      return {1, 0,
-              volume.exactFormat == VoxelFormat::half ? 0 : std::max({largest * 0x1p-11, 0x1p-25, largest - 65504})};
-    case VoxelFormat::float32:
-      break;
-  }
-  const double anchor = volume.anchor;
-  return {1, anchor, anchor != 0 ? (largest + std::abs(anchor)) * 0x1p-24 : 0};
-}
-
-double texelOf(float value, const TexelScale& scale, VoxelFormat format) {
-  const auto unorm = [&](double most) { return std::floor(UnormCodes(scale, most)(value)) / most; };
-  switch (format) {
-    case VoxelFormat::unorm8:
-      return unorm(255);
-    case VoxelFormat::unorm16:
-      return unorm(65535);
-    case VoxelFormat::half:
-      return gradientTexelOf(value, format);
-    case VoxelFormat::float32:
-      break;
-  }
-  return static_cast<float>(scale.toTexel(value));
-}
-
-double gradientTexelOf(float gradient, VoxelFormat format) {
-  if (format != VoxelFormat::half) return gradient;
-  return static_cast<float>(halfOf(gradient));
-}
 
 BrickAtlas::BrickAtlas(const GlContext& context, const Bricks& volume, const AtlasOptions& options)
     : gl_(context.gl()), volume_(volume), format_(options.format), options_(options) {
@@ -285,44 +220,6 @@ void BrickAtlas::release(std::int32_t brick) {
   slot = -1;
 }
 
-double BrickAtlas::encode(std::span<const float> values, std::span<const float> gradients, std::byte* texels) const {
-  const bool exact = valueScale_.rounding == 0;
-  double error = 0;
-  const auto store = [&](auto codeOf, auto gradientCodeOf, auto valueOf) {
-    using Code = decltype(codeOf(0.0f));
-    auto* out = reinterpret_cast<Code*>(texels);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const Code code = codeOf(values[i]);
-      *out++ = code;
-      if (!gradients.empty()) *out++ = gradientCodeOf(gradients[i]);
-      if (!exact) error = std::max(error, std::abs(valueOf(code) - static_cast<double>(values[i])));
-    }
-  };
-  const auto storeUnorm = [&]<class Code>(Code most) {
-    const double step = valueScale_.scale / most;
-    const UnormCodes codes(valueScale_, most);
-    const auto codeOf = [codes](float v) { return static_cast<Code>(codes(v)); };
-    store(codeOf, codeOf, [&](Code code) { return valueScale_.offset + code * step; });
-  };
-  const double anchor = valueScale_.offset;
-  switch (format_) {
-    case VoxelFormat::unorm8:
-      storeUnorm(std::uint8_t{255});
-      break;
-    case VoxelFormat::unorm16:
-      storeUnorm(std::uint16_t{65535});
-      break;
-    case VoxelFormat::half:
-      store(halfOf, halfOf, [](Imath::half code) { return static_cast<double>(static_cast<float>(code)); });
-      break;
-    case VoxelFormat::float32:
-      store([&](float v) { return static_cast<float>(v - anchor); }, [](float gradient) { return gradient; },
-            [&](float code) { return code + anchor; });
-      break;
-  }
-  return error;
-}
-
 void BrickAtlas::upload(std::span<const std::pair<std::int32_t, std::int32_t>> brickAndSlot) {
   const TexelFormat texel = texelFormat(format_, volume_.hasGradients);
   const std::size_t voxels = volume_.layout.voxels();
@@ -346,7 +243,8 @@ void BrickAtlas::upload(std::span<const std::pair<std::int32_t, std::int32_t>> b
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         const Brick& brick = bricks_[static_cast<std::size_t>(brickAndSlot[first + i].first)];
         volume_.read(brick.origin, scratch.values, scratch.gradients);
-        const double error = encode(scratch.values, scratch.gradients, staging.data() + i * voxels * texel.bytes);
+        const double error = encodeTexels(scratch.values, scratch.gradients, valueScale_, format_,
+                                          staging.data() + i * voxels * texel.bytes);
         scratch.error = std::max(scratch.error, error);
       }
     });

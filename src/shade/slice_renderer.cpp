@@ -13,6 +13,7 @@
 
 #include "shade/frame.h"
 #include "shade/sweep_plan.h"
+#include "shade/view_planes.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/scene/capabilities.h"
@@ -234,16 +235,6 @@ class SliceRenderer::Implementation {
       throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
   }
 
-  static void append(std::vector<ClipPlane>& planes, const std::vector<ClipPlane>& more) {
-    planes.insert(planes.end(), more.begin(), more.end());
-  }
-
-  // Where the medium ends, in world units like all planes: their distances are those of the camera's.
-  std::vector<ClipPlane> mediumPlanes(const ResolvedScene& scene) const {
-    const IndexBox box = mediumBox(scene.transfer, volume_.domain);
-    return boxPlanes({glm::dvec3(box.min), glm::dvec3(box.max)}, volume_.indexToWorld);
-  }
-
   void checkReach(const IndexView& view, const ResolvedScene& scene) const {
     const glm::dvec3 reach = slabReach(view, scene.sampling.spacing);
     if (std::max({reach.x, reach.y, reach.z}) > volume_.layout.apron - 0.5 + 1e-6)
@@ -251,40 +242,12 @@ class SliceRenderer::Implementation {
                             " voxels");
   }
 
-  std::vector<glm::dvec4> viewPlanes(const ResolvedScene& scene) const {
-    const Camera& camera = scene.camera;
-    std::vector<ClipPlane> planes = scene.clipPlanes;
-    if (scene.clipBox) append(planes, boxPlanes(*scene.clipBox));
-    if (backgroundVisible_) append(planes, mediumPlanes(scene));
-    for (ClipPlane& plane : planes) plane = planeInView(plane, camera);
-    if (camera.nearDistance > 0) planes.emplace_back(0, 0, 1, -camera.nearDistance);
-    return planes;
-  }
-
-  // The box of the medium cuts no slab where the background is invisible, but nothing lies beyond it.
-  std::vector<glm::dvec4> viewBounds(const ResolvedScene& scene, std::vector<glm::dvec4> planes) const {
-    const Camera& camera = scene.camera;
-    if (backgroundVisible_ || volume_.domain.empty()) return planes;
-    for (const ClipPlane& plane : mediumPlanes(scene)) planes.push_back(planeInView(plane, camera));
-    return planes;
-  }
-
-  // The longest of the four, of a crooked volume.
-  double domainDiagonal() const {
-    const glm::dvec3 extent(volume_.domain.extent());
-    double longest = 0;
-    for (unsigned c = 0; c < 4; ++c)
-      longest = std::max(longest, glm::length(glm::dmat3(volume_.indexToWorld) *
-                                              (extent * glm::dvec3(1, c & 1 ? -1 : 1, c & 2 ? -1 : 1))));
-    return longest;
-  }
-
   void prepareFrame(const ResolvedScene& scene, const RenderSample& sample) {
     const Camera& camera = scene.camera;
     const IndexView view = indexView(camera, volume_.indexToWorld);
     checkReach(view, scene);
-    std::vector<glm::dvec4> planes = viewPlanes(scene);
-    std::vector<glm::dvec4> bounds = viewBounds(scene, planes);
+    std::vector<glm::dvec4> planes = viewPlanes(scene, volume_, backgroundVisible_);
+    std::vector<glm::dvec4> bounds = viewBounds(scene, volume_, backgroundVisible_, planes);
     const double spacing = scene.sampling.spacing;
     ProxySlices slices = cutSlices(view, selection_->origins(), volume_.layout.interior, bounds, spacing);
     // The first slab of another phase begins before or behind the eye: there must be nothing.
@@ -293,8 +256,8 @@ class SliceRenderer::Implementation {
     frame_.emplace(Frame{gl_, scene, camera, view, std::move(planes), std::move(bounds), std::move(slices), *selection_,
                          selection_->atlas(), *transfer_, *targets_, *polygons_,
                          FragmentCounter(gl_, options_.countFragments), options_.reverseBricks,
-                         shortestVoxelEdge(volume_.indexToWorld), domainDiagonal(), PassClock(gl_, options_.timePasses),
-                         sample});
+                         shortestVoxelEdge(volume_.indexToWorld), domainDiagonal(volume_),
+                         PassClock(gl_, options_.timePasses), sample});
     pass_->plan(*frame_);
     std::vector<const ProxySlices*> sweeps{&frame_->slices};
     if (pass_->occluders()) sweeps.push_back(pass_->occluders());

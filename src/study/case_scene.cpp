@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/study/case_scene.h"
+#include "umbrick/scene/capabilities.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +40,7 @@ ResolvedScene caseScene(const ResolvedScene& scene, const StudyCase& what, const
   result.sampling.segments =
       what.segments == kAutomaticSegments ? segmentsOf(result.sampling.spacing / geometry.voxelEdge) : what.segments;
   result.sampling.bits = what.bits.eye;
-  if (method.model != Model::emission) {
+  if (traitsOf(method.model).occlusion) {
     result.occlusion.bits = what.bits.occlusion;
     result.occlusion.aperture = what.theta;
     result.occlusion.ordinates.scale = what.scale;
@@ -52,7 +53,7 @@ ResolvedScene referenceScene(const ResolvedScene& scene, const StudyReference& w
   ResolvedScene result = scene;
   setSize(result.camera, what.size);
   result.model = what.model;
-  if (what.model == Model::cone) result.occlusion.aperture = what.theta;
+  if (traitsOf(what.model).cone) result.occlusion.aperture = what.theta;
   return result;
 }
 

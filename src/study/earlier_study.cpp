@@ -9,6 +9,7 @@
 #include "core/json_writer.h"
 #include "study/json_difference.h"
 #include "umbrick/core/error.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/study/study_record.h"
 
 namespace umbrick {
@@ -79,7 +80,7 @@ bool sameGroup(const EarlierCase& a, const EarlierCase& b) {
 }  // namespace
 
 std::vector<EarlierCase> EarlierStudy::comparable(const StudyRecord& record, Model model) const {
-  const double theta = model == Model::emission ? 0 : record.plan.baseTheta;
+  const double theta = !traitsOf(model).occlusion ? 0 : record.plan.baseTheta;
   std::vector<EarlierCase> cases;
   for (const EarlierCase& one : front)
     if (one.model == model && one.size == record.plan.baseSize && std::abs(one.theta - theta) < 1e-9)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/study/study_findings.h"
+#include "umbrick/scene/capabilities.h"
 
 #include <algorithm>
 
@@ -51,7 +52,7 @@ std::set<const CaseResult*> frontCases(const std::vector<ComparableCases>& group
 }
 
 const ComparableCases* baseGroup(const std::vector<ComparableCases>& groups, const StudyPlan& plan, Model model) {
-  const double theta = model == Model::emission ? 0 : plan.baseTheta;
+  const double theta = !traitsOf(model).occlusion ? 0 : plan.baseTheta;
   const auto at = std::find_if(groups.begin(), groups.end(), [&](const ComparableCases& g) {
     return g.model == model && g.size == plan.baseSize && g.theta == theta;
   });
@@ -74,7 +75,7 @@ std::vector<SliceSeries> sliceSeries(const StudyRecord& record, Model model) {
         StudyCase what = base;
         what.slices = slices;
         what.detail = detail;
-        if (model == Model::emission) {
+        if (!traitsOf(model).occlusion) {
           what.theta = 0;
           what.bits.occlusion = what.bits.eye;
         }

@@ -6,6 +6,7 @@
 
 #include "core/json_writer.h"
 #include "umbrick/core/error.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
 namespace {
@@ -166,7 +167,7 @@ class CaseList {
   CaseList(const StudyCase& base, std::vector<StudyCase>& cases) : base_(base), cases_(cases) {}
 
   void add(StudyCase one) {
-    if (studyMethod(one.method).model == Model::emission) {
+    if (!traitsOf(studyMethod(one.method).model).occlusion) {
       one.theta = 0;
       one.bits.occlusion = one.bits.eye;
     }
@@ -240,22 +241,22 @@ std::string StudyCase::id() const {
   if (!known.detail.name.empty()) text += "-" + known.detail.symbol + std::to_string(detail);
   text += "-N" + std::to_string(slices) + "-k" + (segments == kAutomaticSegments ? "a" : std::to_string(segments)) +
           "-e" + std::to_string(bits.eye);
-  if (known.model != Model::emission) text += "o" + std::to_string(bits.occlusion);
+  if (traitsOf(known.model).occlusion) text += "o" + std::to_string(bits.occlusion);
   text += "-s" + std::to_string(size);
-  if (known.model != Model::emission) text += "-t" + jsonDegrees(theta);
+  if (traitsOf(known.model).occlusion) text += "-t" + jsonDegrees(theta);
   if (scale > 0) text += "-w" + jsonNumber(scale);
   return text;
 }
 
 std::string StudyReference::id() const {
   std::string text = modelName(model) + "-s" + std::to_string(size);
-  if (model == Model::cone) text += "-t" + jsonDegrees(theta);
+  if (traitsOf(model).cone) text += "-t" + jsonDegrees(theta);
   return text;
 }
 
 StudyReference StudyPlan::referenceOf(const StudyCase& one) const {
   const Model model = studyMethod(one.method).model;
-  return {model, one.size, model == Model::emission ? 0 : one.theta};
+  return {model, one.size, !traitsOf(model).occlusion ? 0 : one.theta};
 }
 
 StudyPlan planStudy(const StudySettings& settings, double aperture, int leastSlices) {
@@ -276,7 +277,7 @@ StudyPlan planStudy(const StudySettings& settings, double aperture, int leastSli
   for (const StudyCase& one : plan.cases) appendReference(plan, plan.referenceOf(one));
   // The model error: the cone beside the whole sphere, at the base size.
   const bool occlusion = std::any_of(plan.references.begin(), plan.references.end(),
-                                     [](const StudyReference& r) { return r.model == Model::cone; });
+                                     [](const StudyReference& r) { return traitsOf(r.model).cone; });
   if (occlusion) appendReference(plan, {Model::ambient, plan.baseSize, 0});
   return plan;
 }

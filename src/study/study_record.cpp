@@ -11,6 +11,7 @@
 #include "core/json_writer.h"
 #include "study/json_difference.h"
 #include "umbrick/core/error.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
 namespace {
@@ -72,7 +73,7 @@ void addCase(Json& json, const CaseResult& result) {
   if (!method.detail.name.empty()) json[method.detail.name] = what.detail;
   json["bits"] = toJson(what.bits);
   json["size"] = what.size;
-  if (method.model != Model::emission) json["theta"] = degrees(what.theta);
+  if (traitsOf(method.model).occlusion) json["theta"] = degrees(what.theta);
   if (method.windows) json["window_scale"] = what.scale;
 }
 

@@ -13,6 +13,7 @@
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/image/exr.h"
 #include "umbrick/reference/reference.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/resolve.h"
 #include "umbrick/shade/prepare.h"
 #include "umbrick/slice/proxy_slices.h"
@@ -38,8 +39,8 @@ RenderOptions quietly() {
 
 // Seconds on two cores with a software rasteriser: only the ratio of steps matters.
 double estimatedWork(const StudyReference& what, const StudySettings& settings) {
-  if (what.model == Model::emission) return 1;
-  const double whole = what.model == Model::ambient ? 2 : 1;
+  if (!traitsOf(what.model).occlusion) return 1;
+  const double whole = traitsOf(what.model).sphere ? 2 : 1;
   return 1.5 * whole * 6e-6 * what.size * what.size * settings.directions;
 }
 double estimatedWork(const StudyCase& what, const StudySettings& settings) {
@@ -146,7 +147,7 @@ void StudyRun::measure() {
     done_ += estimatedWork(what, plan.settings);
   }
   for (const StudyReference& what : plan.references)
-    if (what.model == Model::cone && what.size == plan.baseSize && !record_.findModelError(what))
+    if (traitsOf(what.model).cone && what.size == plan.baseSize && !record_.findModelError(what))
       measureModelError(what);
   for (const StudyCase& what : cases) {
     if (!report(what.id(), 0)) return;

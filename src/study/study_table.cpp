@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/json_writer.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/study/case_scene.h"
 #include "umbrick/study/study_findings.h"
 
@@ -60,7 +61,7 @@ std::vector<std::string> header(bool milliseconds) {
 std::vector<std::string> cells(const StudyRecord& record, const CaseResult& result, bool onFront) {
   const StudyCase& what = result.what;
   const StudyMethod& method = studyMethod(what.method);
-  const bool occlusion = method.model != Model::emission, hasDetail = !method.detail.name.empty();
+  const bool occlusion = traitsOf(method.model).occlusion, hasDetail = !method.detail.name.empty();
   const StudyReference reference = record.plan.referenceOf(what);
   const Camera camera = referenceScene(record.scene, reference).camera;
   std::vector<std::string> values{what.id(),

@@ -343,8 +343,8 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
   CHECK(fine.reachedTarget);
   CHECK(fine.error.total() <= options.targetError);
   CHECK(fine.scene.sampling.spacing == spacings.back());
-  // The picture is one of the scene that it says. Its bricks were resident already, at other places of the texture, whose
-  // coordinates are single precision.
+  // The picture is one of the scene that it says. Its bricks were resident already, at other places of the texture,
+  // whose coordinates are single precision.
   const ProgressivePicture again = renderProgressive(*context, *volume, fine.scene, {.passes = fine.passes});
   CHECK(maxDifference(again.picture.colour, fine.picture.colour) < 2e-5);
   CHECK(again.error.systematic < coarse.error.systematic);

@@ -9,6 +9,7 @@
 #include "core/text_file.h"
 #include "study_page/plots.h"
 #include "umbrick/core/pending_file.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/study/case_scene.h"
 
 namespace umbrick {
@@ -33,14 +34,14 @@ std::string plotFigure(const PageFolder& folder, const Plot& plot, const std::st
 }
 
 std::string floorText(const StudyRecord& record, Model model) {
-  const double theta = model == Model::emission ? 0 : record.plan.baseTheta;
+  const double theta = !traitsOf(model).occlusion ? 0 : record.plan.baseTheta;
   const double floor = referenceError(record, {model, record.plan.baseSize, theta});
   if (floor == 0) return "The reference does not change with its tolerance: it is exact but for rounding.";
   return "The reference itself is off by about " + printShort(floor) + " (RMSE to a coarser one).";
 }
 
 std::string modelTitle(Model model) {
-  return model == Model::emission ? "Emission: no occlusion" : "Cone: directional occlusion";
+  return !traitsOf(model).occlusion ? "Emission: no occlusion" : "Cone: directional occlusion";
 }
 
 // Methods that share a base are named together.
@@ -97,7 +98,7 @@ std::string speedSections(const StudyRecord& record, const PageFolder& folder,
                                               floorText(record, model));
     const std::string convergence =
         plotFigure(folder, convergencePlot(record, model),
-                   model == Model::emission
+                   !traitsOf(model).occlusion
                        ? "Order: p of error = c d^p by least squares, over the cases whose error is more than twice "
                          "that of the reference. A shortcut that is worth its time levels off early."
                        : "A method that converges to its model goes on falling. " + floorText(record, model));

@@ -6,6 +6,7 @@
 
 #include "core/json_writer.h"
 #include "study_page/page.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/study/case_scene.h"
 
 namespace umbrick::tools {
@@ -64,7 +65,7 @@ struct Variation {
 std::vector<Variation> variationsOf(const StudyCase& what, const StudyPlan& plan) {
   std::vector<Variation> all;
   const StudyMethod& method = studyMethod(what.method);
-  const bool occlusion = method.model != Model::emission;
+  const bool occlusion = traitsOf(method.model).occlusion;
   const StudyCase& base = plan.bases.at(what.method);
   if (what.slices != base.slices) all.push_back({"slices", std::to_string(what.slices) + " slices"});
   if (!method.detail.name.empty() && what.detail != base.detail)
@@ -171,7 +172,7 @@ std::string comparisonTables(const StudyRecord& record, const std::vector<Compar
   reached.head = heads({"speed-up", "dos", "time", "RMSE", "ordinates", "time", "RMSE"}, 0);
   reached.head[1].text = reached.head[4].text = true;
   for (const ComparableCases& group : groups) {
-    if (group.model != Model::cone || group.size != record.plan.baseSize) continue;
+    if (!traitsOf(group.model).cone || group.size != record.plan.baseSize) continue;
     bool first = true;
     for (const Comparison& one : fastestOfNoLargerError(group)) {
       HtmlTable::Row row{
@@ -248,7 +249,7 @@ std::string caseTable(const StudyRecord& record, const std::vector<ComparableCas
     const CaseResult* result = record.find(what);
     if (!result) continue;
     const StudyMethod& method = studyMethod(what.method);
-    const bool occlusion = method.model != Model::emission;
+    const bool occlusion = traitsOf(method.model).occlusion;
     HtmlTable::Row row;
     if (front.contains(result)) row.kind = "front";
     row.cells = {text("<a href=\"#c-" + what.id() + "\">" + escapeHtml(what.method) + "</a>"),
@@ -277,7 +278,7 @@ std::string referenceTable(const StudyRecord& record) {
   for (const ReferenceResult& result : record.references) {
     HtmlTable::Row row{{words(modelName(result.what.model)),
                         {std::to_string(result.what.size)},
-                        {result.what.model == Model::cone ? jsonDegrees(result.what.theta) : ""},
+                        {traitsOf(result.what.model).cone ? jsonDegrees(result.what.theta) : ""},
                         numberCell(result.timeRatio)}};
     appendError(row.cells, result.coarser);
     table.rows.push_back(row);

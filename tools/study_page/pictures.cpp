@@ -6,6 +6,7 @@
 #include "umbrick/image/colour_map.h"
 #include "umbrick/image/image_difference.h"
 #include "umbrick/image/png.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/study/error_measures.h"
 
 namespace umbrick::tools {
@@ -18,7 +19,7 @@ void writeWithThumbnail(const PageFolder& folder, const std::string& id, const I
 
 }  // namespace
 
-double errorScale(Model model) { return model == Model::emission ? 0.05 : 0.5; }
+double errorScale(Model model) { return !traitsOf(model).occlusion ? 0.05 : 0.5; }
 
 std::string errorPictureId(const std::string& id) { return id + ".error"; }
 

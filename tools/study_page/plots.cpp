@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/study/study_findings.h"
 
 namespace umbrick::tools {
@@ -21,7 +22,7 @@ PlotPoint timePoint(const CaseResult& result) {
 }
 
 void addFloor(Plot& plot, const StudyRecord& record, Model model) {
-  const double theta = model == Model::emission ? 0 : record.plan.baseTheta;
+  const double theta = !traitsOf(model).occlusion ? 0 : record.plan.baseTheta;
   const double floor = referenceError(record, {model, record.plan.baseSize, theta});
   if (floor > 0) plot.levels.push_back({"error of the reference", floor});
 }
@@ -90,7 +91,7 @@ Plot convergencePlot(const StudyRecord& record, Model model) {
   plot.xLabel = "d: distance of slices, world units";
   plot.yLabel = kErrorLabel;
   for (const SliceSeries& series : sliceSeries(record, model)) {
-    PlotSeries line{model == Model::emission ? withOrder(series) : series.title,
+    PlotSeries line{!traitsOf(model).occlusion ? withOrder(series) : series.title,
                     PlotStyle::line,
                     {},
                     false,

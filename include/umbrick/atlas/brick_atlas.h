@@ -100,7 +100,6 @@ class BrickAtlas {
   std::uint64_t slotBytes() const;
   Slot place(std::int32_t slot, const glm::ivec3& slotGrid) const;
   void upload(std::span<const std::pair<std::int32_t, std::int32_t>> brickAndSlot);
-  double encode(std::span<const float> values, std::span<const float> gradients, std::byte* texels) const;
 
   const GlFunctions& gl_;
   const Bricks& volume_;
