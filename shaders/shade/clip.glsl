@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 uniform vec4 clip_planes[kClipPlanes > 0 ? kClipPlanes : 1];
 
-// Front and back of what is kept, -1 at the front of the slab and 1 at its back; empty when front >= back.
+// Returns front and back of what is kept: -1 is the slab's front, 1 its back; nothing is kept when front >= back.
 vec2 keptInterval(vec2 p, float depth) {
   vec2 kept = vec2(-1.0, 1.0);
   for (int i = 0; i < kClipPlanes; ++i) {

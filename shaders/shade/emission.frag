@@ -1,4 +1,4 @@
-// The part of one proxy slice that lies in one brick: emission and absorption, every point lit alike.
+// Draws the part of one proxy slice that lies in one brick: emission and absorption, every point lit alike.
 // Reads   atlas, transfer (see medium.glsl)
 // Writes  eye  premultiplied RGBA, blended under: (ONE_MINUS_DST_ALPHA, ONE)
 //         aux  kAux: opacity-weighted visibility and depth, blended alike

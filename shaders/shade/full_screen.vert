@@ -1,4 +1,4 @@
-// One triangle that covers the image.
+// Draws one triangle that covers the image.
 // SPDX-License-Identifier: Apache-2.0
 uniform float depth;  // normalised device coordinate
 

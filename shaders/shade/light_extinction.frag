@@ -1,5 +1,5 @@
-// The part of one slab that lies in one brick, as light sees it: drawn on the lattice of the light, in parallel projection
-// along the view axis.
+// Draws the part of one slab that lies in one brick as light meets it: on the lattice of the light, in parallel
+// projection along the view axis.
 // Reads   atlas, transfer (see medium.glsl)
 // Writes  tau  optical depth of the slab along the view axis, one layer per slice
 // SPDX-License-Identifier: Apache-2.0

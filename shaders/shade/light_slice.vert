@@ -1,4 +1,4 @@
-// A polygon of a proxy slice, for a target with one layer per slice. As slice.vert.
+// Places a polygon of a proxy slice in a target with one layer per slice; otherwise the same as slice.vert.
 // SPDX-License-Identifier: Apache-2.0
 #extension GL_ARB_shader_viewport_layer_array : require
 #include "shade/constants.glsl"

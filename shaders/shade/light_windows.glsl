@@ -1,14 +1,14 @@
-// Transmittance windows, one layer per path direction. On a slice at depth s, the path of direction k through lattice texel X
-// is texel U = X + s slope_k of the plane of k, its shift rounded to whole texels, the same on every slice. A window is the
-// part of that plane that is in use, stored modulo the size of the texture. See shaders/README.md.
-// A window is a vec4: xy the texels in use; zw where the first of them is in the texture.
+// Light windows hold transmittance, one layer per path direction. On a slice at depth s, the path of direction k
+// through lattice texel X is texel U = X + s slope_k of the plane of k, its shift rounded to whole texels, the same on
+// every slice. A window is the part of that plane that is in use, stored modulo the texture's size (shaders/README.md).
+// It is given by a vec4: xy the number of texels in use; zw where the first of them is in the texture.
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/constants.glsl"
 layout(binding = kWindowsImage, r32f) coherent uniform image2DArray float_windows;
 layout(binding = kWindowsImage, r16) coherent uniform image2DArray fixed_windows;
-uniform vec2 window_size;  // of the texture
+uniform vec2 window_size;  // size of the texture, texels
 
-// u: counted from the first texel in use.
+// Tells whether a texel is in use. u is counted from the first texel in use.
 bool isInWindow(vec2 u, vec4 window) {
   return all(greaterThanEqual(u, vec2(0.0))) && all(lessThan(u, window.xy));
 }

@@ -1,5 +1,5 @@
-// What segments of a view ray scatter and absorb. A transfer function is linear between its control points, so a segment is
-// integrated stretch by stretch (see umbrick/optics/transfer_stretches.h): no table stands between the function and the picture.
+// Tells what segments of a view ray scatter and absorb. A transfer function is linear between its control points, so a
+// segment is integrated stretch by stretch (umbrick/optics/transfer_stretches.h), and no table is needed in between.
 //   kQuadrature 0  1D function; the value runs linearly from the front of the segment to its back
 //               1  1D function; the medium at the middle
 //               2  2D function; value and gradient magnitude run linearly from front to back
@@ -7,15 +7,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/constants.glsl"
 layout(binding = kAtlasUnit) uniform sampler3D atlas;      // r: value, g: gradient magnitude, in texel units
-// RGBA32F, one column a stretch of the values, as many as a power of two; the last stretch is repeated. Ends are in texel
-// units, infinite ones 1e38:
+// RGBA32F, one column for each stretch of the values; the last stretch is repeated up to a power of two. Ends are in
+// texel units, and 1e38 stands for infinity:
 //   row 0     lower end, upper end; 1D: sigma_t at the lower end and at the upper one, 1/world unit
 //   1D, rows 1 and 2   albedo at the lower end and at the upper one
-//   2D, row 1          lower end and upper end of the stretches of the gradients, one a column
+//   2D, row 1          lower end and upper end of the stretches of the gradients, one stretch in each column
 //       from row 2     the media (albedo, sigma_t) at the four corners of each cell: columns 2 i and 2 i + 1, rows
 //                      2 + 2 j and 3 + 2 j for stretch i of the values and j of the gradients
 layout(binding = kTransferUnit) uniform sampler2D transfer;
-uniform vec3 empty_texel;    // x: what empty space reads as; y: what rounding may add to that; z: what it is, texel units
+uniform vec3 empty_texel;    // x: what empty space is read as; y: what rounding may add; z: what it is; texel units
 
 // What a segment, or a part of one, sends to the eye and lets through.
 struct Slab {
@@ -28,11 +28,11 @@ void addPiece(inout Slab slab, vec3 albedo, float tau, float alpha) {
   slab.tau += tau;
 }
 
-// Empty space may be all that is transparent of a medium that is solid elsewhere: it must be hit exactly.
+// Puts the value of empty space right: it must be exact, as it may be the only transparent value of a solid medium.
 float snapped(float value) { return abs(value - empty_texel.x) <= empty_texel.y ? empty_texel.z : value; }
 
-// The number of the stretch that a value lies in, which is that of control points at or below it. By bisection of the upper
-// ends in a row of 2^steps columns.
+// Returns the number of the stretch that a value lies in, which is the number of control points at or below the value.
+// It is found by bisection of the upper ends in a row of 2^steps columns.
 int stretchOf(float value, int row, int steps) {
   int number = 0;
   for (int step = 1 << (steps - 1); step > 0; step >>= 1)
@@ -40,7 +40,7 @@ int stretchOf(float value, int row, int steps) {
   return number;
 }
 
-// Where a value lies between the ends of a stretch; anywhere where those are infinitely far.
+// Returns where a value lies between the ends of a stretch, from 0 to 1; anywhere where the ends are infinitely far.
 float placeIn(vec4 ends, float value) { return clamp((value - ends.r) / max(ends.g - ends.r, 1e-37), 0.0, 1.0); }
 
 // A stretch of a 1D function, as rows 0 to 2 hold it.
@@ -48,9 +48,9 @@ struct Stretch {
   vec4 ends, low, high;
 };
 
-// A function whose stretches are not too many for that is held in uniforms, too, where a software rasteriser reads it several
-// times as fast as from a texture. Up to 24 upper ends stand by fours once more: to compare a value with all of them is faster
-// than to bisect.
+// Where a function has few enough stretches, they are in uniforms too, which a software rasteriser reads several times
+// as fast as a texture. Up to 24 upper ends are there once more, four in each vector, since it is faster to compare a
+// value with all of them than to bisect.
 uniform vec4 stretches[3 * max(kUniformStretches, 1)];
 uniform vec4 few_ends[6];
 
@@ -80,9 +80,9 @@ int valueStretchOf(float value) {
   return number;
 }
 
-// A point of a ray as the function sees it.
+// A point of a ray as the transfer function sees it.
 struct End {
-  vec2 value;    // and gradient magnitude, texel units
+  vec2 value;    // value and gradient magnitude, texel units
   ivec2 stretch;
 };
 
@@ -95,7 +95,7 @@ End endAt(vec3 point) {
   return end;
 }
 
-// A piece of length `ray` within one stretch, over which the value runs from `front` to `back`.
+// Adds a piece of length `ray` within one stretch, over which the value runs from `front` to `back`.
 void addStretch(inout Slab slab, Stretch stretch, float front, float back, float ray) {
   vec2 place = vec2(placeIn(stretch.ends, front), placeIn(stretch.ends, back));
   vec2 sigma_t = stretch.ends.b + place * (stretch.ends.a - stretch.ends.b);
@@ -104,10 +104,10 @@ void addStretch(inout Slab slab, Stretch stretch, float front, float back, float
   addPiece(slab, stretch.low.rgb + lit_place * (stretch.high.rgb - stretch.low.rgb), tau, alpha);
 }
 
-// A segment whose value runs from front to back through the stretches in between. Most segments stay in one.
+// Adds a segment whose value runs from front to back through the stretches in between. Most segments stay in one.
 void addRamp(inout Slab slab, End front, End back, float ray) {
   int number = front.stretch.x, last = back.stretch.x, towards = number < last ? 1 : -1;
-  float per_value = 1.0 / (back.value.r - front.value.r);  // of no matter where both are equal
+  float per_value = 1.0 / (back.value.r - front.value.r);  // does not matter where both are equal
   float value = front.value.r, done = 0.0;
   while (true) {
     Stretch stretch = stretchAt(number);
@@ -124,7 +124,7 @@ void addRamp(inout Slab slab, End front, End back, float ray) {
 // One cell of the lattice of a 2D function: the ends of its stretches and the media at its corners.
 struct Cell {
   vec4 value_ends, gradient_ends;
-  vec4 a, b, c, d;  // at the lower and the upper value for the lower gradient, then for the upper one
+  vec4 a, b, c, d;  // media at the lower and the upper value for the lower gradient, then for the upper one
 };
 
 Cell cellAt(ivec2 number) {
@@ -134,15 +134,15 @@ Cell cellAt(ivec2 number) {
               texelFetch(transfer, corner + ivec2(0, 1), 0), texelFetch(transfer, corner + ivec2(1, 1), 0));
 }
 
-// Albedo and sigma_t.
+// Returns albedo and sigma_t at a point of the cell.
 vec4 mediumIn(Cell cell, vec2 value) {
   vec4 low = cell.a + placeIn(cell.value_ends, value.x) * (cell.b - cell.a);
   vec4 high = cell.c + placeIn(cell.value_ends, value.x) * (cell.d - cell.c);
   return low + placeIn(cell.gradient_ends, value.y) * (high - low);
 }
 
-// A piece of a segment within one cell. Extinction is quadratic along it, so that Simpson's rule gives its optical depth
-// exactly; for the place that scatters in the mean it counts as linear.
+// Adds a piece of a segment within one cell. Extinction is quadratic along it, so that Simpson's rule gives its optical
+// depth exactly. Extinction counts as linear for the place at which the piece scatters on average.
 void addCell(inout Slab slab, ivec2 number, vec2 front, vec2 back, float ray) {
   Cell cell = cellAt(number);
   float first = mediumIn(cell, front).a, middle = mediumIn(cell, 0.5 * (front + back)).a, last = mediumIn(cell, back).a;
@@ -151,13 +151,13 @@ void addCell(inout Slab slab, ivec2 number, vec2 front, vec2 back, float ray) {
   addPiece(slab, mediumIn(cell, lit).rgb, tau, alpha);
 }
 
-// Likewise for a 2D function: the segment is cut where it crosses the lines of the lattice.
+// Adds a segment for a 2D function: the segment is cut where it crosses the lines of the lattice.
 void addPath(inout Slab slab, End front, End back, float ray) {
   ivec2 cell = front.stretch, last = back.stretch, towards = sign(last - cell);
   vec2 change = back.value - front.value;
   float done = 0.0;
   while (true) {
-    vec2 until = vec2(2.0);  // where each of the two axes leaves its stretch
+    vec2 until = vec2(2.0);  // where each of the two coordinates leaves its stretch
     for (int axis = 0; axis < 2; ++axis) {
       vec2 ends = texelFetch(transfer, ivec2(cell[axis], axis), 0).rg;
       float end = towards[axis] > 0 ? ends.g : ends.r;
@@ -172,7 +172,7 @@ void addPath(inout Slab slab, End front, End back, float ray) {
   }
 }
 
-// A segment of length `ray`, world units, between two points of which the ends are known.
+// Adds a segment of length `ray`, world units, between two points of which the ends are known.
 void addSegment(inout Slab slab, End front, End back, float ray) {
   if (kQuadrature == 0)
     addRamp(slab, front, back, ray);
@@ -180,7 +180,7 @@ void addSegment(inout Slab slab, End front, End back, float ray) {
     addPath(slab, front, back, ray);
 }
 
-// A segment whose medium is that at its middle.
+// Adds a segment whose medium is that at its middle.
 void addMiddle(inout Slab slab, End middle, float ray) {
   if (kQuadrature == 1) {
     addStretch(slab, stretchAt(middle.stretch.x), middle.value.r, middle.value.r, ray);

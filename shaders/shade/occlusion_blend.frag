@@ -1,5 +1,5 @@
-// The part of one proxy slice that lies in one brick, both buffers at once (multiple render targets), over light that has
-// been spread already.
+// Draws the part of one proxy slice that lies in one brick into both buffers at once (multiple render targets), over
+// light that has been spread already.
 // Reads   atlas, transfer (see medium.glsl)   occlusion_prev (see footprint.glsl)
 // Writes  eye        premultiplied RGBA, blended under: (ONE_MINUS_DST_ALPHA, ONE)
 //         occlusion  blended by multiplication (ZERO, SRC_COLOR) with the mean that occlusion_spread.frag has left

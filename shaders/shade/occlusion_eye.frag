@@ -1,4 +1,4 @@
-// First of two passes: the part of one proxy slice that lies in one brick, seen by the eye.
+// First of two passes: draws the part of one proxy slice that lies in one brick, seen by the eye.
 // Reads   atlas, transfer (see medium.glsl)   occlusion_prev (see footprint.glsl)
 // Writes  eye  premultiplied RGBA, blended under: (ONE_MINUS_DST_ALPHA, ONE)
 //         aux  kAux: opacity-weighted visibility and depth, blended alike

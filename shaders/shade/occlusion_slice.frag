@@ -1,4 +1,4 @@
-// The part of one proxy slice that lies in one brick, both buffers at once (multiple render targets).
+// Draws the part of one proxy slice that lies in one brick into both buffers at once (multiple render targets).
 // Reads   atlas, transfer (see medium.glsl)   occlusion_prev (see footprint.glsl)
 // Writes  eye        premultiplied RGBA, blended under: (ONE_MINUS_DST_ALPHA, ONE)
 //         occlusion  blending off; pixels that no brick covers come from occlusion_spread.frag

@@ -1,4 +1,4 @@
-// Light as it spreads from slice to slice, whether or not a brick is there.
+// Spreads light from slice to slice, whether or not a brick is there.
 // Reads   occlusion_prev (see footprint.glsl)
 // Writes  occlusion  blending off
 // SPDX-License-Identifier: Apache-2.0

@@ -1,4 +1,4 @@
-// The part of one proxy slice that lies in one brick, lit by what the windows let through.
+// Draws the part of one proxy slice that lies in one brick, lit by what the light windows let through.
 // Reads   atlas, transfer (see medium.glsl)   visibility, visibility_weight (see window_step.comp)
 // Writes  eye  premultiplied RGBA, blended under: (ONE_MINUS_DST_ALPHA, ONE)
 //         aux  kAux: opacity-weighted visibility and depth, blended alike
@@ -8,16 +8,16 @@
 layout(binding = kVisibilityUnit) uniform sampler2DArray visibility;
 layout(binding = kVisibilityWeightUnit) uniform sampler2DArray visibility_weight;
 uniform vec4 lattice_map;  // view coordinates across to visibility's coordinates: xy scale, zw offset
-uniform vec3 whole_light;  // that nothing is in the way of
+uniform vec3 whole_light;  // light that arrives where nothing is in the way
 uniform float brightest;   // light of this radiance is 1 in the eye buffer
 flat in vec4 slab_centre;
 flat in float slice_layer;
 layout(location = 0) out vec4 eye;
 layout(location = 1) out vec4 aux;
 
-// Share of a slab's scattering that its own medium leaves: light that has come through d / cos and goes d_e to the eye,
-// integrated over a slab of optical depth tau towards the eye, over what it would be without occlusion. path: light's path
-// over the eye's.
+// Returns the share of a slab's scattering that its own medium lets through: light that has come through d / cos and
+// goes d_e to the eye, integrated over a slab of optical depth tau towards the eye, over the same without occlusion.
+// path: length of the light's path over that of the eye's.
 float selfShadow(float tau, float path) {
   return slabFactor(tau * (1.0 + path)) / slabFactor(tau);
 }

@@ -1,4 +1,4 @@
-// A polygon of a proxy slice that looks up a layer of its own. As slice.vert.
+// Places a polygon of a proxy slice that looks up a layer of its own; otherwise the same as slice.vert.
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/constants.glsl"
 layout(location = kPositionAttribute) in vec2 position;

@@ -1,4 +1,4 @@
-// What a slice samples, for tests: the interpolated value at the slab's middle, and how often a pixel is hit.
+// Shows tests what a slice samples: the interpolated value at the slab's middle, and how often a pixel is hit.
 // Reads   atlas
 // Writes  probe  r: value in texel units, g: 1; blended additively
 // SPDX-License-Identifier: Apache-2.0

@@ -6,7 +6,7 @@
 #include "shade/clip.glsl"
 #include "shade/medium.glsl"
 
-// Of the part of the slab that clip planes leave, along the fragment's view ray.
+// Evaluates the part of the slab that clip planes leave, along the fragment's view ray.
 Slab evaluateSlab(vec4 slab_centre) {
   vec2 p = screenPoint();
   vec3 middle = slabMiddle(slab_centre, p);

@@ -1,4 +1,4 @@
-// A polygon of a proxy slice, already in device coordinates.
+// Places a polygon of a proxy slice, whose vertices are in device coordinates already.
 // Reads   position  normalised device coordinates
 //         slab      xyz: atlas coordinates of the slice plane at the centre of the image, for the polygon's brick;
 //                   w: depth of the slice's middle, world units

@@ -1,4 +1,4 @@
-// Spreads the state of tiles along one axis: what light can reach counts like the tile itself.
+// Spreads the state of tiles along one axis: a tile that light can reach counts like the one where light is.
 // Reads   state_before  by tile, see tile_state.frag
 // Writes  state         by tile
 // SPDX-License-Identifier: Apache-2.0
@@ -6,7 +6,7 @@
 layout(binding = kTileStateUnit) uniform sampler2D state_before;
 uniform vec2 reach;    // of each channel, tiles
 uniform vec2 scale;    // how distances from the image's centre change on the way, from 1 to this
-uniform vec2 centre;   // of the image, tiles
+uniform vec2 centre;   // centre of the image, tiles
 uniform vec2 axis;     // (1, 0) or (0, 1)
 layout(location = 0) out vec2 state;
 

@@ -1,4 +1,4 @@
-// What the occlusion sweep still has to do in each tile of the image.
+// Finds what the occlusion sweep still has to do in each tile of the image.
 // Reads   eye_so_far      premultiplied RGBA
 //         occlusion_prev  1 = unoccluded
 //         covered_by      RG32F, by tile: first and last slice with a brick there
@@ -9,8 +9,8 @@ layout(binding = kEyeUnit) uniform sampler2D eye_so_far;
 layout(binding = kCoveredByUnit) uniform sampler2D covered_by;
 layout(binding = kOcclusionUnit) uniform sampler2D occlusion_prev;
 uniform float saturation;   // transmittance below which a pixel counts as saturated
-uniform float slice;        // that is drawn next
-uniform float next_look;    // slice at which the state is found anew
+uniform float slice;        // the slice that is drawn next
+uniform float next_look;    // the slice at which the state is found anew
 uniform float imperceptible;  // occlusion less than this counts as none
 layout(location = 0) out vec2 state;
 

@@ -1,11 +1,11 @@
-// Opens some of the windows for a run of slices: paths that were not in use before are clear.
+// Opens some of the light windows for a run of slices: light is 1 on paths that were not in use before.
 // Writes  windows  see light_windows.glsl
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/light_windows.glsl"
 layout(local_size_x = kLatticeTile, local_size_y = kLatticeTile) in;
 uniform vec4 window[kWindows];         // see light_windows.glsl
 uniform vec4 window_before[kWindows];  // texels in use until now, from xy to zw, counted as those of the window
-uniform int first_layer;               // that of the first of these windows
+uniform int first_layer;               // layer of the first of these windows
 
 void main() {
   int i = int(gl_GlobalInvocationID.z);

@@ -1,12 +1,12 @@
-// Takes the light of some directions through one slice: one invocation per texel of the lattice, in the tiles where
-// something is seen or occludes. A path crosses a slice in one texel, so that no two invocations share one.
+// Takes the light of some directions through one slice. There is one invocation for each texel of the lattice, in the
+// tiles where something is seen or occludes. A path crosses a slice in one texel, so no two invocations share a path.
 // Reads   extinction  optical depth of slabs along the view axis, one layer per slice of the run
 // Writes  windows     behind the slice instead of in front of it, see light_windows.glsl
 //         visibility  in front of the slice; kColoured 0: r the share of light that arrives, g that share with each
-//                     direction weighted by 1 / (1 + 1/cos); kColoured 1: rgb the light that arrives, a as g; all times
-//         weights     how much of a texel the eye sees, which the window of the view axis tells. Interpolation between what
-//                     is times this and this itself leaves out texels that are hidden in a medium, as with colours that are
-//                     premultiplied by opacity
+//                     direction weighted by 1 / (1 + 1/cos); kColoured 1: rgb the light that arrives, a as g. All of
+//                     them are multiplied by the weight
+//         weights     how much of a texel the eye sees, which the window of the view axis tells. Interpolation of both
+//                     leaves out texels that are hidden in a medium, as with colours premultiplied by opacity
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/light_windows.glsl"
 layout(local_size_x = kLatticeTile, local_size_y = kLatticeTile) in;
@@ -15,20 +15,20 @@ layout(binding = kVisibilityImage, rg32f) coherent uniform image2DArray share_vi
 layout(binding = kVisibilityImage, rgba32f) coherent uniform image2DArray coloured_visibility;
 layout(binding = kVisibilityWeightImage, r32f) coherent uniform image2DArray weights;
 layout(std430, binding = kTilesBuffer) readonly buffer Tiles { uint tiles[]; };
-const float kLeastWeight = 1e-3;  // where nothing is seen of all four texels, all count alike
-uniform int first_tile;              // of the slice
+const float kLeastWeight = 1e-3;  // where the eye sees nothing of all four texels, all count alike
+uniform int first_tile;              // of the tiles of the slice
 uniform int tile_count;
-uniform int layer;                   // of the slice
-uniform vec4 view_window;            // of the view axis
-uniform vec2 view_path;              // of the view axis: window's minus lattice's texel
+uniform int layer;                   // layer of the slice
+uniform vec4 view_window;            // window of the view axis
+uniform vec2 view_path;              // view axis: window's minus lattice's texel
 uniform vec4 window[kDirections];
-uniform vec4 path[kDirections];      // xy: window's minus lattice's texel; z: 1/cos(angle to the view axis); w: 1 / (1 + z)
+uniform vec4 path[kDirections];      // xy: as view_path; z: 1/cos(angle to the view axis); w: 1 / (1 + z)
 uniform vec4 radiance[kDirections];  // rgb; a: share of the light
 uniform int direction_count;
-uniform int first_layer;             // of the windows, that of the first of these directions
-uniform int add;                     // 1: to what other directions have brought
+uniform int first_layer;             // layer of the window of the first of these directions
+uniform int add;                     // 1: add to what other directions have brought
 
-// Dims the path through texel u of a window by a slab of optical depth tau along it. Returns what arrives in front of the slab.
+// Dims the path through texel u of a window by a slab of optical depth tau. Returns what arrives in front of the slab.
 float carryPath(vec2 u, vec4 of_path, int path_layer, float tau) {
   // Nothing has touched the paths outside of a window, or nothing will read them.
   if (!isInWindow(u, of_path)) return 1.0;
@@ -38,7 +38,7 @@ float carryPath(vec2 u, vec4 of_path, int path_layer, float tau) {
   return arrives;
 }
 
-// What the directions bring to lattice texel x, and take from there behind a slab of optical depth tau along the view axis.
+// Returns what the directions bring to lattice texel x, and dims them by a slab of optical depth tau (view axis).
 vec4 carryDirections(ivec2 x, float tau) {
   vec4 sum = vec4(0.0);
   for (int k = 0; k < direction_count; ++k) {

@@ -1,4 +1,4 @@
-// Emission and absorption: slices blend into the eye buffer and need nothing of each other.
+// Draws emission and absorption: each slice blends into the eye buffer and needs nothing of other slices.
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/eye_sweep.h"
 

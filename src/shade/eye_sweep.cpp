@@ -5,8 +5,9 @@
 
 namespace umbrick {
 namespace {
-// Slices between two looks at which pixels are saturated. A look costs about as much as a slice of constant colour, and
-// a pixel is shaded for half as many slices too long on average: the dearer a slice, the sooner a look pays.
+// Returns the number of slices between two looks at which pixels are saturated. A look costs about as much as a slice
+// of constant colour, and a pixel is shaded for half as many slices too long on average: the more a slice costs, the
+// sooner a look pays.
 std::int64_t saturationInterval(const ResolvedScene& scene) { return std::max(1, 8 / scene.sampling.segments); }
 }  // namespace
 
@@ -24,7 +25,7 @@ void EyeSweep::draw(Frame& frame, std::span<const SliceDraw> draws, const GlProg
       setState(frame, program);
       sinceTest_ = 0;
     }
-    // One call for as many slices as lie in the same texture until the next look.
+    // One call draws as many slices as lie in the same texture until the next look.
     SliceDraw merged = draws[i];
     std::size_t next = i + 1;
     for (; next < draws.size() && draws[next].texture == merged.texture; ++next) {

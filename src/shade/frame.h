@@ -31,12 +31,12 @@ class FragmentCounter {
   std::vector<GlQuery> queries_;
 };
 
-/// Wall-clock time of each kind of pass; waits for the driver at every lap, which costs time itself.
+/// Measures the wall-clock time of each kind of pass. It waits for the driver at every lap, which costs time itself.
 class PassClock {
  public:
   PassClock(const GlFunctions& gl, bool enabled) : gl_(gl), enabled_(enabled) {}
   void start() { watch_ = Stopwatch(); }
-  /// What happened since the start or the last lap was for `pass`.
+  /// Books the time since the start or the last lap to `pass`.
   void lap(double PassTimes::*pass) {
     if (!enabled_) return;
     gl_.Finish();
@@ -57,17 +57,17 @@ struct Frame {
   const ResolvedScene& scene;
   Camera camera;
   IndexView view;
-  std::vector<glm::dvec4> planes;  // that cut slabs, in view coordinates
-  std::vector<glm::dvec4> bounds;  // beyond which there is nothing to draw: those planes and the box of the medium
+  std::vector<glm::dvec4> planes;  // planes that cut slabs, in view coordinates
+  std::vector<glm::dvec4> bounds;  // nothing is drawn beyond these: `planes` and the medium's box
   ProxySlices slices;
-  const BrickSelection& bricks;  // polygons name bricks by their position in it
+  const BrickSelection& bricks;  // the bricks by their position in it, which is how polygons name them
   const BrickAtlas& atlas;
   const TransferLookup& transfer;
   const RenderTargets& targets;
   PolygonBuffer& polygons;
   FragmentCounter fragments;
   bool reverseBricks = false;  // see RenderOptions
-  double voxelEdge = 1;        // shortest, world units
+  double voxelEdge = 1;        // shortest edge of a voxel, world units
   double diagonal = 1;         // of the volume's domain, world units; the same however it is cut into bricks
   PassClock clock;
   RenderSample sample;
@@ -75,32 +75,32 @@ struct Frame {
   glm::ivec2 size() const { return {camera.width, camera.height}; }
 };
 
-/// Constants of every shader that evaluates slabs.
+/// Returns the constants of every shader that evaluates slabs.
 ShaderConstants slabConstants(const Frame& frame);
-/// Sets what ray.glsl, clip.glsl and medium.glsl read.
+/// Sets the uniforms that ray.glsl, clip.glsl and medium.glsl read.
 void setSlabUniforms(GlProgram& program, const Frame& frame);
-/// Likewise for slabs seen in another way than by the camera. @param planes  in the coordinates of that view
+/// Sets the same uniforms for slabs in a view other than the camera's. @param planes  in the coordinates of that view
 void setSlabUniforms(GlProgram& program, const Frame& frame, const IndexView& view, std::span<const glm::dvec4> planes);
 /// Binds the volume's texture and the transfer function for a draw.
 void bindVolume(const Frame& frame, int texture);
 
-/// Draws slices in order; one kind per model.
+/// Draws slices in order. There is one kind of slice pass for each way of lighting.
 class SlicePass {
  public:
   virtual ~SlicePass() = default;
-  /// Once the slices of a picture are cut.
+  /// Is called once the slices of a picture are cut.
   virtual void plan(Frame&) {}
-  /// Slices, as many as the frame's, whose bricks draw() needs besides those that the eye sees; null: none.
+  /// Returns the slices, as many as the frame's, whose bricks draw() needs besides those that the eye sees; null: none.
   virtual const ProxySlices* occluders() const { return nullptr; }
-  /// Before the first slice of a picture; compiles what changed. @param runs  of slices that will be drawn together
+  /// Is called before the first slice of a picture; compiles what has changed. @param runs  slices to be drawn together
   virtual void begin(Frame& frame, std::span<const SweepRun> runs) = 0;
   /// Puts the triangles of slices [first, last), whose bricks are resident, into frame.polygons.
   virtual void fill(Frame& frame, std::int64_t first, std::int64_t last);
-  /// Slices [first, last), after fill().
+  /// Draws slices [first, last), after fill().
   virtual void draw(Frame& frame, std::int64_t first, std::int64_t last) = 0;
-  /// Light of this radiance is 1 in the eye buffer: 1, or more where fixed point would cut brighter light off.
+  /// Returns the radiance that is 1 in the eye buffer: 1, or more where fixed point would cut brighter light off.
   virtual double brightest() const { return 1; }
-  /// What is special about the last picture.
+  /// Adds to the statistics what only this kind of pass knows of the last picture.
   virtual void addTo(RenderStats&) const {}
 };
 
@@ -108,7 +108,7 @@ std::unique_ptr<SlicePass> makeEmissionPass();
 std::unique_ptr<SlicePass> makeOcclusionPass();
 std::unique_ptr<SlicePass> makeOrdinatesPass();
 
-/// Excludes saturated pixels from what follows.
+/// Excludes saturated pixels from everything that is drawn later.
 class SaturationTest {
  public:
   explicit SaturationTest(const GlFunctions& gl);
@@ -116,11 +116,11 @@ class SaturationTest {
 
  private:
   GlProgram program_;
-  GlVertexArray nothing_;  // the core profile draws nothing without one
+  GlVertexArray nothing_;  // an empty vertex array, since the core profile draws nothing without one
 };
 
-/// The program of `vertex` and `fragment`, or of a compute shader, with these constants, compiled again only when they
-/// change.
+/// The program of `vertex` and `fragment`, or of a compute shader, for given constants. It is compiled again only
+/// when these change.
 class SpecialisedProgram {
  public:
   SpecialisedProgram(std::string vertex, std::string fragment)

@@ -22,7 +22,7 @@ AimedLight aimLight(std::span<const LightDirection> directions, const CameraFram
         {glm::dot(direction, axes.right), glm::dot(direction, axes.up), -glm::dot(direction, axes.forward)}));
     const double share = power > 0 ? (radiance.r + radiance.g + radiance.b) / power : 0;
     aimed.radiance.emplace_back(radiance, share);
-    // Of light of one colour a direction needs only its share.
+    // Where the light has one colour a direction needs only its share.
     const glm::dvec3 tint = glm::abs(radiance - share * aimed.whole);
     aimed.coloured = aimed.coloured || std::max({tint.r, tint.g, tint.b}) > 1e-9 * power;
   }

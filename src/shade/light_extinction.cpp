@@ -9,12 +9,12 @@ void LightExtinction::begin(const Frame& frame, const LightPlan& plan) {
   if (size_ != geometry.lattice.size || layers_ != plan.runs.slicesTogether)
     makeTexture(frame.gl, geometry.lattice.size, plan.runs.slicesTogether);
   ShaderConstants constants = slabConstants(frame);
-  constants["kPerspective"] = 0;  // also where the eye's view is perspective
+  constants["kPerspective"] = 0;  // light is seen in parallel projection even where the eye's view is perspective
   setSlabUniforms(program_.get(frame.gl, constants), frame, geometry.view, geometry.planes);
 }
 
 void LightExtinction::makeTexture(const GlFunctions& gl, const glm::ivec2& size, int layers) {
-  layers_ = 0;  // until all is made
+  layers_ = 0;  // no layers count as made until all of this has worked
   texture_ = makeTextureArray(gl, GL_R32F, size.x, size.y, layers, GL_NEAREST);
   target_ = makeFramebuffer(gl, {texture_.name()});
   size_ = size;
@@ -47,7 +47,7 @@ void LightExtinction::draw(Frame& frame, const LightRun& run) {
   polygons_->bind();
   frame.fragments.begin();
   for (std::size_t i = 0; i < draws.size();) {
-    // One call for all slices that follow each other in the same texture of the atlas.
+    // One call draws all slices that follow each other in the same texture of the atlas.
     SliceDraw merged = draws[i];
     for (++i; i < draws.size() && draws[i].texture == merged.texture; ++i) merged.indices += draws[i].indices;
     bindVolume(frame, merged.texture);

@@ -1,4 +1,4 @@
-// The slabs of a run of slices as light meets them: their optical depth, drawn on the lattice of the light.
+// Draws the optical depth of the slabs of a run of slices, as light meets them, on the lattice of the light.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
@@ -11,15 +11,15 @@ namespace umbrick {
 
 class LightExtinction {
  public:
-  /// Before the first slice of a picture.
+  /// Is called before the first slice of a picture.
   void begin(const Frame& frame, const LightPlan& plan);
-  /// Takes the polygons of slices [first, last), whose bricks are resident. @param layers  by slice from `first`: that
-  /// of the texture; negative: leave the slice out
+  /// Takes the polygons of slices [first, last), whose bricks are resident.
+  /// @param layers  for each slice from `first`: its layer of the texture; negative: leave the slice out
   void fill(const Frame& frame, const LightPlan& plan, std::int64_t first, std::int64_t last,
             std::span<const int> layers);
   /// Draws the slices of a run into its layers of the texture.
   void draw(Frame& frame, const LightRun& run);
-  /// Optical depth along the view axis, R32F, as large as the lattice, one layer for each slice of the run.
+  /// Returns optical depth along the view axis, R32F, as large as the lattice, one layer for each slice of the run.
   const GlTexture& texture() const { return texture_; }
 
  private:

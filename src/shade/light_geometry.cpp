@@ -10,11 +10,11 @@
 namespace umbrick {
 namespace {
 
-// Where nobody asks for more, so many texels lie along the diagonal of a volume: windows then take some 16 MiB a
-// direction at most.
+// Unless the scene asks for more, so many texels lie along the diagonal of a volume: a light window then takes some 16
+// MiB for each direction at most.
 constexpr double kMostTexelsAlong = 2048;
 
-// What all visible bricks cover across, on whatever slice, in texels.
+// Returns a rectangle around all that visible bricks cover across, on whatever slice, in texels.
 Rectangle bricksAcross(const LitVolume& volume, const LightLattice& lattice) {
   Rectangle across;
   for (const glm::ivec3& origin : volume.bricks) {
@@ -32,7 +32,7 @@ void cover(LightLattice& lattice, const Rectangle& all, int mostTexels) {
   if (all.empty()) return;
   const glm::dvec2 low = glm::floor(all.min) - 2.0, high = glm::ceil(all.max) + 2.0;
   const glm::dvec2 texels = high - low;
-  // The windows, which are as large, have the same limit.
+  // The light windows, which are as large, have the same limit.
   if (!(std::max(texels.x, texels.y) <= mostTexels))
     throw InvalidArgument("occlusion.scale: window texels of " + std::to_string(lattice.texel) +
                           " are too small, light needs more of them side by side than the driver's limit of " +
@@ -41,7 +41,7 @@ void cover(LightLattice& lattice, const Rectangle& all, int mostTexels) {
   lattice.size = glm::ivec2(texels);
 }
 
-// Planes of the eye's view coordinates in those of a view whose centre lies at `centre`.
+// Converts planes of the eye's view coordinates to those of a view whose centre lies at `centre`.
 std::vector<glm::dvec4> planesFrom(const glm::dvec2& centre, std::span<const glm::dvec4> planes) {
   std::vector<glm::dvec4> moved(planes.begin(), planes.end());
   for (glm::dvec4& plane : moved) plane.w += plane.x * centre.x + plane.y * centre.y;
@@ -98,7 +98,7 @@ LightGeometry lightGeometry(const LitVolume& volume, const LightPaths& paths, do
   LightGeometry light;
   light.lattice.texel = texel;
   light.lattice.shift = shift;
-  // First what the eye sees, and from where that can be occluded: this is where the lattice has to be.
+  // The first step finds what the eye sees, and from where that can be occluded: this is where the lattice has to be.
   light.extents.texel = texel;
   for (std::int64_t i = 0; i < volume.slices.count(); ++i) light.extents.depths.push_back(volume.slices.depth(i));
   light.extents.seen = polygonExtents(light.seen(volume));
@@ -107,7 +107,7 @@ LightGeometry lightGeometry(const LitVolume& volume, const LightPaths& paths, do
   Rectangle all;
   for (const Rectangle& region : needed) all.include(region.within(bricks));
   cover(light.lattice, all, mostTexels);
-  // Then the same slices once more, as they lie on the lattice: this is what occludes.
+  // The second step cuts the same slices once more, as they lie on the lattice: this is what occludes.
   const glm::dvec2 centre = light.lattice.centre();
   light.view = latticeView(volume.view, light.lattice);
   light.planes = planesFrom(centre, volume.planes);

@@ -19,26 +19,27 @@ namespace umbrick {
 /// [first + shift + (i, j), first + shift + (i + 1, j + 1)] * texel in view coordinates. It is the same for all slices
 /// and aligned with the view axis, so that it does not depend on which bricks there are.
 struct LightLattice {
-  double texel = 1;     // edge, world units
+  double texel = 1;     // edge of a texel, world units
   glm::dvec2 shift{0};  // texels
   glm::ivec2 first{0}, size{1};
   glm::dvec2 offset() const { return shift * texel; }
   glm::dvec2 centre() const { return (glm::dvec2(first) + shift + 0.5 * glm::dvec2(size)) * texel; }
 };
 
-/// The edge of the lattice's texels, world units. @param scale  texels per voxel edge; 0: the renderer chooses
+/// Returns the edge of the lattice's texels, world units.
+/// @param scale  texels per voxel edge; 0: the renderer chooses
 /// @param voxelEdge,diagonal  shortest edge of a voxel, and the diagonal of the volume, world units
 double latticeTexel(double scale, double spacing, double voxelEdge, double diagonal);
 
-/// The view of a lattice: parallel, along the view axis of `eye`, with one pixel per texel. Its view coordinates are
-/// those of `eye` less the centre of the lattice.
+/// Returns the view of a lattice: parallel, along the view axis of `eye`, with one pixel per texel. Its view
+/// coordinates are those of `eye` less the centre of the lattice.
 IndexView latticeView(const IndexView& eye, const LightLattice& lattice);
 
-/// Slices with the view that they were cut for, and how to get from there to texels of a lattice.
+/// Slices with the view that they were cut for, and how their points are converted to texels of a lattice.
 struct LatticePolygons {
   const ProxySlices& slices;
   const IndexView& view;
-  glm::dvec2 centre;  // of the view, world units across from where the lattice's texel (0, 0) begins
+  glm::dvec2 centre;  // centre of the view, world units across from where the lattice's texel (0, 0) begins
   double texel;       // world units
 };
 
@@ -59,30 +60,30 @@ void forEachPolygon(const LatticePolygons& polygons, std::int64_t i, const Visit
   }
 }
 
-/// By slice, the rectangle around its polygons, in texels.
+/// Returns, for each slice, the rectangle around its polygons, in texels.
 std::vector<Rectangle> polygonExtents(const LatticePolygons& polygons);
 
 /// What the slices hold, as rectangles in texels of the lattice.
 struct LightExtents {
-  double texel = 1;                  // edge, world units
+  double texel = 1;                  // edge of a texel, world units
   std::vector<double> depths;        // of all slices, ascending, world units
-  std::vector<Rectangle> seen;       // by slice: where bricks are visible to the eye
-  std::vector<Rectangle> occluding;  // by slice: where bricks may occlude
+  std::vector<Rectangle> seen;       // for each slice: where bricks are visible to the eye
+  std::vector<Rectangle> occluding;  // for each slice: where bricks may occlude
   bool holdsNothing(std::size_t slice) const { return seen[slice].empty() && occluding[slice].empty(); }
 };
 
-/// By slice, the rectangle from which light, or the eye's view, can still be blocked on its way to something seen on
-/// that slice or a later one. @pre depths and seen are set
+/// Returns, for each slice, the rectangle from which light, or the eye's view, can still be blocked on its way to
+/// something seen on that slice or a later one. @pre depths and seen are set
 std::vector<Rectangle> neededRegions(const LightExtents& extents, const LightPaths& paths);
 
-/// What the eye sees of a volume, before there is light.
+/// What the eye sees of a volume, before its light is known.
 struct LitVolume {
   const IndexView& view;
   const ProxySlices& slices;
   std::span<const glm::ivec3> bricks;  // first owned voxel of each
   glm::ivec3 interior;                 // owned voxels of a brick
-  std::span<const glm::dvec4> planes;  // that cut slabs, in view coordinates
-  std::span<const glm::dvec4> bounds;  // beyond which there is nothing to draw
+  std::span<const glm::dvec4> planes;  // planes that cut slabs, in view coordinates
+  std::span<const glm::dvec4> bounds;  // planes beyond which there is nothing to draw
 };
 
 /// What light sees of the same volume.
@@ -91,7 +92,7 @@ struct LightGeometry {
   LightExtents extents;
   IndexView view;                  // see latticeView
   ProxySlices slices;              // the eye's slices, as many and as deep, cut for that view
-  std::vector<glm::dvec4> planes;  // the volume's, in coordinates of that view
+  std::vector<glm::dvec4> planes;  // the planes of the volume, in coordinates of that view
 
   LatticePolygons seen(const LitVolume& volume) const {
     return {volume.slices, volume.view, -lattice.offset(), lattice.texel};
@@ -99,9 +100,10 @@ struct LightGeometry {
   LatticePolygons occluding() const { return {slices, view, lattice.centre() - lattice.offset(), lattice.texel}; }
 };
 
-/// @param texel,shift  of the lattice, see there
-/// @param mostTexels   that the driver takes side by side
-/// @throw InvalidArgument  the lattice needs more
+/// Lays the lattice over the volume and cuts its slices as light sees them.
+/// @param texel,shift  of the lattice, see LightLattice
+/// @param mostTexels  the largest edge of a texture that the driver takes
+/// @throw InvalidArgument  the lattice would need a larger one
 LightGeometry lightGeometry(const LitVolume& volume, const LightPaths& paths, double texel, const glm::dvec2& shift,
                             int mostTexels);
 

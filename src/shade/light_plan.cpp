@@ -7,14 +7,14 @@
 namespace umbrick {
 namespace {
 
-// A texel is read with its neighbours.
+// The eye reads a texel together with its neighbours, so a light window needs a border of so many texels.
 constexpr double kBorder = 2;
-// Slices that one batch lights at most: bounds the depth of the texture arrays on the lattice, together with their
-// bytes.
+// Up to 32 slices are lit in one batch; this, together with their bytes, bounds the depth of the texture arrays
+// on the lattice.
 constexpr int kMostSlices = 32;
 constexpr double kMostSliceBytes = 64 << 20;
 
-// Of a run's windows, texels.
+// Returns the area of the largest light window of a run, texels.
 double largestArea(const LightRun& run) {
   double largest = 0;
   run.forEachWindow([&](const LightWindow& window) { largest = std::max(largest, window.area()); });
@@ -48,7 +48,7 @@ LightWindow LightPlanner::PathPlan::window(std::int64_t first, std::int64_t last
   const Rectangle live = readFrom[static_cast<std::size_t>(first)].within(touchedUntil[static_cast<std::size_t>(last)]);
   if (live.empty()) return {};
   const glm::vec<2, std::int64_t> low(glm::floor(live.min)), high(glm::ceil(live.max));
-  // Those of runs across a wide gap may be larger than numbers: too large for a run anyway.
+  // The light windows of runs across a wide gap may exceed the range of int: these are too large for a run anyway.
   return {low, glm::ivec2(glm::min(high - low, glm::vec<2, std::int64_t>(1 << 30)))};
 }
 
@@ -91,7 +91,7 @@ std::span<const LightRun> LightRuns::within(std::int64_t first, std::int64_t las
 
 LightRuns planLightRuns(const LightPlanner& planner, std::span<const SweepRun> sweeps, double bytesPerSlice) {
   LightRuns plan;
-  // Long runs save the driver work; their windows may be half as large again as those of single slices.
+  // Long runs save the driver work, so their windows may be half as large again as those of single slices.
   double area = 1;
   for (const SweepRun& sweep : sweeps)
     for (const LightRun& run : planner.runs(sweep.first, sweep.last, 1, 0)) area = std::max(area, largestArea(run));

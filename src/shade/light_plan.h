@@ -1,4 +1,4 @@
-// What of the light's windows a sweep needs, worked out before anything is drawn.
+// Works out what a sweep needs of the light's windows, before anything is drawn.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace umbrick {
 
-/// The window of the paths of one direction while they pass a run of slices: texels [first, first + size) of an endless
-/// plane of their own, on which a path keeps its place from slice to slice.
+/// The light window of one direction is the part of its paths that a run of slices needs: texels [first, first + size)
+/// of an endless plane of their own, on which a path keeps its place from slice to slice.
 struct LightWindow {
   glm::vec<2, std::int64_t> first{0};  // grows with the depth times the slope
   glm::ivec2 size{0};
@@ -23,9 +23,9 @@ struct LightWindow {
 
 /// Slices that are lit together, with what each path needs for them.
 struct LightRun {
-  std::vector<std::int64_t> slices;  // those with bricks, ascending
-  LightWindow view;                  // of the view axis
-  std::vector<LightWindow> lights;   // by direction of the light
+  std::vector<std::int64_t> slices;  // the slices of the run that have bricks, ascending
+  LightWindow view;                  // light window of the view axis
+  std::vector<LightWindow> lights;   // light window of each direction of the light
   /// Visits the view's window and then those of the lights.
   template <class Visit>
   void forEachWindow(const Visit& visit) const {
@@ -34,9 +34,10 @@ struct LightRun {
   }
 };
 
-/// Cuts slices [first, last) into runs of at most `longest` slices, fewer where the windows would get larger than
+/// Cuts slices [first, last) into runs of at most `longest` slices, fewer where the light windows would get larger than
 /// `most` texels each. A window holds the paths that something has touched until the end of the run and that something
-/// seen in it or later reads: others are 1 or not asked for. @pre extents hold all slices of the picture
+/// seen in the run or later reads: on all other paths light is 1 or not asked for.
+/// @pre extents hold all slices of the picture
 class LightPlanner {
  public:
   LightPlanner(const LightExtents& extents, const LightPaths& paths);
@@ -47,32 +48,33 @@ class LightPlanner {
   struct PathPlan {
     PathPlan(const LightExtents& extents, const LightSlope& light);
     LightWindow window(std::int64_t first, std::int64_t last) const;
-    std::vector<Rectangle> readFrom;      // by slice: read on it or on a later one
-    std::vector<Rectangle> touchedUntil;  // by slice: touched on it or on an earlier one
+    std::vector<Rectangle> readFrom;      // for each slice: the paths that are read on it or on a later one
+    std::vector<Rectangle> touchedUntil;  // for each slice: the paths that are touched on it or on an earlier one
   };
-  LightRun windowsOf(std::int64_t first, std::int64_t last) const;  // a run without its slices
+  LightRun windowsOf(std::int64_t first, std::int64_t last) const;  // returns a run without its slices
   const LightExtents& extents_;
   PathPlan view_;
   std::vector<PathPlan> lights_;
 };
 
-/// All runs of a picture, and the sizes of the textures that take any of them.
+/// All runs of a picture, and the sizes of textures that are large enough for any of them.
 struct LightRuns {
-  std::vector<LightRun> runs;  // in order of slices
-  glm::ivec2 windowSize{1};    // texels that hold the window of any path
-  int slicesTogether = 1;      // slices of the longest run, at most
-  /// The runs of slices [first, last), which no run reaches across.
+  std::vector<LightRun> runs;  // in order of their slices
+  glm::ivec2 windowSize{1};    // texels of a texture that holds the light window of any path
+  int slicesTogether = 1;      // most slices of a run
+  /// Returns the runs of slices [first, last). @pre no run reaches across either end
   std::span<const LightRun> within(std::int64_t first, std::int64_t last) const;
 };
 
-/// @param sweeps         slices that are drawn together; a run lies within one of them
-/// @param bytesPerSlice  what one slice of a run takes on the lattice
+/// Plans the runs of a picture.
+/// @param sweeps  slices that are drawn together; a run lies within one of them
+/// @param bytesPerSlice  memory that one slice of a run takes on the lattice
 LightRuns planLightRuns(const LightPlanner& planner, std::span<const SweepRun> sweeps, double bytesPerSlice);
 
-/// All that is known of the light of a picture before anything is drawn.
+/// All that is known about the light of a picture before anything is drawn.
 struct LightPlan {
   AimedLight aimed;
-  std::vector<glm::dvec2> roundings;  // by direction, see shiftRoundings
+  std::vector<glm::dvec2> roundings;  // for each direction, see shiftRoundings
   LightGeometry geometry;
   LatticeTiles tiles;
   LightRuns runs;

@@ -10,10 +10,10 @@
 namespace umbrick {
 namespace {
 
-// Occlusion that counts as none: a third of what kWalkReach leaves out.
+// Occlusion below this counts as none. It is a third of what kWalkReach leaves out.
 constexpr float kImperceptible = 1e-5f;
 
-// First and last slice that may cover each tile.
+// Returns, for each tile, the first and the last slice that may cover it.
 std::vector<glm::vec2> coveringSlices(const ProxySlices& slices, const glm::ivec2& tiles, const glm::ivec2& size,
                                       int tileEdge) {
   std::vector<glm::vec2> covered(static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y),
@@ -66,7 +66,7 @@ LightTiles::Way LightTiles::way(std::int64_t from, std::int64_t to) const {
     way.scale *= step.scale;
     radius = step.radius;
   }
-  // The first steps are no Gaussian: two of them in full.
+  // The first steps do not add up to a Gaussian yet, so two of them count in full.
   way.reach = kWalkReach * std::sqrt(variance) + 2 * (radius + 1);
   return way;
 }
@@ -92,8 +92,8 @@ void LightTiles::look(const Frame& frame, std::int64_t slice, const GlTexture& o
   state_.use();
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
 
-  // What is visible until the last slice may need light from here; what is dark here darkens others until the next
-  // look.
+  // What is visible until the last slice may need light from here, and what is dark here darkens other places until
+  // the next look.
   const Way visible = way(slice, count - 1), dark = way(slice, next - 1);
   const double most = std::max(tileCount_.x, tileCount_.y);
   const auto inTiles = [&](double reach) { return static_cast<float>(std::min(std::ceil(reach / kTileEdge), most)); };

@@ -11,9 +11,9 @@
 namespace umbrick {
 namespace {
 
-// Paths that one call of a shader takes through a slice; bounds its uniforms.
+// One call of a shader takes at most so many paths through a slice; this bounds its uniforms.
 constexpr std::size_t kMostPaths = 64;
-// Groups of a compute shader that every driver takes along an axis.
+// Every driver takes so many groups of a compute shader along an axis.
 constexpr int kMostGroupsAlong = 32768;
 
 GLuint tilesAlong(int texels) { return static_cast<GLuint>((texels + kLatticeTile - 1) / kLatticeTile); }
@@ -22,14 +22,14 @@ std::uint64_t texelsOf(const glm::ivec2& size) {
   return static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
 }
 
-// The windows of a run in the order of kViewLayer and kFirstLightLayer.
+// Returns the light windows of a run in the order of kViewLayer and kFirstLightLayer.
 std::vector<LightWindow> byLayer(const LightRun& run) {
   std::vector<LightWindow> windows;
   run.forEachWindow([&](const LightWindow& window) { windows.push_back(window); });
   return windows;
 }
 
-// Where the first texel of the lattice lies in a window whose paths have moved by `shift` texels.
+// Returns where the first texel of the lattice lies in a light window whose paths have moved by `shift` texels.
 glm::vec2 latticeInWindow(const LightLattice& lattice, const LightWindow& window, const glm::dvec2& shift) {
   return glm::vec2(glm::dvec2(lattice.first) - glm::dvec2(window.first) + shift);
 }
@@ -60,7 +60,7 @@ void LightWindows::begin(const Frame& frame, const LightPlan& plan) {
 }
 
 void LightWindows::makeTextures(const GlFunctions& gl, const Sizes& sizes) {
-  sizes_ = {};  // until all are made
+  sizes_ = {};  // no sizes count as made until all textures are
   const auto onLattice = [&](GLenum format) {
     return makeTextureArray(gl, format, sizes.lattice.x, sizes.lattice.y, sizes.slices, GL_LINEAR);
   };
@@ -81,7 +81,7 @@ void LightWindows::carry(const GlFunctions& gl, const LightPlan& plan, const Lig
   if (tiles.empty()) return;
   bindAll(gl, extinction, tiles);
   open(gl, run);
-  // The first group also takes the view axis, and so is there without any light as well.
+  // The first group also takes the view axis, so that there is one group even where there is no light.
   const std::size_t directions = plan.aimed.paths.lights.size();
   Group group = groupFrom(0, directions);
   while (true) {
@@ -95,7 +95,7 @@ void LightWindows::carry(const GlFunctions& gl, const LightPlan& plan, const Lig
 }
 
 LightWindows::Group LightWindows::groupFrom(std::size_t first, std::size_t directions) {
-  const std::size_t room = first == 0 ? kMostPaths - 1 : kMostPaths;  // the view axis takes a place of the first
+  const std::size_t room = first == 0 ? kMostPaths - 1 : kMostPaths;  // the view axis is one of the first group
   return {first, std::min(room, directions - first)};
 }
 
@@ -117,13 +117,14 @@ void LightWindows::bindVisibility(const GlFunctions& gl) const {
   gl.BindTextureUnit(kVisibilityWeightUnit, visibilityWeight_.name());
 }
 
-// Texels in use, and where the first of them is in the texture, which holds the endless plane modulo its own size.
+// Returns which texels are in use, and where the first of them is in the texture, which holds the endless plane modulo
+// its own size.
 glm::vec4 LightWindows::place(const LightWindow& window) const {
   const glm::ivec2 texel(window.first % glm::vec<2, std::int64_t>(sizes_.window));
   return {glm::vec2(window.size), glm::vec2(texel + sizes_.window * glm::ivec2(glm::lessThan(texel, glm::ivec2(0))))};
 }
 
-// Makes paths clear that the windows of the run before did not hold.
+// Opens the windows of a run: light is 1 on paths that the windows of the run before did not hold.
 void LightWindows::open(const GlFunctions& gl, const LightRun& run) {
   const std::vector<LightWindow> windows = byLayer(run);
   GlProgram& program = openProgram_.current();
@@ -148,7 +149,7 @@ void LightWindows::open(const GlFunctions& gl, const LightRun& run) {
   open_ = windows;
 }
 
-// What is the same on all slices of the run.
+// Sets the uniforms that are the same on all slices of the run.
 void LightWindows::setGroup(const LightPlan& plan, const LightRun& run, const Group& group) {
   GlProgram& program = stepProgram_.current();
   std::vector<glm::vec4> windows;

@@ -1,4 +1,4 @@
-// The windows of the light in graphics memory: opens them run by run and takes light through the slices.
+// Keeps the light windows in graphics memory: opens them run by run and takes light through the slices.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,23 +10,23 @@
 
 namespace umbrick {
 
-/// Each path, of the view axis and of every direction of the light, has a window: one layer of a texture that holds
-/// what is left of its light. A slice multiplies that by its own transmittance, and before that writes down what
-/// arrives on it, which the eye reads: the visibility.
+/// Each path, of the view axis and of every direction of the light, has a light window: one layer of a texture that
+/// holds what is left of its light. A slice multiplies that by its own transmittance, and before that writes down what
+/// arrives on it. This is the visibility, which the eye reads.
 class LightWindows {
  public:
-  /// @throw InvalidArgument  the driver does not take a window for each of so many paths
+  /// @throw InvalidArgument  the driver does not take a light window for each of so many paths
   static void checkCount(const GlFunctions& gl, const LightPaths& paths);
-  /// Before the first slice of a picture: no path has met anything yet.
+  /// Is called before the first slice of a picture, when no path has met anything yet.
   void begin(const Frame& frame, const LightPlan& plan);
   /// Takes light through the slices of a run. @param extinction  see LightExtinction
   void carry(const GlFunctions& gl, const LightPlan& plan, const LightRun& run, const GlTexture& extinction);
-  /// Binds what arrives on the slices of the last run for ordinates.frag.
+  /// Binds the visibility on the slices of the last run for ordinates.frag.
   void bindVisibility(const GlFunctions& gl) const;
 
-  /// Bytes of a lattice texel of one slice: extinction, weight and visibility.
+  /// Returns the bytes of a lattice texel of one slice: extinction, weight and visibility.
   static int bytesPerTexel(bool coloured) { return coloured ? 24 : 16; }
-  /// Bytes of the windows and of what lies on the lattice, that texture of LightExtinction included.
+  /// Returns the bytes of the windows and of what lies on the lattice, the texture of LightExtinction included.
   std::uint64_t bytes() const;
 
  private:
@@ -38,7 +38,7 @@ class LightWindows {
     GLenum windowFormat() const { return bits == 16 ? GL_R16 : GL_R32F; }
     GLenum visibilityFormat() const { return coloured ? GL_RGBA32F : GL_RG32F; }
   };
-  // Directions of the light that one call of a shader takes through a slice: [first, first + count) of all.
+  // A group of directions that one call of a shader takes through a slice: [first, first + count) of all.
   struct Group {
     std::size_t first = 0, count = 0;
   };
@@ -56,7 +56,7 @@ class LightWindows {
   Sizes sizes_;
   GlTexture windows_, visibility_, visibilityWeight_;
   GlBuffer tiles_;
-  std::vector<LightWindow> open_;  // by layer, as the run before has left them
+  std::vector<LightWindow> open_;  // by layer, as the run before has left the windows
 };
 
 }  // namespace umbrick

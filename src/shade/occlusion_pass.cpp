@@ -53,14 +53,14 @@ class OcclusionPass : public SlicePass {
   }
 
  private:
-  // With one distance for all samples the mean over the footprint does not depend on the medium: it is taken for all
-  // pixels at once, which fills whole blocks of a rasteriser where the polygons of small bricks do not, and bricks
-  // multiply it.
+  // Tells whether light is spread for all pixels before bricks are drawn. With one distance for all samples the mean
+  // over the footprint does not depend on the medium. It is then taken for all pixels at once, which fills whole blocks
+  // of a rasteriser where the polygons of small bricks do not, and bricks multiply it.
   static bool spreadsFirst(const Frame& frame) {
     return frame.scene.occlusion.dos.passes == 1 && frame.scene.occlusion.dos.algorithm == 3;
   }
 
-  // How slice i reads the slice before it: see footprint.glsl.
+  // Returns how slice i reads the slice before it, see footprint.glsl.
   SliceStep step(const Frame& frame, std::int64_t i) const {
     const double d = frame.slices.spacing;
     const double depth = frame.slices.depth(i);
@@ -68,10 +68,10 @@ class OcclusionPass : public SlicePass {
     const double pixel = 2 * frame.view.halfExtent.y / frame.camera.height;
     if (frame.view.projection == Projection::orthographic) return {1, extent / pixel, 0};
     if (!frame.scene.occlusion.dos.perspectiveCorrection) {
-      // As if the view were parallel: the footprint keeps the size it has at the point looked at.
+      // The length is that of a parallel view: the footprint keeps the size that it has at the point looked at.
       return {1, extent / (pixel * glm::length(frame.camera.lookAt - frame.camera.eye)), 0};
     }
-    // The first slab has nothing before it: all is unoccluded, wherever it is read.
+    // The first slab has no slab before it: light is unoccluded wherever it is read.
     if (depth - d <= 0) return {1, 0, 0};
     return {depth / (depth - d), extent / (pixel * (depth - d)), 0};
   }
@@ -91,7 +91,8 @@ class OcclusionPass : public SlicePass {
   double deviation(const SliceStep& step) const {
     double square = 0;
     for (const glm::dvec2& point : disk_) square += 0.5 * glm::dot(point, point) / static_cast<double>(disk_.size());
-    // Linear interpolation at a fraction f adds f (1 - f), a sixth of a squared pixel in the mean.
+    // Linear interpolation at a fraction f adds a variance of f (1 - f), which is a sixth of a squared
+    // pixel on average.
     return std::sqrt(square * step.radius * step.radius + 1.0 / 6);
   }
 
@@ -133,7 +134,7 @@ class OcclusionPass : public SlicePass {
     previous_ = target;
   }
 
-  // A number for this slice that no pixel holds yet.
+  // Chooses a number for this slice that no pixel of the stencil buffer holds yet.
   void nextStencil(const Frame& frame) {
     if (++stencil_ <= 255) return;
     const GlFunctions& gl = frame.gl;
@@ -152,7 +153,7 @@ class OcclusionPass : public SlicePass {
     gl.Disable(GL_SCISSOR_TEST);
     gl.Enable(GL_STENCIL_TEST);
     gl.StencilMask(0xff);
-    // Bricks mark their pixels with the slice's number; what is left unmarked is carried.
+    // Bricks mark their pixels with the slice's number; light is carried in the pixels that are left unmarked.
     gl.StencilFunc(GL_ALWAYS, stencil_, 0xff);
     gl.StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
     for (GLuint i = 0; i < 3; ++i) gl.ColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -213,6 +214,7 @@ class OcclusionPass : public SlicePass {
     drawTriangles(frame, draws);
   }
 
+  // Spreads light from the slice before.
   // @param spareBricks  leaves out the pixels that bricks of this slice have marked
   void drawSpread(const Frame& frame, const SliceStep& step, const ScreenRegion& region, int target, bool spareBricks) {
     const GlFunctions& gl = frame.gl;

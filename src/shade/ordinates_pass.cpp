@@ -1,9 +1,9 @@
 // Discrete ordinates: one transmittance per direction of the light, carried along its paths. On a slice at depth s the
-// path of direction k through X is texel U = X + s slope_k of a window, the same on every slice: slices only multiply
-// what is there, so nothing is resampled on the way, empty space costs nothing, and what is off the screen occludes.
-// Shifts are rounded to whole texels, each slice by itself: a path then meets lattice texels and not mixtures of them,
-// off by less than a texel and by nothing on average. Interpolation would blur occluders more than that, and costs
-// more.
+// path of direction k through X is texel U = X + s slope_k of a light window, the same on every slice: slices only
+// multiply what is there, so nothing is resampled on the way, empty space costs nothing, and what is off the screen
+// occludes. Shifts are rounded to whole texels, on each slice separately: a path then meets lattice texels and not
+// mixtures of them, and is off by less than a texel and by nothing on average. Interpolation would blur occluders more
+// than that, and costs more.
 //
 //   plan    light_aim, light_geometry   which way light comes, and where on the lattice something is seen or occludes
 //   begin   light_plan, lattice_tiles   which slices are lit together, with which windows and in which tiles
@@ -52,7 +52,7 @@ class OrdinatesPass : public SlicePass {
   }
 
   void fill(Frame& frame, std::int64_t first, std::int64_t last) override {
-    // The eye looks up the layer of its slice; light is drawn only where something occludes.
+    // The eye looks up the layer of its slice, while light is drawn only where something occludes.
     std::vector<int> eye(static_cast<std::size_t>(last - first), -1), light(eye);
     for (const LightRun& run : light_.runs.within(first, last))
       for (std::size_t m = 0; m < run.slices.size(); ++m) {
@@ -96,7 +96,7 @@ class OrdinatesPass : public SlicePass {
             frame.planes, frame.bounds};
   }
 
-  // What directions of a scene depend on.
+  // What the directions of a scene depend on.
   struct Aimed {
     Camera camera;
     Model model;
@@ -109,8 +109,8 @@ class OrdinatesPass : public SlicePass {
     }
   };
 
-  // Directions of the sample, or of the scene: these are kept for the next picture of the same light, since an
-  // environment map takes long to walk.
+  // Takes the directions of the sample, or those of the scene. The latter are kept for the next picture of the same
+  // light, since it takes long to walk an environment map.
   void aim(const Frame& frame) {
     const bool ofScene = frame.sample.lights.empty();
     const ResolvedScene& scene = frame.scene;
@@ -138,7 +138,7 @@ class OrdinatesPass : public SlicePass {
   }
 
   LightPlan light_;
-  std::optional<Aimed> aimed_;  // for the scene, not for a sample
+  std::optional<Aimed> aimed_;  // directions of the scene, never those of a sample
   double brightest_ = 1;        // see SlicePass
   LightExtinction extinction_;
   LightWindows windows_;

@@ -41,7 +41,7 @@ void PolygonBuffer::fill(const ProxySlices& slices, std::int64_t first, std::int
     for (int p = slices.start[static_cast<std::size_t>(i)]; p < slices.start[static_cast<std::size_t>(i) + 1]; ++p)
       order.push_back(&slices.polygons[static_cast<std::size_t>(p)]);
     if (reverseBricks) std::reverse(order.begin(), order.end());
-    // One draw per texture; within a slice the order of bricks means nothing.
+    // There is one draw for each texture; within a slice the order of bricks makes no difference.
     for (int texture = 0; texture < atlas.textureCount(); ++texture) {
       SliceDraw draw{i, texture, static_cast<std::int32_t>(indexData_.size()), 0};
       for (const ProxyPolygon* polygon : order) {
@@ -97,7 +97,7 @@ ScreenRegion coveredRegion(const ProxySlices& slices, std::int32_t first, std::i
     const auto toPixels = [&](float device) {
       return std::clamp(0.5f * (device + 1), 0.0f, 1.0f) * static_cast<float>(size[axis]);
     };
-    // A pixel to spare for the rasteriser's snapping.
+    // One pixel more on each side allows for the rasteriser's snapping.
     region.min[axis] = std::max(0, static_cast<int>(std::floor(toPixels(low[axis]))) - 1);
     region.max[axis] = std::min(size[axis], static_cast<int>(std::ceil(toPixels(high[axis]))) + 1);
   }

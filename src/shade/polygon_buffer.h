@@ -23,15 +23,15 @@ class PolygonBuffer {
  public:
   explicit PolygonBuffer(const GlFunctions& gl);
   /// Fills the buffer with slices [first, last), whose bricks are resident. Vertices carry where in the atlas the slice
-  /// plane meets the centre of the image, computed in double precision from indices relative to the brick, so that
-  /// volumes far from the origin lose nothing.
-  /// @param layers  by slice from `first`: a number that goes with its vertices; negative: leave the slice out. Empty:
-  /// 0
+  /// plane meets the centre of the image. This is computed in double precision from indices relative to the brick, so
+  /// that volumes far from the origin lose nothing.
+  /// @param layers  for each slice from `first`: a number that goes with its vertices; negative: leave the slice out.
+  ///   An empty list stands for 0 on every slice.
   void fill(const ProxySlices& slices, std::int64_t first, std::int64_t last, const IndexView& view,
             const BrickSelection& bricks, bool reverseBricks, std::span<const int> layers = {});
-  /// In order of slices.
+  /// Returns the draws of all slices, in order.
   const std::vector<SliceDraw>& draws() const { return draws_; }
-  /// Those of slices [first, last).
+  /// Returns the draws of slices [first, last).
   std::span<const SliceDraw> drawsOf(std::int64_t first, std::int64_t last) const;
   void bind() const;
   /// Draws consecutive triangles.
@@ -40,7 +40,7 @@ class PolygonBuffer {
  private:
   struct Vertex {
     float x, y;        // normalised device coordinates
-    float u, v, w, s;  // atlas coordinates at the centre of the image, depth
+    float u, v, w, s;  // atlas coordinates at the centre of the image; depth
     float layer;
   };
   const GlFunctions& gl_;
@@ -51,7 +51,7 @@ class PolygonBuffer {
   std::vector<std::uint32_t> indexData_;
 };
 
-/// Pixels that polygons [first, last) may cover.
+/// Returns a rectangle around the pixels that polygons [first, last) may cover.
 ScreenRegion coveredRegion(const ProxySlices& slices, std::int32_t first, std::int32_t last, const glm::ivec2& size);
 
 }  // namespace umbrick

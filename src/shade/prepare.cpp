@@ -15,7 +15,7 @@
 namespace umbrick {
 namespace {
 
-// As requiredApron, over all views with the scene's angle of view and slabs.
+// Returns the same as requiredApron, but for all views that have the scene's angle of view and slabs.
 double apronOfAnyView(const ResolvedScene& scene, const glm::dmat4& indexToWorld) {
   const glm::dmat3 toIndex = glm::transpose(glm::inverse(glm::dmat3(indexToWorld)));  // its columns are the axes' rows
   const glm::dvec2 corner =
@@ -48,11 +48,12 @@ BrickOptions requiredBricks(const ResolvedScene& scene, const glm::dmat4& indexT
 
 int requiredApron(const ResolvedScene& resolved, const glm::dmat4& indexToWorld) {
   const IndexView view = indexView(resolved.camera, indexToWorld);
-  // Whatever the quadrature: segments and planes that cut slabs have samples anywhere in a slab.
+  // Slabs count as half their length whatever the quadrature: segments and planes that cut slabs have samples anywhere
+  // in a slab.
   const glm::dvec3 axes = slabReach(view, resolved.sampling.spacing);
   const double reach = std::max({axes.x, axes.y, axes.z});
-  // Half a voxel belongs to every apron: a brick's space ends half-way between its last voxel and the first ghost. What
-  // rounding may add is left to the texture filter.
+  // Half a voxel belongs to every apron: a brick's space ends half-way between its last voxel and the first ghost
+  // voxel. What rounding may add beyond that is left to the texture filter.
   const double wanted = std::ceil(0.5 + reach - 1e-9);
   const int most = resolved.bricks.interior > 0 ? resolved.bricks.interior : kMostInterior;
   if (!(wanted <= most))

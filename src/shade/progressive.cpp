@@ -20,9 +20,9 @@
 namespace umbrick {
 namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kGoldenStep = 0.6180339887498949;  // of one number, as kR2Step is of two
+constexpr double kGoldenStep = 0.6180339887498949;  // step of a sequence of single numbers, as kR2Step is of pairs
 
-/// Sum of pictures.
+/// A sum of pictures, from which their mean is taken.
 class Accumulator {
  public:
   void add(const Picture& picture) {
@@ -33,8 +33,8 @@ class Accumulator {
     }
     for (std::size_t i = 0; i < colour_.size(); ++i) colour_[i] += picture.colour.pixels[i];
     for (std::size_t i = 0; i < visibility_.size(); ++i) visibility_[i] += picture.visibility.pixels[i];
-    // Depth is a mean by opacity; with a background the picture's alpha has forgotten that, and all passes agree but
-    // for the slices.
+    // Depth is a mean weighted by opacity. Where there is a background the picture's alpha no longer tells opacity, so
+    // each depth counts once there, and the samples agree except for where their slices lie.
     for (std::size_t i = 0; i < depth_.size(); ++i) {
       const float depth = picture.depth.pixels[i];
       if (!std::isfinite(depth)) continue;
@@ -58,10 +58,10 @@ class Accumulator {
  private:
   int count_ = 0;
   std::vector<double> colour_, visibility_;
-  std::vector<glm::dvec2> depth_;  // weighted, weight
+  std::vector<glm::dvec2> depth_;  // sum of weighted depths, sum of weights
 };
 
-// Root of the mean over R, G, B of the pixels of f(i).
+// Returns the root of the mean of f(i) over R, G and B of all pixels.
 template <class Value>
 double rootMean(std::size_t values, const Value& squared) {
   double sum = 0;
@@ -70,7 +70,7 @@ double rootMean(std::size_t values, const Value& squared) {
   return std::sqrt(std::max(0.0, sum) / (0.75 * static_cast<double>(values)));
 }
 
-// Of one number per stream: the mean, and the variance of that mean.
+// Moments of one number per stream: the mean, and the variance of that mean.
 struct StreamMoments {
   double mean = 0, variance = 0;
 };
@@ -144,7 +144,7 @@ ResolvedScene coarserScene(const ResolvedScene& scene) {
   ResolvedScene coarse = scene;
   coarse.sampling.spacing *= 2;
   coarse.occlusion.ordinates.scale =
-      scene.occlusion.ordinates.scale / 2;  // an automatic one is made explicit by renderProgressive
+      scene.occlusion.ordinates.scale / 2;  // 0 has been replaced by then, see renderProgressive
   return coarse;
 }
 
@@ -157,16 +157,16 @@ ResolvedScene finerScene(const ResolvedScene& scene) {
   return fine;
 }
 
-// The error of a picture whose texels are so many voxels wide over its difference to one with slabs and texels `ratio`
-// times as large: 1 / |ratio^p - 1| where errors fall with the order p. That is at most 1 and at least, at hard edges,
-// 0.45 for texels of 2 voxels or more; interpolation between voxels blurs edges, so that it is 1 for those of half a
-// voxel. The geometric mean of both ends.
+// Returns the error of a picture whose texels are so many voxels wide over its difference to one with slabs and texels
+// `ratio` times as large: 1 / |ratio^p - 1| where errors fall with the order p. The order is at most 1. At hard edges
+// it is at least 0.45 for texels of 2 voxels or more; interpolation between voxels blurs edges, so that it is at least
+// 1 for texels of half a voxel. The result is the geometric mean of both ends.
 double errorOverDifference(double ratio, double texelVoxels) {
   const double least = 1 - 0.55 * std::clamp(0.5 * std::log2(2 * texelVoxels), 0.0, 1.0);
   return 1 / std::sqrt(std::abs(std::pow(ratio, least) - 1) * std::abs(ratio - 1));
 }
 
-// Passes over one scene.
+// The samples of one scene, rendered one after another.
 class PassSeries {
  public:
   PassSeries(ResidentVolume& resident, const ResolvedScene& scene, std::uint64_t seed, const RenderOptions& render)
@@ -176,7 +176,7 @@ class PassSeries {
 
   const ResolvedScene& scene() const { return scene_; }
 
-  // One more; the picture is the mean so far.
+  // Renders one more sample. The picture becomes the mean so far.
   void pass(Picture& picture, ErrorEstimate& error) {
     const auto stream = static_cast<std::size_t>(passes_ % kStreams);
     const RenderSample sample = streams_[stream].sample(scene_, passes_ / kStreams);
@@ -184,19 +184,20 @@ class PassSeries {
     means_[stream].add(picture);
     all_.add(picture);
     if (passes_ == 0) {
-      // An automatic texel is that of the first picture from now on, so that twice and half of it are what they say.
+      // From now on the automatic texel is that of the first picture, so that twice and half of it are what they say.
       scene_.occlusion.ordinates.scale = shortestVoxelEdge(resident_.volume().indexToWorld) / picture.stats.windowTexel;
-      // Coarser pictures cost an eighth, finer ones eight times as much, but fit bricks of any apron.
+      // Coarser pictures cost an eighth and finer ones eight times as much, but finer ones can be made from bricks
+      // with any apron.
       const ResolvedScene coarse = coarserScene(scene_);
       const bool fit = fits(resident_.volume(), coarse);
       ratio_ = fit ? 2 : 0.5;
       other_.emplace(resident_, fit ? coarse : finerScene(scene_), render_);
     }
-    // The same light: what differs are slabs and texels.
+    // The other picture has the same light; only its slabs and texels differ.
     if (other_) otherMeans_[stream].add(other_->render(sample));
     if (++passes_ >= kStreams) error.statistical = standardError();
     if (passes_ == kStreams) {
-      // What the difference has by chance, by the streams' spread, does not count.
+      // The part of the difference that is there by chance, as the streams' spread tells, does not count.
       const double difference = rootMean(all_.values(), [&](std::size_t i) {
         const StreamMoments moments =
             momentsOf([&](std::size_t k) { return otherMeans_[k].colour(i) - means_[k].colour(i); });
@@ -219,7 +220,7 @@ class PassSeries {
   ResolvedScene scene_;
   RenderOptions render_;
   SliceRenderer fine_;
-  std::optional<SliceRenderer> other_;  // of slabs and texels `ratio_` times as large
+  std::optional<SliceRenderer> other_;  // renderer with slabs and texels `ratio_` times as large
   double ratio_ = 2;
   std::vector<Stream> streams_;
   std::array<Accumulator, kStreams> means_, otherMeans_;
@@ -245,7 +246,7 @@ ProgressivePicture renderProgressive(ResidentVolume& resident, const ResolvedSce
   auto series = std::make_unique<PassSeries>(resident, scene, options.seed, render);
   ProgressivePicture best{.scene = scene}, current{.scene = scene};
   bool refined = false;
-  double systematicBefore = kInfinity;  // of the coarser scene
+  double systematicBefore = kInfinity;  // the systematic error of the coarser scene
   best.error = current.error = {kInfinity, kInfinity};
   for (int pass = 0; pass < options.passes; ++pass) {
     series->pass(current.picture, current.error);
@@ -253,7 +254,7 @@ ProgressivePicture renderProgressive(ResidentVolume& resident, const ResolvedSce
     current.scene = refined ? series->scene() : scene;
     current.seconds = watch.elapsedMs() / 1e3;
     current.reachedTarget = options.targetError > 0 && current.error.total() <= options.targetError;
-    // A refined scene takes over once it is known to be better.
+    // A refined scene replaces the one before once it is known to be better.
     const bool sameScene = best.passes == 0 || best.scene.sampling.spacing == current.scene.sampling.spacing;
     const bool better = current.error.total() < best.error.total() ||
                         (current.passes >= best.passes && current.error.systematic < best.error.systematic);
@@ -262,7 +263,8 @@ ProgressivePicture renderProgressive(ResidentVolume& resident, const ResolvedSce
     if (onPass && !onPass(best)) break;
     if (best.reachedTarget || (options.maxSeconds > 0 && best.seconds >= options.maxSeconds)) break;
     if (options.targetError == 0 || current.passes < kStreams) continue;
-    // Half of the squared error is for either kind. What does not average out is not worth waiting for.
+    // Either kind of error may take half of the squared target. Waiting does not help where the error that does not
+    // average out takes more.
     const bool inTheWay = !(current.error.systematic <= options.targetError / std::sqrt(2.0));
     const bool canRefine =
         options.refine && current.scene.sampling.spacing / 2 >= finest && current.error.systematic <= systematicBefore;

@@ -1,4 +1,4 @@
-// Rectangles on slices: where something is seen, occludes or is read.
+// Rectangles on slices tell where something is seen, occludes or is read.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/common.hpp>

@@ -9,9 +9,9 @@ RenderTargets::RenderTargets(const GlFunctions& gl, const TargetOptions& o) : op
   const auto target = [&](GLenum format, GLenum filter) {
     return makeTexture2d(gl, format, o.width, o.height, filter);
   };
-  // Light, opacity and occlusion are all in [0, 1]: of 16 bits fixed point has steps of 1.5e-5 everywhere, half-floats
-  // have steps of 4.9e-4 where sums end and occlusion begins. A thousand slices of opacity 0.9 together lose 0.11 in
-  // half-floats that are truncated, as Mesa's software drivers do, and 6e-4 in fixed point.
+  // Light, opacity and occlusion are all in [0, 1]. With 16 bits, fixed point has steps of 1.5e-5 everywhere, while
+  // half-floats have steps of 4.9e-4 where sums end and occlusion begins. A thousand slices with a total opacity of 0.9
+  // lose 0.11 in half-floats that are truncated, as Mesa's software drivers do, and 6e-4 in fixed point.
   eye = target(o.eyeBits == 16 ? GL_RGBA16 : GL_RGBA32F, GL_NEAREST);
   if (o.aux) aux = target(GL_RGBA32F, GL_NEAREST);
   depthStencil = target(GL_DEPTH24_STENCIL8, GL_NEAREST);

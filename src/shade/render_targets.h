@@ -11,16 +11,18 @@ namespace umbrick {
 struct TargetOptions {
   int width = 0, height = 0;
   int eyeBits = 32;       // 32: float; 16: fixed point
-  int occlusionBits = 0;  // likewise; 0: no occlusion buffers
-  bool aux = false;       // visibility and depth
+  int occlusionBits = 0;  // likewise; 0: there are no occlusion buffers
+  bool aux = false;       // whether there is a buffer of visibility and depth
 };
 
-/// eye: RGBA, linear premultiplied. aux: R opacity-weighted visibility, G opacity-weighted depth, A opacity.
-/// occlusion[2]: one channel, one slice reads one and writes the other.
+/// The buffers and their channels:
+///   eye           RGBA, linear premultiplied
+///   aux           R opacity-weighted visibility, G opacity-weighted depth, A opacity
+///   occlusion[2]  one channel; a slice reads one of the two and writes the other
 struct RenderTargets {
   RenderTargets(const GlFunctions& gl, const TargetOptions& options);
   std::size_t bytes() const;
-  /// Eye and aux to 0, occlusion to 1, depth to 1, stencil to 0.
+  /// Sets eye and aux to 0, occlusion to 1, depth to 1 and stencil to 0.
   void clear(const GlFunctions& gl) const;
 
   TargetOptions options;
@@ -32,7 +34,7 @@ struct RenderTargets {
   std::array<GlFramebuffer, 2> lightOnly;    // occlusion[i], depth
 };
 
-/// All channels of an RGBA texture.
+/// Returns all channels of an RGBA texture.
 Image readTexture(const GlFunctions& gl, const GlTexture& texture, int width, int height);
 
 }  // namespace umbrick

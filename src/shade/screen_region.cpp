@@ -7,27 +7,28 @@
 namespace umbrick {
 namespace {
 
-// Linear interpolation reads half a texel farther, rounding a little more.
+// Linear interpolation reads half a texel farther, and rounding adds a little more.
 constexpr double kFilterReach = 1.0;
 
 int toPixel(double x, int size) { return static_cast<int>(std::clamp(x, 0.0, static_cast<double>(size))); }
 
-// A rectangle of pixels as light spreads from it: its core stays sharp, variances of the steps add around it.
+// A rectangle of pixels as light spreads from it: its core stays sharp, and the variances of the steps add
+// up around it.
 struct Spread {
   ScreenRegion core;
   double variance = 0, lastRadius = 0;
 
-  // Where the core is seen from one slice farther back, `inwards`, or one nearer.
+  // Moves the core to where it is seen from one slice farther back (`inwards`) or one slice nearer.
   void step(const SliceStep& s, bool inwards, const glm::ivec2& size) {
     if (core.empty()) return;
     const double scale = inwards ? 1 / s.scale : s.scale;
     for (int axis = 0; axis < 2; ++axis) {
       const double centre = 0.5 * size[axis];
-      // A read beyond the screen gives its edge: what touches the edge is read from all the way out.
+      // A read beyond the screen gives its edge, so what touches the edge counts as reaching beyond it without end.
       const bool lowEdge = inwards && core.min[axis] <= 0, highEdge = inwards && core.max[axis] >= size[axis];
       const double low = lowEdge ? 0 : centre + (core.min[axis] - centre) * scale;
       const double high = highEdge ? size[axis] : centre + (core.max[axis] - centre) * scale;
-      // At least the edge pixel, which stands for all beyond it.
+      // The region keeps at least the edge pixel, which stands for all pixels beyond it.
       core.min[axis] = std::min(toPixel(std::floor(low), size[axis]), size[axis] - 1);
       core.max[axis] = std::max(toPixel(std::ceil(high), size[axis]), 1);
     }
@@ -38,7 +39,7 @@ struct Spread {
 
   ScreenRegion region(const glm::ivec2& size) const {
     if (core.empty()) return {};
-    // The first steps are no Gaussian: two of them in full.
+    // The first steps do not add up to a Gaussian yet, so two of them count in full.
     const double reach = kWalkReach * std::sqrt(variance) + 2 * (lastRadius + kFilterReach);
     ScreenRegion grown;
     for (int axis = 0; axis < 2; ++axis) {
@@ -74,8 +75,8 @@ void ScreenRegion::intersect(const ScreenRegion& other) {
 std::vector<ScreenRegion> occlusionRegions(std::span<const ScreenRegion> covered, std::span<const SliceStep> steps,
                                            const glm::ivec2& size) {
   const std::size_t count = covered.size();
-  // Forwards: what has been darkened so far. A region never shrinks, since a buffer still holds what was written two
-  // slices ago.
+  // Front to back: the pixels that have been darkened so far. A region never shrinks, since a buffer still holds what
+  // was written two slices ago.
   std::vector<ScreenRegion> regions(count);
   Spread darkened;
   for (std::size_t i = 0; i < count; ++i) {
@@ -84,7 +85,7 @@ std::vector<ScreenRegion> occlusionRegions(std::span<const ScreenRegion> covered
     regions[i] = darkened.region(size);
     if (i > 0) regions[i].include(regions[i - 1]);
   }
-  // Backwards: what later slices look at.
+  // Back to front: the pixels that later slices read.
   Spread wanted;
   for (std::size_t i = count; i-- > 0;) {
     regions[i].intersect(wanted.region(size));

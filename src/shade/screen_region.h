@@ -1,4 +1,4 @@
-// Where on the screen the occlusion of a slice differs from 1 and is still going to be read.
+// Finds where on the screen the occlusion of a slice differs from 1 and is still going to be read.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/vec2.hpp>
@@ -17,21 +17,21 @@ struct ScreenRegion {
   bool operator==(const ScreenRegion&) const = default;
 };
 
-/// How a slice reads the one before: at centre + (pixel - centre) scale, give or take `radius` pixels.
+/// How a slice reads the slice before it: at centre + (pixel - centre) scale, give or take `radius` pixels.
 struct SliceStep {
   double scale = 1;
   double radius = 0;
   double deviation = 0;  // standard deviation of what it reads, along an axis, pixels
 };
 
-/// What a walk of many steps carries farther than so many standard deviations does not matter: 3e-5 of a Gaussian, of
-/// light that is between 0 and 1.
+/// A random walk of many steps carries next to no light farther than so many standard deviations: 3e-5 of a Gaussian,
+/// of light that is between 0 and 1.
 inline constexpr double kWalkReach = 4;
 
-/// For every slice a rectangle outside of which its occlusion is 1 or never read again, but for what light carries
-/// farther than kWalkReach.
-/// @param covered  pixels that bricks cover, by slice
-/// @param steps    by slice; the first is never used
+/// Returns for every slice a rectangle outside of which its occlusion is 1 or never read again, except for what light
+/// carries farther than kWalkReach.
+/// @param covered  for each slice: the pixels that bricks cover
+/// @param steps  for each slice; the first is never used
 std::vector<ScreenRegion> occlusionRegions(std::span<const ScreenRegion> covered, std::span<const SliceStep> steps,
                                            const glm::ivec2& size);
 

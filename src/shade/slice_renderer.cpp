@@ -22,7 +22,7 @@
 namespace umbrick {
 namespace {
 
-// The atlas's numbers of the bricks to draw.
+// Returns the bricks to draw, by their numbers in the atlas.
 std::vector<std::int32_t> visibleBricks(ResidentVolume& resident, const TransferLookup& transfer, bool culling,
                                         bool backgroundVisible) {
   const std::vector<Brick>& bricks = resident.volume().bricks;
@@ -37,8 +37,8 @@ std::vector<std::int32_t> visibleBricks(ResidentVolume& resident, const Transfer
   return visible;
 }
 
-// What of a scene a change asks to be made anew. Camera, clip planes, lights, theta and the like ask for nothing: they
-// are looked at when a picture is drawn.
+// The parts of the renderer that must be made anew after a change of the scene. Camera, clip planes, lights, theta and
+// the like ask for nothing: they are looked at when a picture is drawn.
 struct Dirty {
   bool lookup = true;     // the transfer function as shaders read it
   bool selection = true;  // which bricks are visible
@@ -59,7 +59,7 @@ struct Dirty {
   }
 
  public:
-  /// Of dos's buffers; 0 for those that have none.
+  /// Returns the bits of dos's occlusion buffers; 0 where there are none.
   static int occlusionBits(const ResolvedScene& scene) {
     return occlusionMethod(scene) == Method::dos ? scene.occlusion.bits : 0;
   }
@@ -80,7 +80,7 @@ class SliceRenderer::Implementation {
     polygons_.emplace(gl_);
   }
 
-  /// Makes anew what is dirty; all of it or, when something throws, nothing.
+  /// Makes anew all that is dirty or, when something throws, nothing.
   void update(const ResolvedScene& next, const Dirty& dirty) {
     checkScene(next);
     std::optional<TransferLookup> lookup;
@@ -135,7 +135,7 @@ class SliceRenderer::Implementation {
       frame.clock.start();
       pass_->draw(frame, run.first, run.last);
       frame.clock.lap(&PassTimes::eyeMs);
-      // Only what waits for the last fragment tells the time of the sweep.
+      // Only a wait for the last fragment tells the time of the sweep.
       gl_.Finish();
       stats_.sweepMs += sweep.elapsedMs();
     }
@@ -250,7 +250,7 @@ class SliceRenderer::Implementation {
     std::vector<glm::dvec4> bounds = viewBounds(scene, volume_, backgroundVisible_, planes);
     const double spacing = scene.sampling.spacing;
     ProxySlices slices = cutSlices(view, selection_->origins(), volume_.layout.interior, bounds, spacing);
-    // The first slab of another phase begins before or behind the eye: there must be nothing.
+    // With another phase the first slab begins in front of or behind the eye, so nothing may be there.
     if (sample.phase != 0.5 && slices.first > 0)
       slices = cutSlices(view, selection_->origins(), volume_.layout.interior, bounds, spacing, sample.phase);
     frame_.emplace(Frame{gl_, scene, camera, view, std::move(planes), std::move(bounds), std::move(slices), *selection_,
@@ -272,7 +272,7 @@ class SliceRenderer::Implementation {
     const auto brightest = static_cast<float>(pass_->brightest());
     for (std::size_t i = 0; i < picture.colour.pixels.size(); i += 4) {
       float* pixel = &picture.colour.pixels[i];
-      pixel[3] = std::min(pixel[3], 1.0f);  // but for roundings it is
+      pixel[3] = std::min(pixel[3], 1.0f);  // it is at most 1 except for rounding
       const float through = 1 - pixel[3];
       for (int c = 0; c < 3; ++c) {
         pixel[c] *= brightest * ambient[c];
@@ -304,8 +304,8 @@ class SliceRenderer::Implementation {
   std::unique_ptr<SlicePass> pass_;
   SpecialisedProgram probe_{"shade/slice.vert", "shade/probe.frag"};
   std::vector<SweepRun> runs_;
-  std::optional<Frame> frame_;  // of the last picture
-  RenderStats stats_;           // of drawing it
+  std::optional<Frame> frame_;  // the frame of the last picture
+  RenderStats stats_;           // statistics of drawing that frame
 };
 
 SliceRenderer::SliceRenderer(ResidentVolume& volume, const ResolvedScene& scene, const RenderOptions& options)

@@ -15,10 +15,10 @@ struct SweepRun {
   std::vector<std::int32_t> bricks;
 };
 
-/// Cuts the sweep into as few runs as the atlas allows. A run of one slice may still need more than `slots`; then the
-/// atlas says so.
-/// @param sweeps  all of as many slices: a run has the bricks that any of them needs
-/// @param slots   bricks that fit at once; runs end before they need more
+/// Cuts the sweep into as few runs as the atlas allows. A run of one slice may still need more bricks than `slots`,
+/// which the atlas then reports.
+/// @param sweeps  all with the same number of slices: a run has the bricks that any of them needs
+/// @param slots  number of bricks that fit at once; runs end before they need more
 std::vector<SweepRun> planSweep(std::span<const ProxySlices* const> sweeps, std::size_t bricks, std::size_t slots);
 
 }  // namespace umbrick

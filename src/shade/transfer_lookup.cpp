@@ -16,19 +16,20 @@
 namespace umbrick {
 namespace {
 
-constexpr double kFar = 1e38;  // as in medium.glsl: where the constant ends of a function end
-// Fixed-point texels become floats by a division or a product, and filters add weights up: what a texel is read as may
+constexpr double kFar = 1e38;  // stands for infinity, as in medium.glsl: where the constant ends of a function end
+// Fixed-point texels become floats by a division or a product, and filters add up weights: the value that is read may
 // be off by this share of it. For floats that is a unit in the last place.
 constexpr double kReadRounding = 0x1p-22;
 constexpr double kFloatRounding = 0x1p-23;
 
-// medium.glsl compares a value with the upper ends of so many stretches, but for the last, instead of a bisection.
+// medium.glsl finds the stretch of a value among so many, except the last, by comparison with their upper ends instead
+// of a bisection.
 constexpr std::size_t kComparedStretches = 25;
-// Vectors of uniforms that are left for everything else.
+// So many vectors of uniforms are left for everything else.
 constexpr GLint kOtherUniforms = 256;
 
-// The function with an extinction that single precision can multiply by a slab's length, and divide by. What is cut off
-// is opaque over any length that a number could tell from 0.
+// Returns the function with an extinction that single precision can multiply by a slab's length, and divide by. The
+// extinction that is cut off is opaque over any length that a number could tell from 0.
 TransferFunction bounded(const TransferFunction& transfer, double spacing) {
   const double most = 1e30 / std::max(spacing, 1.0);
   std::vector<Medium> media = transfer.media();
@@ -39,21 +40,22 @@ TransferFunction bounded(const TransferFunction& transfer, double spacing) {
   return TransferFunction(std::move(points));
 }
 
-// Bisections that find one of so many stretches.
+// Returns how many bisections find one of so many stretches.
 int bisections(const std::vector<AxisStretch>& stretches) {
   return std::bit_width(static_cast<unsigned>(stretches.size() - 1));
 }
 
-// Whether a voxel of the volume may have this very value.
+// Tells whether a voxel of the volume may have this very value.
 bool mayBeVoxel(double value, const Bricks& volume) {
   const bool whole = volume.exactFormat == VoxelFormat::unorm8 || volume.exactFormat == VoxelFormat::unorm16;
   return volume.value.contains(static_cast<float>(value)) && (!whole || value == std::floor(value));
 }
 
-// Lower and upper ends of the stretches in texel units. A value exactly on a step belongs to the upper side, also where
-// its texel holds a little less and where that is read as a little less: steps give way by that much.
+// Returns the lower and upper ends of the stretches in texel units. A value exactly on a step belongs to the
+// upper side, also where its texel holds a little less and where that is read as a little less: steps are lowered
+// by that much.
 // @param stored  what a texel holds of a voxel of this value, where there may be one: others are cut off at the ends of
-//                a format, which a step beyond them must not be
+//   a format, which a step beyond them must not be
 std::vector<glm::vec2> endsInTexels(const std::vector<AxisStretch>& stretches,
                                     const std::function<double(double)>& toTexel,
                                     const std::function<double(double)>& stored) {
@@ -76,7 +78,7 @@ std::vector<glm::vec2> endsInTexels(const std::vector<AxisStretch>& stretches,
   return ends;
 }
 
-// The texture as medium.glsl describes it.
+// Builds the texture that medium.glsl describes.
 class StretchTexels {
  public:
   StretchTexels(int width, int height)
@@ -137,7 +139,8 @@ StretchTexels texelsOf2d(const TransferFunction& transfer, const std::vector<Axi
   return texels;
 }
 
-// Columns, and rows, are powers of two; a 2D function has two of them for a stretch, and two rows more.
+// Checks that the driver has room for the stretches. Columns, and rows, are powers of two; a 2D function has two of
+// them for a stretch, and two rows more.
 void checkStretches(const GlFunctions& gl, const std::vector<AxisStretch>& stretches, bool is2d) {
   GLint edge = 0;
   gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &edge);
@@ -157,7 +160,7 @@ TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& tr
       background_(volume.background),
       emptyRounding_(format == VoxelFormat::half || format == VoxelFormat::float32 ? kFloatRounding
                                                                                    : 2 * kReadRounding),
-      // Half-floats are off by 2^-11 of a magnitude, whatever the values are.
+      // Half-floats are off by 2^-11 of a magnitude, even where the values are stored exactly.
       gradientRounding_(format == VoxelFormat::half ? 0x1p-10 : 0x1p-20),
       mode_((transfer.is2d() ? 2 : 0) + (sampling.quadrature == Quadrature::midpoint ? 1 : 0)) {
   const std::vector<AxisStretch> values = axisStretches(transfer_.values());
@@ -191,7 +194,7 @@ TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& tr
                  .upload(gl);
 }
 
-// What values of a range may be read as. Empty space is read as what it is.
+// Returns what values of a range may be read as. Empty space is read as it is.
 Range TransferLookup::widened(const Range& values) const {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const auto slack = [&](double value) {
@@ -228,7 +231,7 @@ void TransferLookup::setUniforms(GlProgram& program, const BrickAtlas& atlas) co
   if (uniforms_.empty()) return;
   program.set("stretches", uniforms_);
   if (uniforms_.size() / 3 > kComparedStretches) return;
-  // No value, clamped to kFar as they are, is above what fills the last four up.
+  // The last places are filled with a number that no value exceeds, since values are clamped to kFar.
   std::vector<glm::vec4> ends(6, glm::vec4(2 * static_cast<float>(kFar)));
   for (std::size_t i = 0; 3 * i + 3 < uniforms_.size(); ++i) ends[i / 4][static_cast<int>(i % 4)] = uniforms_[3 * i].g;
   program.set("few_ends", ends);

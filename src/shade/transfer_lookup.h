@@ -1,4 +1,4 @@
-// The transfer function as the texture that shaders integrate it from, and what can be seen through it.
+// The transfer function as the texture that shaders integrate it from, and the test of what can be seen through it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "umbrick/atlas/brick_atlas.h"
@@ -13,19 +13,18 @@ namespace umbrick {
 class TransferLookup {
  public:
   /// @param format  of the atlas's texels
-  /// @throw InvalidArgument  a function of as many different control points along an axis as a texture of the driver
-  /// has
-  ///                         texels, of a quarter of that for a 2D function
+  /// @throw InvalidArgument  the function has more different control points along an axis than a texture of the driver
+  ///   has texels, or than a quarter of that for a 2D function
   /// @throw GlError
   TransferLookup(const GlFunctions& gl, const TransferFunction& transfer, const SamplingOptions& sampling,
                  const Bricks& volume, VoxelFormat format);
 
-  /// False when no value (and gradient magnitude) in these ranges, nor what rounding and the format of the texels may
-  /// make of one, gives anything but 0.
+  /// Returns false when no value (and gradient magnitude) in these ranges gives anything but 0, nor anything that
+  /// rounding and the format of the texels may make of one.
   bool isVisible(const Range& value, const Range& gradient) const;
   /// Adds kQuadrature, kUniformStretches, kValueSteps and kGradientSteps of shade/medium.glsl.
   void setConstants(ShaderConstants& constants) const;
-  /// Sets what medium.glsl needs to look up the atlas's texels.
+  /// Sets the uniforms that medium.glsl needs to look up the atlas's texels.
   void setUniforms(GlProgram& program, const BrickAtlas& atlas) const;
   GLuint texture() const { return texture_.name(); }
 
@@ -35,10 +34,10 @@ class TransferLookup {
   TransferFunction transfer_;
   TexelScale scale_;
   float background_;
-  double emptyRounding_;     // share of empty space's texel that it may be read off by
-  double gradientRounding_;  // likewise of a gradient magnitude
+  double emptyRounding_;     // share of empty space's texel by which it may be read wrongly
+  double gradientRounding_;  // the same for a gradient magnitude
   int mode_;
-  int valueSteps_ = 0, gradientSteps_ = 0;  // of a bisection among the stretches of each axis
+  int valueSteps_ = 0, gradientSteps_ = 0;  // steps of a bisection among the stretches of each axis
   std::vector<glm::vec4> uniforms_;         // rows 0 to 2 of the texture by column, where these are not too many
   GlTexture texture_;
 };

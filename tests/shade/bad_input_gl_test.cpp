@@ -1,4 +1,4 @@
-// What a scene or a volume cannot do is said in one line.
+// What a scene or a volume cannot do is reported in one line.
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <string>
@@ -47,7 +47,7 @@ TEST_CASE("A budget that one slice does not fit is refused with both sizes", "[s
   const auto context = testContext();
   if (!context) return;
   ResolvedScene scene = plainScene(unitRamp(), orthographicCamera({64, 64, 190}, {64, 64, 0}, 128, 24), 1);
-  scene.bricks.budgetMiB = 1;  // of 20^3 * 4 bytes: 32 bricks
+  scene.bricks.budgetMiB = 1;  // of bricks of 20^3 * 4 bytes it holds 32
   const FieldBricks volume =
       fieldFor(scene, [](const glm::ivec3& i) { return (i.x + i.y + i.z) / 400.0; }, {glm::ivec3(0), glm::ivec3(127)});
   CHECK_THAT(complaint<InvalidArgument>([&] { renderPicture(*context, volume, scene); }),
@@ -76,7 +76,7 @@ TEST_CASE("A renderer takes other cameras, of other image sizes too", "[shade][g
     CHECK(maxDifference(renderer.render(next).colour, renderPicture(*context, volume, same).colour) == 0);
   }
   Camera wide = camera();
-  wide.fov = 2.9;  // the slabs of its corners reach far
+  wide.fov = 2.9;  // the slabs at its corners reach far
   CHECK_THAT(complaint<InvalidArgument>([&] { renderer.render(wide); }), Contains("apron"));
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("An empty volume gives an empty picture", "[shade][gl]") {
     CHECK(picture.stats.slices == 0);
     CHECK(picture.stats.fragments == 0);
     CHECK(maxDifference(picture.colour, Image(24, 24)) == 0);
-    // Its background would be seen, but there is nowhere to see it.
+    // The background would be visible, but there is no place where it could be seen.
     scene.transfer = homogeneous(glm::dvec3(1), 1);
     CHECK(maxDifference(renderPicture(*context, empty, scene).colour, Image(24, 24)) == 0);
     scene.background = glm::dvec3(0.5);
@@ -125,7 +125,7 @@ TEST_CASE("Resolving a scene writes out what the volume decides", "[shade]") {
              Contains("no transfer function"));
   scene.transfer = unitRamp();
   const ResolvedScene resolved = resolveScene(scene, bounds, anisotropic);
-  CHECK(resolved.sampling.spacing == 0.25);  // half a voxel of the shortest edge
+  CHECK(resolved.sampling.spacing == 0.25);  // half of a voxel's shortest edge
   CHECK(glm::distance(resolved.camera.lookAt, bounds.centre()) < 1e-12);
   CHECK(resolveScene(unresolved(resolved), {}, glm::dmat4(7)) == resolved);
   CHECK(parseScene(printScene(resolved), "printed") == unresolved(resolved));
@@ -134,7 +134,7 @@ TEST_CASE("Resolving a scene writes out what the volume decides", "[shade]") {
   CHECK_THAT(complaint<InvalidArgument>([&] { resolveScene(scene, bounds, anisotropic); }), Contains("spacing"));
 }
 
-// A slab reads half its length beyond a brick along each axis, and every sample half a voxel.
+// A slab reads half its length beyond a brick along each axis, and every sample reads half a voxel beyond.
 TEST_CASE("The apron follows from the reach of a slab", "[shade]") {
   ResolvedScene scene = plainScene(unitRamp(), orthographicCamera({0, 0, 9}, {0, 0, 0}, 1, 8), 1);
   scene.camera.up = {0, 1, 0};
@@ -143,7 +143,7 @@ TEST_CASE("The apron follows from the reach of a slab", "[shade]") {
   CHECK(requiredApron(scene, glm::dmat4(1)) == 2);
   scene.sampling.spacing = 7;
   CHECK(requiredApron(scene, glm::dmat4(1)) == 4);
-  // Segments, and planes that cut slabs, have middles anywhere in a slab.
+  // Segments, and slabs that planes cut, have middles anywhere in a slab.
   scene.sampling.quadrature = Quadrature::midpoint;
   CHECK(requiredApron(scene, glm::dmat4(1)) == 4);
   scene.sampling.quadrature = Quadrature::preintegrated;
@@ -159,7 +159,7 @@ TEST_CASE("The apron follows from the reach of a slab", "[shade]") {
 }
 
 TEST_CASE("Bricks are as large as pixels and aprons ask for, unless the scene says how large", "[shade]") {
-  // 2 x 2 world units on 8 x 8 pixels; voxels of an edge of 1.
+  // The picture shows 2 x 2 world units on 8 x 8 pixels; voxels have an edge of 1.
   ResolvedScene scene = plainScene(unitRamp(), orthographicCamera({0, 0, 9}, {0, 0, 0}, 2, 8), 1);
   const Box bounds{{-1, -1, -1}, {1, 1, 1}};
   const glm::dmat4 voxels(1);
@@ -175,7 +175,7 @@ TEST_CASE("Bricks are as large as pixels and aprons ask for, unless the scene sa
   scene.sampling.spacing = 400;
   CHECK(brickInterior(scene, voxels, bounds) == 256);
   scene.sampling.spacing = 1;
-  // As seen by an eye at a distance of 9; within the bounds pixels are small.
+  // This is seen by an eye at a distance of 9; within the bounds pixels are small.
   scene.camera = perspectiveCamera({0, 0, 9}, {0, 0, 0}, 2 * std::atan(20.0 / 9), 8);
   CHECK(brickInterior(scene, voxels, bounds) == 40);
   scene.camera = perspectiveCamera({0, 0, 0}, {0, 0, -1}, 2 * std::atan(20.0 / 9), 8);

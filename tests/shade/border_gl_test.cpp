@@ -11,7 +11,7 @@ using namespace umbrick;
 
 namespace {
 
-// The same volume with room around it: two more active voxels of empty space, far from it.
+// Returns the same volume with room around it: two more active voxels of empty space, far from it.
 ScalarGrid padded(const ScalarGrid& grid) {
   ScalarGrid result = grid;
   const auto copy = grid.grid->deepCopy();
@@ -21,7 +21,7 @@ ScalarGrid padded(const ScalarGrid& grid) {
   return result;
 }
 
-// A sheet two voxels thick, the last of its voxels at `last` along z; and, for gradients, blobs before it.
+// Returns a sheet two voxels thick, the last of its voxels at `last` along z; and, for gradients, blobs before it.
 ScalarGrid sheetAt(int last) {
   return makeFilled(glm::ivec3(18, 18, 12), {0, 0, last - 11}, [](const glm::ivec3& i) {
     return i.z >= 10 ? 1.0 : 0.5 * coneAt(i, {{9, 9, 3, 4}});
@@ -41,7 +41,7 @@ TEST_CASE("A sheet at the border is whole at every residue of the brick edge, br
   const auto context = testContext();
   if (!context) return;
   for (int last = 13; last < 21; ++last)
-    for (const double spacing : {0.5, 1.25, 2.5, 5.0})  // of which qualities make their slabs
+    for (const double spacing : {0.5, 1.25, 2.5, 5.0})  // of slabs as qualities make them
       for (const double fromAbove : {31.3, -29.1}) {
         INFO("last voxel at " << last << ", slabs of " << spacing << ", seen from " << fromAbove);
         const ScalarGrid grid = sheetAt(last);
@@ -95,9 +95,9 @@ TEST_CASE("Segments and cut slabs read no voxel beyond the apron, whatever the q
         BrickOptions options;
         options.apron = requiredApron(scene, grid.indexToWorld());
         const Image bricked = renderGrid(*context, grid, scene).colour;
-        // Places in textures are rounded differently, by 1e-6 voxels or so along rays that meet some fifty.
+        // Places in textures are rounded differently: by about 1e-6 voxels, along rays that meet some fifty slabs.
         CHECK(maxDifference(bricked, renderPicture(*context, *unbrickedGrid(grid, options), scene).colour) < 1e-4);
-        // Bricks with less are refused.
+        // Bricks with a narrower apron are refused.
         options.interior = 8;
         options.apron -= 1;
         CHECK_THROWS_AS(renderPicture(*context, *brickGrid(grid, options), scene), InvalidArgument);

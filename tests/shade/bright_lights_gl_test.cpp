@@ -33,7 +33,7 @@ TEST_CASE("A picture is as many times brighter as its light, with 16 bits too", 
         const bool alpha = i % 4 == 3;
         most = std::max(most, std::abs(bright.pixels[i] / (alpha ? 1 : times) - static_cast<double>(dim.pixels[i])));
       }
-      // A slab rounds 16 bits by up to 2.3e-5 of the brightest light, of some 60 slabs.
+      // On each of some 60 slabs, 16 bits are rounded by up to 2.3e-5 of the brightest light.
       CHECK(most < (bits == 32 ? 1e-5 : 60 * 2.3e-5));
     }
 }

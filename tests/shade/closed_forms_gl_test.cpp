@@ -1,4 +1,4 @@
-// Renderer and closed forms that the reference is held against as well.
+// Compares the renderer with closed forms that the reference is compared with as well.
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <numbers>
@@ -13,10 +13,10 @@ namespace {
 const IndexBox kDomain{glm::ivec3(0), glm::ivec3(24)};
 }  // namespace
 
-// The surface is where the interpolated square of the distance passes R^2: within 3/8 of a squared voxel. A ramp of
-// 20 squared voxels stands for the step, which a table of 1024 bins over 1100 of them has to 1.1. Slabs in which the
-// ramp bends are off by the bend of the squared distance, d^2 / 4.
-TEST_CASE("A homogeneous sphere has the opacity of its chords, as slices", "[shade][gl][slow]") {
+// The surface is where the interpolated square of the distance passes R^2: within 3/8 of a squared voxel. A ramp over
+// 20 squared voxels stands for the step; a table of 1024 bins over 1100 squared voxels is exact to 1.1 of them. Slabs
+// in which the ramp bends are off by the bend of the squared distance, d^2 / 4.
+TEST_CASE("A homogeneous sphere drawn by slices has the opacity of its chords", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const double radius = 10, sigma_t = 0.09, d = 0.25;
@@ -55,9 +55,9 @@ TEST_CASE("A homogeneous sphere has the opacity of its chords, as slices", "[sha
   }
 }
 
-// Steps of the transfer function on a linear field are planes. The table ends each of them within a bin of it, here 24
-// units of 1023, and a table's integral is linear where it should bend.
-TEST_CASE("Two slabs blend in order, as slices of any spacing", "[shade][gl][slow]") {
+// Steps of the transfer function on a linear field are planes. The table places each step with an error of one bin,
+// here 24 units of 1023, and a table's integral is linear where it should bend.
+TEST_CASE("Two slabs blend in order with slices of any spacing", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const TwoSlabs slabs;
@@ -86,9 +86,9 @@ TEST_CASE("Two slabs blend in order, as slices of any spacing", "[shade][gl][slo
 TEST_CASE("Below an opaque half-plane dos has the light of a random walk, not of the cone", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
-  // Roof in layer z = 24 from x = 1 on, floor in layer z = 4. Slabs are sampled at their middles, one of them exactly
-  // in the roof's layer, and nothing but 0.9 or more of the roof's value is roof: so it is one slab thick, and begins
-  // between the pixels at 0.75 and 1.25.
+  // The roof is in layer z = 24 from x = 1 on, the floor in layer z = 4. Slabs are sampled at their middles, one of
+  // them exactly in the roof's layer, and only 0.9 or more of the roof's value counts as roof: so it is one slab thick,
+  // and begins between the pixels at 0.75 and 1.25.
   const auto field = [](const glm::ivec3& i) { return i.z == 24 && i.x >= 1 ? 1.0 : i.z == 4 ? -1.0 : 0.0; };
   const TransferFunction transfer(
       {{-1, {glm::dvec3(1), 1e-3}}, {0, {glm::dvec3(1), 0}}, {0.9, {glm::dvec3(1), 0}}, {1, {glm::dvec3(1), 1e4}}});
@@ -104,13 +104,13 @@ TEST_CASE("Below an opaque half-plane dos has the light of a random walk, not of
     const FieldBricks volume = fieldFor(scene, field, {glm::ivec3(-32), glm::ivec3(31)});
     const Picture picture = renderPicture(*context, volume, scene, {.visibilityAndDepth = true});
     const double pixel = 40.0 / size, radius = d * std::tan(theta) / pixel;
-    double variance = 0;  // of a step along x, squared pixels
+    double variance = 0;  // variance of a step along x, squared pixels
     for (const glm::dvec2& point : diskGrid(footprint)) {
       const double offset = radius * point.x, f = offset - std::floor(offset);
       variance += (offset * offset + f * (1 - f)) / (footprint * footprint);
     }
-    // Slabs in which the floor's hat has half, all and half of its value; each reads the slice before it, to which
-    // light came from the roof's in so many steps.
+    // The floor is seen in the slabs where its value, a tent along z, is half, full and half again. Each of them reads
+    // the slice before it, to which light came from the roof's slice in so many steps.
     const auto expected = [&](double a) {
       double sum = 0;
       for (const int slab : {floor - 1, floor, floor, floor + 1}) {
@@ -124,10 +124,11 @@ TEST_CASE("Below an opaque half-plane dos has the light of a random walk, not of
       const double seen = *picture.visibility.at(x, size / 2) / picture.colour.at(x, size / 2)[3];
       INFO("n " << footprint << ", " << a << " from the edge: walk " << expected(a) << ", cone "
                 << 1 - shareBeyond(theta, std::atan(a / 20)));
-      // Of m = 39 steps with an excess kurtosis of -1 to 1 a normal distribution is off by 0.55 / 24 / m = 6e-4; the
-      // floor hides 1e-3 of itself; a roof known to half a pixel, each side alike, is a second-order change of 1e-3.
+      // After m = 39 steps with an excess kurtosis of -1 to 1 a normal distribution is off by 0.55 / 24 / m = 6e-4. The
+      // floor hides 1e-3 of itself. The roof is known to half a pixel, on each side alike, which is a second-order
+      // change of 1e-3.
       CHECK(std::abs(seen - expected(a)) < 0.003);
-      // What the cone lets in is far from it, both where light enters and where it is still dark.
+      // The light that the cone lets in is far from this, both where light enters and where it is still dark.
       if (a > 3) CHECK(seen - (1 - shareBeyond(theta, std::atan(a / 20))) > 0.1);
     }
   }

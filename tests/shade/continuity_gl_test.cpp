@@ -11,7 +11,7 @@ using namespace umbrick;
 
 namespace {
 
-constexpr int kEdge = 48;  // of the volume, voxels of unit size
+constexpr int kEdge = 48;  // edge of the volume, voxels of unit size
 constexpr double kSigma = 0.6, kSpacing = 0.5;
 
 ScalarGrid ballsAndWall() {
@@ -20,8 +20,8 @@ ScalarGrid ballsAndWall() {
   return makeGrid(grid);
 }
 
-// A path of the camera: of step i, also a fraction, and how far along its view axis a point of the volume moves at most
-// per step.
+// A path of the camera: the camera of a step i, which may be a fraction, and how far along its view axis a point of the
+// volume moves at most per step.
 struct Path {
   std::string name;
   std::function<Camera(double)> camera;
@@ -41,7 +41,7 @@ std::vector<Path> paths(int size) {
     result.push_back({name + " orbit", [=](double i) { return orbitCamera(bounds, 0.5 + i * step, 0.3, base); },
                       0.5 * std::sqrt(3.0) * kEdge * step, 45});
   }
-  // From outside through a corner ball into the volume, a fifth of a slab at a time.
+  // The camera moves from outside through a corner ball into the volume, a fifth of a slab at a time.
   Camera base = result[1].camera(0);
   base.fov = 0.9;
   const glm::dvec3 forward = glm::normalize(base.lookAt - base.eye);
@@ -66,7 +66,7 @@ ResolvedScene sceneOf(Model model, const Path& path) {
   return scene;
 }
 
-// Largest change of a channel among a pixel and its neighbours.
+// Returns the largest change of a channel among a pixel and its neighbours.
 double changeAround(const Image& a, const Image& b, int x, int y, int channel) {
   float most = 0;
   for (int j = std::max(0, y - 1); j <= std::min(a.height - 1, y + 1); ++j)
@@ -86,7 +86,7 @@ void checkPath(const GlContext& context, const Path& path, Model model, double f
   ResolvedScene scene = sceneOf(model, path), plain = sceneOf(Model::emission, path);
   const auto volume = bricksFor(grid, scene);
   SliceRenderer renderer(context, *volume, scene), emission(context, *volume, plain);
-  // Points of V at fixed distances, so that the reference does not pop; its error does not matter here.
+  // V is sampled at points at fixed distances, so that the reference does not pop; its error does not matter here.
   ReferenceOptions smooth;
   smooth.step = model == Model::cone ? 2 : 0;
   smooth.directions = 6;
@@ -122,8 +122,8 @@ void checkPath(const GlContext& context, const Path& path, Model model, double f
   CHECK(excess < slack);
 }
 
-// Steps of 1 / 1024 of a step of the path, in the halves where the picture changes most: what has a slope is left with
-// a thousandth of its change or, where it is steep for a while, with some times as much; a jump stays what it is.
+// Looks at steps of 1 / 1024 of a step of the path, in the halves where the picture changes most. A slope leaves a
+// thousandth of its change or, where it is steep for a while, some times as much; a jump stays what it is.
 double largestJump(SliceRenderer& renderer, const Path& path, int every, double& largestStep) {
   double jump = 0;
   for (int step = 0; step < path.steps; step += every) {
@@ -142,7 +142,7 @@ double largestJump(SliceRenderer& renderer, const Path& path, int every, double&
   return jump;
 }
 
-// @param every  of the path's steps so many apart are looked at
+// @param every  only steps of the path that are so many apart are looked at
 void checkJumps(Model model, int size, int every) {
   const auto context = testContext();
   if (!context) return;

@@ -33,7 +33,8 @@ TEST_CASE("Emission converges to the reference at second order in the slice dist
       scene.sampling.quadrature = quadrature;
       const Image exact = renderReference(grid, scene).colour;
       std::vector<double> steps, errors;
-      // In a medium that ends nowhere a single phase of the slices can be better than the rule: three of them are not.
+      // In a medium that ends nowhere a single phase of the slices can happen to be better than the rule,
+      // but not three.
       const glm::dvec3 eye = scene.camera.eye;
       for (const double d : {2.0, 1.0, 0.5, 0.25}) {
         scene.sampling.spacing = d;
@@ -79,7 +80,7 @@ TEST_CASE("Pictures of slices converge with the voxel size and the pixel size at
   CHECK(observedOrder(sizes, errors) == Approx(2).margin(0.3));
 }
 
-// With an aperture of 0 dos is the model itself. V of a slab is that at its front: first order.
+// With an aperture of 0 dos is the model itself. It takes V of a slab at its front, which is of first order.
 TEST_CASE("Without an aperture dos converges to the reference at first order", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -98,10 +99,10 @@ TEST_CASE("Without an aperture dos converges to the reference at first order", "
   CHECK(observedOrder(steps, errors) == Approx(1).margin(0.15));
 }
 
-// The spread of a random walk after the depth L is sqrt(L d) tan(theta) / 2 where the cone's is L tan(theta) / 2: it
-// falls with d, until the linear interpolation of the buffer, which adds a variance of f (1 - f) squared pixels per
-// step of a fraction f of a pixel, keeps it at sqrt(L tan(theta) pixel / 2) or so. Either way the picture does not
-// become the cone's: its error falls by less and less, where that of emission, on the same scene, goes on.
+// After the depth L a random walk has the spread sqrt(L d) tan(theta) / 2, where the cone has L tan(theta) / 2. The
+// spread falls with d, until the linear interpolation of the buffer, which adds a variance of f (1 - f) squared pixels
+// per step of a fraction f of a pixel, keeps it at about sqrt(L tan(theta) pixel / 2). Either way the picture does not
+// become the cone's: its error falls by less and less, while that of emission, on the same scene, goes on.
 TEST_CASE("With an aperture dos does not converge to the cone: its error levels off", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -125,13 +126,13 @@ TEST_CASE("With an aperture dos does not converge to the cone: its error levels 
     const Image cone = exactPicture(grid, scene);
     for (const int footprint : {3, 5}) {
       const std::vector<double> e = errorsOf(scene, cone, footprint);
-      // Aitken's extrapolation of a sequence whose differences shrink by a constant factor.
+      // This is Aitken's extrapolation of a sequence whose differences shrink by a constant factor.
       const double limit = e[4] - (e[3] - e[4]) * (e[3] - e[4]) / ((e[2] - e[3]) - (e[3] - e[4]));
       INFO("theta " << theta << ", n " << footprint << ": " << e[0] << ' ' << e[1] << ' ' << e[2] << ' ' << e[3] << ' '
                     << e[4] << ", limit " << limit);
       CHECK(e[4] > 0.88 * e[3]);  // the last doubling of the slices gains an eighth at most
-      // Measured when this was written: 0.075, 0.073, 0.076 and 0.074. The directions and the tolerance of the
-      // reference leave 0.002; a sixth is allowed for drivers that filter otherwise.
+      // The limits measured when this was written are 0.075, 0.073, 0.076 and 0.074. The directions and the tolerance
+      // of the reference leave 0.002; a sixth is allowed for drivers that filter otherwise.
       CHECK(limit == Approx(0.0745).epsilon(0.15));
     }
   }

@@ -1,4 +1,4 @@
-// Emission and absorption against closed forms. Max 1995, doi:10.1109/2945.468400
+// Compares emission and absorption with closed forms. Max 1995, doi:10.1109/2945.468400
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <string>
@@ -12,7 +12,7 @@ namespace {
 // The medium ends more than half a slab before the bricks do: where they end, slabs are drawn whole or not at all.
 const IndexBox kAroundMedium{glm::ivec3(-16), glm::ivec3(47)};
 
-// Rotated, anisotropic, sheared, mirrored and moved.
+// Returns a transform that rotates, shears, mirrors and moves, with anisotropic voxels.
 glm::dmat4 mediumTransform() {
   return glm::dmat4(0.8, 0.3, -0.1, 0, -0.25, 0.9, 0.2, 0, 0.4, 0.1, -1.1, 0, 12, -5, 3, 1);
 }
@@ -22,7 +22,7 @@ struct View {
   Camera camera;
 };
 
-// Around and inside a medium of some 26 world units.
+// Returns views around and inside a medium of some 26 world units.
 std::vector<View> viewsOf(const glm::dmat4& indexToWorld) {
   const glm::dvec3 centre(indexToWorld * glm::dvec4(kMediumIndex.centre(), 1));
   return {{"orthographic face-on", orthographicCamera(centre + glm::dvec3(0, 0, 40), centre, 40, 40)},
@@ -33,9 +33,9 @@ std::vector<View> viewsOf(const glm::dmat4& indexToWorld) {
 
 // Whatever cuts the medium, each pixel must show alpha = 1 - exp(-sigma_t chord) and albedo times that.
 //
-// The chord: clip distances are differences of single-precision depths of some 60 units, divided by a rate that may be
-// a tenth, so 60 * 6e-8 * 10 * (two ends) < 1e-4 world units. The formulas of a slab: 1e-6 relative. The sum over the
-// slabs: a rounding each.
+// Three errors are allowed for. The chord: clip distances are differences of single-precision depths of some 60 units,
+// divided by a rate that may be a tenth, so 60 * 6e-8 * 10 * (two ends) < 1e-4 world units. The formulas of a slab:
+// 1e-6 relative. The sum over the slabs: one rounding each.
 void checkChords(const Picture& picture, const ResolvedScene& scene, std::span<const ClipPlane> planes, double sigma_t,
                  double chordError = 1e-4) {
   int hits = 0;
@@ -47,7 +47,7 @@ void checkChords(const Picture& picture, const ResolvedScene& scene, std::span<c
       const float* pixel = picture.colour.at(x, y);
       const double alpha = -std::expm1(-sigma_t * chord);
       const double rounding = (2e-6 + 2 * kFloatRounding * static_cast<double>(picture.stats.slices)) * alpha;
-      // The slope of alpha, at the end of the uncertain chord where it is larger.
+      // This is the slope of alpha, taken at the end of the uncertain chord where it is larger.
       const double slope = sigma_t * std::exp(-sigma_t * std::max(0.0, chord - chordError));
       const double allowed = std::min(slope * chordError, 1.0) + rounding;
       worst = std::max(worst, chord > 0 ? std::abs(pixel[3] - alpha) / allowed : pixel[3] * 1e30);
@@ -132,7 +132,7 @@ TEST_CASE("Nothing nearer than the near distance is seen", "[shade][gl]") {
   if (!context) return;
   for (auto [name, camera] : viewsOf(glm::dmat4(1)))
     for (const double nearDistance : {3.37, 41.9}) {
-      if (name == "inside" && nearDistance > 4) continue;  // next to nothing would be left
+      if (name == "inside" && nearDistance > 4) continue;  // almost nothing would be left
       INFO(name << ", near " << nearDistance);
       camera.nearDistance = nearDistance;
       ResolvedScene scene = plainScene(ramp(0.1), camera, 2.1);
@@ -146,7 +146,8 @@ TEST_CASE("Nothing nearer than the near distance is seen", "[shade][gl]") {
     }
 }
 
-// Values a x + b and sigma_t = c value: along a ray the optical depth is that of the chord's middle times its length.
+// Values are a x + b and sigma_t = c value: along a ray the optical depth is that of the chord's middle
+// times its length.
 TEST_CASE("A linear field of linear extinction has its exact optical depth", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -174,8 +175,8 @@ TEST_CASE("A linear field of linear extinction has its exact optical depth", "[s
           const double tau = kept.length() > 0 ? sigma_t * value(middle) * kept.length() * ray.stretch() : 0;
           worst = std::max(worst, std::abs(picture.colour.at(x, y)[3] + std::expm1(-tau)));
         }
-      // The chord's 1e-4 (see checkChords) times the largest sigma_t, and texture coordinates of single precision: 6e-8
-      // of an atlas of 40 texels displaces values by 3e-6 * 0.02, over 40 units of path.
+      // The error is the chord's 1e-4 (see checkChords) times the largest sigma_t, and that of texture coordinates of
+      // single precision: 6e-8 of an atlas of 40 texels displaces values by 3e-6 * 0.02, over 40 units of path.
       CHECK(worst < 1e-4 * sigma_t + 1e-5);
     }
 }
@@ -185,7 +186,7 @@ TEST_CASE("A medium whose background value is visible fills the domain and nothi
   const auto context = testContext();
   if (!context) return;
   const double sigma_t = 0.06;
-  // Only voxels around the middle differ from the background, and not by anything that shows.
+  // Only voxels around the middle differ from the background, and their values look the same.
   const auto field = [](const glm::ivec3& i) {
     return glm::length(glm::dvec3(i) - glm::dvec3(15, 14, 16)) < 4 ? 3.0 : 2.0;
   };
@@ -262,11 +263,11 @@ TEST_CASE("Colours are associated, scale with the ambient light and cover the ba
   CHECK(opaque);
 }
 
-// A pixel is left when less than 1e-3 gets through: all that is behind could add that much of its colour.
+// A pixel is shaded no more when less than 1e-3 gets through: all that is behind could add that much of its colour.
 TEST_CASE("Early rejection of saturated pixels changes less than the transmittance it leaves", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  // Black in front, white behind: what is rejected would be seen best.
+  // The medium is black in front and white behind, so that what is rejected would be seen best.
   const TransferFunction transfer({{0, {{0, 0, 0}, 0}}, {1, {{1, 1, 1}, 1.5}}});
   const auto field = [](const glm::ivec3& i) { return std::clamp(1 - i.z / 31.0, 0.0, 1.0); };
   for (const Model model : {Model::emission, Model::cone}) {
@@ -280,7 +281,7 @@ TEST_CASE("Early rejection of saturated pixels changes less than the transmittan
     CHECK(early.stats.fragments < whole.stats.fragments);
     // The cone's light may also change by what the reach of its walk leaves out, 3e-5 a look (see screen_region.h).
     CHECK(maxDifference(whole.colour, early.colour) < scene.sampling.saturation + (model == Model::cone ? 2e-4 : 0));
-    // There was something to reject; behind saturation the cone's light is gone too.
+    // The second picture has left something out. Behind saturated pixels the cone's light is gone too.
     if (model == Model::emission) CHECK(maxDifference(whole.colour, early.colour) > 0);
   }
 }

@@ -23,8 +23,8 @@ TEST_CASE("Footprint samples are point-symmetric in the unit disk", "[shade]") {
   CHECK(diskGrid(1).front() == glm::dvec2(0));
 }
 
-// A disk of radius 1 has the variance 1/4 along an axis. Of an even n, ring k of n/2 holds 4 (2 k - 1) of the cells at
-// radius (2 k - 1) / n, and the sum of the cubes of odd numbers, n^2/8 (n^2 - 2), leaves 1/4 - 1/(2 n^2).
+// A disk of radius 1 has the variance 1/4 along an axis. For an even n, ring k of n/2 holds 4 (2 k - 1) of the cells at
+// radius (2 k - 1) / n. The sum of the cubes of odd numbers, n^2/8 (n^2 - 2), then leaves 1/4 - 1/(2 n^2).
 TEST_CASE("The variance of the footprint tends to a disk's", "[shade]") {
   for (const int n : {2, 4, 8, 16}) {
     glm::dvec2 variance(0);
@@ -34,7 +34,7 @@ TEST_CASE("The variance of the footprint tends to a disk's", "[shade]") {
   }
 }
 
-// The map has equal areas: each of four rings of equal area, and each of eight sectors, holds its share of many points.
+// The map keeps areas: each of four rings of equal area, and each of eight sectors, holds its share of many points.
 TEST_CASE("Footprint samples are spread with equal areas", "[shade]") {
   const int n = 64;
   int rings[4] = {}, sectors[8] = {};
@@ -42,7 +42,7 @@ TEST_CASE("Footprint samples are spread with equal areas", "[shade]") {
     ++rings[std::min(3, static_cast<int>(4 * glm::dot(p, p)))];
     ++sectors[static_cast<int>(std::floor((std::atan2(p.y, p.x) + 3.14159265358979) / 0.785398163397449)) % 8];
   }
-  // Points on a border, a row of n of them, fall to one side.
+  // Points on a border, a row of n of them, count on one side.
   for (const int count : rings) CHECK(std::abs(count - n * n / 4) <= 4 * n);
   for (const int count : sectors) CHECK(std::abs(count - n * n / 8) <= n);
 }

@@ -1,6 +1,6 @@
-// Hard cases of the buffers: very many slices, 16 bits, and next to nothing per slice.
-// Elsewhere: opacities of a slab from 1e-6 to 1e3 (emission_gl_test), 16-bit occlusion of some 30 slabs
-// (occlusion_gl_test), what 16 bits cost on a scan (README).
+// Hard cases of the buffers: very many slices, 16 bits, and next to nothing per slice. Tested elsewhere: opacities of a
+// slab from 1e-6 to 1e3 (emission_gl_test), 16-bit occlusion of some 30 slabs (occlusion_gl_test), the cost of 16 bits
+// on a scan (README).
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -11,16 +11,16 @@ using namespace umbrick;
 
 namespace {
 
-const double kStep = std::exp2(-16);  // of a 16-bit buffer
+const double kStep = std::exp2(-16);  // step of a 16-bit buffer
 
-// A block of depth `kDepth` seen face-on, which the sweep cuts into `slices` slabs of opacity 1 - exp(-tau) each. The
-// eye is as far in front of it as a slab is thick: slices stand in the block from the second on.
+// A block of depth `kDepth` is seen face-on, and the sweep cuts it into `slices` slabs of opacity 1 - exp(-tau) each.
+// The eye is as far in front of the block as a slab is thick: slices lie in the block from the second on.
 constexpr double kDepth = 20;
 
 struct Sweep {
   ResolvedScene scene;
   int slices;
-  double tau;  // of a slab
+  double tau;  // optical depth of a slab
   Picture render(const GlContext& context) const {
     const FieldBricks volume = fieldFor(scene, [](const glm::ivec3&) { return 1.0; }, {glm::ivec3(-8), glm::ivec3(31)});
     return renderPicture(context, volume, scene, {.visibilityAndDepth = true});
@@ -39,7 +39,7 @@ Sweep makeSweep(Model model, int slices, double tau) {
   return sweep;
 }
 
-// What the equations of SliceRenderer give for such slabs: opacity and its product with V.
+// The sums that the equations of SliceRenderer give for such slabs: opacity and its product with V.
 struct Series {
   double alpha = 0, visibility = 0;
   explicit Series(const Sweep& sweep) {
@@ -53,8 +53,8 @@ struct Series {
   }
 };
 
-// Every slab rounds the buffers a few times in single precision, at worst each time the same way; the first and the
-// last one are cut by the box, whose faces single precision places to 1e-6 of a slab.
+// Returns a bound of rounding. Every slab rounds the buffers a few times in single precision, at worst each time the
+// same way. The first and the last one are cut by the box, whose faces single precision places to 1e-6 of a slab.
 double floatBound(const Sweep& sweep) { return 4 * kFloatRounding * sweep.slices + 2e-6 * sweep.tau; }
 
 }  // namespace
@@ -89,9 +89,9 @@ TEST_CASE("Light that 10 000 slices have carried is that of the equations", "[sh
     }
 }
 
-// The bound is that of SamplingOptions::bits. A slab's light, opacity and transmittance are rounded, what is blended is
-// rounded again: an error of half a step each time. Where roundings are as likely up as down they add up as a walk,
-// sqrt(N) steps.
+// The bound is that of SamplingOptions::bits. A slab's light, opacity and transmittance are rounded, and what is
+// blended is rounded again: an error of half a step each time. Where roundings go up as often as down they add up as a
+// random walk, to sqrt(N) steps.
 TEST_CASE("16 bits stay within a step and a half per slice", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -118,7 +118,7 @@ TEST_CASE("16 bits stay within a step and a half per slice", "[shade][gl][slow]"
       }
 }
 
-// 1 - A times the opacity of a slab is less than half a step: rounded to nothing.
+// Where 1 - A times the opacity of a slab is less than half a step, it is rounded to nothing.
 TEST_CASE("A 16-bit sum stops growing at 1 - 2^-17 over the opacity of a slab", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -128,13 +128,13 @@ TEST_CASE("A 16-bit sum stops growing at 1 - 2^-17 over the opacity of a slab", 
     return static_cast<double>(sweep.render(*context).colour.at(4, 4)[3]);
   };
   const int slices = 10'000;
-  // Long before its end this sum stands still at 1 - 1/64, though 0.8 % more are to come. A half-float stops where its
-  // own steps exceed what a slab adds: above 1/2 they are 2^-11, so a sum that is truncated stops there.
+  // Long before its end this sum stops at 1 - 1/64, though 0.8 % more are to come. A half-float stops where its own
+  // steps exceed what a slab adds: above 1/2 they are 2^-11, so a sum that is truncated stops there.
   const double slab = std::exp2(-11), stop = 1 - std::exp2(-17) / slab;
   CHECK(std::abs(alphaOf(16, slab, slices) - stop) < 1.5 * kStep);
   CHECK(std::abs(alphaOf(16, slab, slices + 2000) - stop) < 1.5 * kStep);
   CHECK(std::abs(alphaOf(32, slab, slices) - (1 - std::pow(1 - slab, slices))) < 4 * kFloatRounding * slices);
-  // Half a step is the least that counts at all; 32 bits see it.
+  // Half a step is the least that counts in 16 bits; 32 bits hold less.
   CHECK(alphaOf(16, 0.45 * kStep, slices) == 0);
   CHECK(alphaOf(32, 0.45 * kStep, slices) == Approx(-std::expm1(slices * std::log1p(-0.45 * kStep))).epsilon(1e-3));
   CHECK(alphaOf(16, 1.55 * kStep, 1000) > 500 * kStep);

@@ -1,7 +1,7 @@
-// Hard cases of the camera and of the picture's size.
-// Elsewhere: chords from inside a homogeneous box and beyond a near distance (emission_gl_test), light in a medium
-// wider than the image (occlusion_gl_test), slabs thinner than a slice that clip planes leave (emission_gl_test,
-// occlusion_gl_test), images that are not square (check), views along planes of the grid (hard_transforms_gl_test).
+// Hard cases of the camera and of the picture's size. Tested elsewhere: chords from inside a homogeneous box and beyond
+// a near distance (emission_gl_test), light in a medium wider than the image (occlusion_gl_test), slabs thinner than a
+// slice that clip planes leave (emission_gl_test, occlusion_gl_test), images that are not square (check), views along
+// planes of the grid (hard_transforms_gl_test).
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 
@@ -40,7 +40,7 @@ TEST_CASE("A near distance through the volume cuts it, light included, as the re
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({30, 30, 30});
-  // Also between slices, and where nothing is left but a last sliver.
+  // The near distance also lies between slices, and where only a last sliver is left.
   for (const double distance : {12.0, 22.13, 39.9}) {
     INFO("near " << distance);
     ResolvedScene scene = plainScene(ramp(0.3), perspectiveCamera({15, 20, 50}, {15, 14, 10}, 0.6, 24), 0.5);
@@ -54,8 +54,9 @@ TEST_CASE("A near distance through the volume cuts it, light included, as the re
   }
 }
 
-// At 1 degree rays are nearly parallel and 57 times as far away as the picture is high; at 150 degrees those of the
-// corners are 5.4 times as long per slice as the central one, which a slab of one voxel's depth has to reach through.
+// At 1 degree rays are nearly parallel and 57 times as long as the picture is high. At 150 degrees the rays
+// at the corners are 5.4 times as long per slice as the central one, and a slab of one voxel's depth has to
+// reach through that.
 TEST_CASE("Fields of view of 1 and 150 degrees match the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -70,7 +71,8 @@ TEST_CASE("Fields of view of 1 and 150 degrees match the reference", "[shade][gl
     scene.sampling.spacing = 0.25;
     checkAgainstReference(*context, grid, scene, 2e-5, 1e-2);
   }
-  // Wide, light is carried towards the edges of the image: in a homogeneous half-space V is that of the slabs in front.
+  // In a wide view light is carried towards the edges of the image: in a homogeneous half-space V is that of the
+  // slabs in front.
   ResolvedScene cone = plainScene(ramp(0.1), perspectiveCamera({16, 16, 30.2}, {16, 16, 0}, 150 * kDegree, 32), 0.5);
   cone.model = Model::cone;
   cone.sampling.quadrature = Quadrature::midpoint;
@@ -90,16 +92,16 @@ TEST_CASE("Fields of view of 1 and 150 degrees match the reference", "[shade][gl
       }
       worst = std::max(worst, std::abs(picture.visibility.at(x, y)[0] - visibility));
     }
-  CHECK(worst < 20 * 10 * kFloatRounding);  // some roundings a slab
+  CHECK(worst < 20 * 10 * kFloatRounding);  // a few roundings for each slab
 }
 
-// Pixels are points on rays: one of a small image is one of a larger one that has the same ray.
+// Pixels are points on rays: a pixel of a small image equals the pixel of a larger one that has the same ray.
 TEST_CASE("One-pixel and narrow images are cut-outs of larger ones", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({30, 30, 30});
   for (const Projection projection : {Projection::orthographic, Projection::perspective}) {
-    // 27 x 27 pixels, of which others show the middle row, column and pixel.
+    // The large image has 27 x 27 pixels; smaller images show its middle row, column and pixel.
     Camera large = projection == Projection::perspective ? perspectiveCamera({40, 30, 50}, glm::dvec3(14.5), 0.7, 27)
                                                          : orthographicCamera({40, 30, 50}, glm::dvec3(14.5), 40, 27);
     ResolvedScene scene = plainScene(ramp(0.3), large, 0.5);
@@ -117,7 +119,8 @@ TEST_CASE("One-pixel and narrow images are cut-outs of larger ones", "[shade][gl
           for (int c = 0; c < 4; ++c)
             worst = std::max(worst, static_cast<double>(std::abs(
                                         part.at(x, y)[c] - whole.at(x + (27 - size.x) / 2, y + (27 - size.y) / 2)[c])));
-      // Screen points are rounded to 6e-8 of other sizes: 3e-6 voxels, where values change by up to 0.2 a voxel.
+      // Screen points are rounded to 6e-8 of other sizes. This is 3e-6 voxels, where values change by up to
+      // 0.2 a voxel.
       CHECK(worst < 2e-5);
     }
   }
@@ -159,7 +162,7 @@ TEST_CASE("In images of any shape light in a wide medium falls as it should", "[
 }
 
 // A plate of one layer of voxels is a tent of base 2. Tents at equal distances of 1 add up to 1 everywhere, so slices
-// that are 1/k voxels apart, or segments of theirs, see all of it at any phase.
+// that are 1/k voxels apart, or segments of that length, see the whole plate at any phase.
 TEST_CASE("A plate thinner than a slab has its whole opacity at any phase of the slices", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -181,10 +184,10 @@ TEST_CASE("A plate thinner than a slab has its whole opacity at any phase of the
         scene.sampling.segments = segments;
         const Picture picture = renderGrid(*context, plate, scene, kLayers);
         const double alpha = -std::expm1(-sigma_t);
-        // The ramps are linear in value, so that means of the table are exact, to a few roundings.
+        // The ramps are linear in value, so that means of the table are exact, except for a few roundings.
         CHECK(std::abs(picture.colour.at(4, 4)[3] - alpha) < 5e-6);
         CHECK(std::abs(picture.colour.at(0, 8)[3] - alpha) < 5e-6);
-        // Light is that in front of each slab: it falls no further than through the plate.
+        // V is the light in front of each slab: it falls no further than through the plate.
         const double visibility = picture.visibility.at(4, 4)[0];
         CHECK(visibility <= alpha + 1e-6);
         if (model == Model::cone) CHECK(visibility >= 0.5 * -std::expm1(-2 * sigma_t) - 1e-6);

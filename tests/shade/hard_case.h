@@ -1,4 +1,4 @@
-// Pictures of a grid beside those of the reference, for hard cases.
+// Compares pictures of a grid with those of the reference, for hard cases.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace umbrick {
 /// Soft blobs in a box of 24 voxels, nothing at its faces.
 inline double smallBlobs(const glm::ivec3& i) { return coneAt(i, {{9, 8, 15, 7}, {15, 14, 9, 6}, {13, 6, 11, 4}}); }
 inline constexpr glm::dvec3 kSmallCentre(12, 11, 12);
-/// Both kinds, on the box.
+/// Returns a parallel and a perspective camera that look at the box.
 inline std::vector<Camera> smallCameras(int size = 32) {
   return {orthographicCamera({30, 22, 40}, kSmallCentre, 30, size),
           perspectiveCamera({30, 22, 40}, kSmallCentre, 0.6, size)};
@@ -30,14 +30,15 @@ inline double largestAlpha(const Image& image) {
   return largest;
 }
 
-/// Renders at the scene's spacing and at half of it and compares with the reference. Both pictures are of one method:
-/// what it still lacks at half the spacing follows from how much the halving changed.
-///   emission     a value linear over a slab is wrong by the square of the spacing in a voxel cell, more often at kinks
-///                of the trilinear field: the rest is a third of the change, or 1 / (2^1.5 - 1) = 0.55 of it.
-///   cone         V is that of a slab's front: of first order, so the rest is as large as the change, and what the two
-///                pictures extrapolate to is better. Needs theta = 0 and a parallel view, where dos is the model
-///                itself.
-/// Rounding, the table of the transfer function and the reference's tolerance allow for `floor`.
+/// Renders at the scene's spacing and at half of it and compares with the reference. Both pictures are of one method,
+/// so that the error at half the spacing follows from how much the halving changed.
+///   emission     A value that counts as linear over a slab is wrong by the square of the spacing in a voxel cell, and
+///                more often at kinks of the trilinear field: the remaining error is a third of the change, or
+///                1 / (2^1.5 - 1) = 0.55 of it.
+///   cone         V is that of a slab's front, which is of first order: the remaining error is as large as the change,
+///                and the two pictures extrapolate to a better one. This needs theta = 0 and a parallel view, where dos
+///                is the model itself.
+/// Rounding, the table of the transfer function and the reference's tolerance are allowed for by `floor`.
 /// @return the change
 inline double checkAgainstReference(const GlContext& context, const ScalarGrid& grid, ResolvedScene scene,
                                     double floor = 2e-5, double mostChange = 5e-3) {
@@ -64,7 +65,7 @@ inline double checkAgainstReference(const GlContext& context, const ScalarGrid& 
   return change;
 }
 
-/// Both models that have an exact counterpart, from a parallel and a perspective view that see `bounds`.
+/// Compares both models that have an exact counterpart, from a parallel and a perspective view that see `bounds`.
 inline void checkViewsAgainstReference(const GlContext& context, const ScalarGrid& grid,
                                        const TransferFunction& transfer, const Box& bounds, double spacing,
                                        int size = 32) {

@@ -1,5 +1,5 @@
-// The formulas of shaders/optics as a driver computes them.
-// Elsewhere: the same lines compiled as C++ (optics: medium_test).
+// Tests the formulas of shaders/optics as a driver computes them. Tested elsewhere: the same lines compiled as C++
+// (optics: medium_test).
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -28,7 +28,7 @@ GLuint compileText(const GlFunctions& gl, GLenum stage, const std::string& sourc
   return shader;
 }
 
-// For every x: oneMinusExp(x), slabFactor(x), exp(-x), x itself.
+// Returns for every x: oneMinusExp(x), slabFactor(x), exp(-x) and x itself.
 std::vector<glm::vec4> evaluate(const GlFunctions& gl, std::vector<float> x) {
   const int width = 512, height = static_cast<int>((x.size() + width - 1) / width);
   const std::size_t count = x.size();
@@ -70,7 +70,7 @@ void main() {
 
 }  // namespace
 
-// The promise is 1e-6 from 1e-8 to 1e4. Truth is double precision.
+// The formulas promise 1e-6 from 1e-8 to 1e4. The truth is computed in double precision.
 TEST_CASE("A driver's 1 - exp(-x) and slab factor are accurate from 1e-8 to 1e4", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -86,7 +86,7 @@ TEST_CASE("A driver's 1 - exp(-x) and slab factor are accurate from 1e-8 to 1e4"
       atOpacity = depth;
     }
     factor = std::max(factor, std::abs(results[i].y * depth / exact - 1));
-    // GLSL 4.50, section 4.7.1: exp may be off by 3 + 2 |x| units in the last place. What is below the least normal
+    // GLSL 4.50, section 4.7.1: exp may be off by 3 + 2 |x| units in the last place. A result below the least normal
     // number may be 0.
     const double unit = 0x1p-23 * std::exp(-depth) + 0x1p-126;
     transmittance = std::max(transmittance, std::abs(results[i].z - std::exp(-depth)) / ((3 + 2 * depth) * unit));

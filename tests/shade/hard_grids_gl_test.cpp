@@ -1,7 +1,7 @@
-// Hard cases of what a grid holds and where its voxels are, against the reference.
-// Elsewhere: volumes without bricks (bad_input_gl_test); a visible background against closed forms (emission_gl_test);
-// that bricks change nothing far from the origin, in level sets and where the background is seen (check); what a
-// program says of grids that cannot be rendered (tools: hard_volumes_test).
+// Hard cases of what a grid holds and where its voxels are, against the reference. Tested elsewhere: volumes without
+// bricks (bad_input_gl_test); a visible background against closed forms (emission_gl_test); that bricks change nothing
+// far from the origin, in level sets and where the background is seen (check); what a program says of grids that cannot
+// be rendered (tools: hard_volumes_test).
 // SPDX-License-Identifier: Apache-2.0
 #include <limits>
 #include <string>
@@ -39,15 +39,15 @@ TEST_CASE("A grid without voxels is an empty picture for renderer and reference"
   }
 }
 
-// A tent of base 2 along each axis: sigma_t = product of (1 - |x|).
+// A voxel is a tent of base 2 along each axis: sigma_t = product of (1 - |x|).
 TEST_CASE("One voxel is the tent that trilinear interpolation makes of it", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid voxel = makeVoxels({{{3, -2, 7}, 1.0f}});
   const Box around{glm::dvec3(2, -3, 6), glm::dvec3(4, -1, 8)};
   checkViewsAgainstReference(*context, voxel, ramp(1.5), around, 0.25);
-  // Straight through its middle: the sum of a tent at equal distances of half its base or a whole part of that is its
-  // area, so that a slab is integrated exactly, up to the table and roundings.
+  // The ray goes straight through its middle. The sum of a tent at equal distances of half its base, or of that over a
+  // whole number, is its area, so that a slab is integrated exactly, except for the table and roundings.
   Camera camera = orthographicCamera({3, -2, 20}, {3, -2, 0}, 0.01, 1);
   camera.up = {0, 1, 0};
   for (const double spacing : {0.25, 0.5, 1.0}) {
@@ -66,7 +66,7 @@ TEST_CASE("Tiles without leaves are voxels like any other", "[shade][gl]") {
   REQUIRE(tiles->tree().leafCount() == 0);
   const Box bounds{glm::dvec3(-17, -1, -1), glm::dvec3(16, 16, 24)};
   checkViewsAgainstReference(*context, makeGrid(tiles), ramp(0.2), bounds, 0.5);
-  // A tile of 128^3 is 512 bricks of one value; they share a slot.
+  // A tile of 128^3 voxels is 512 bricks of one value, which share a slot.
   const openvdb::FloatGrid::Ptr large = openvdb::FloatGrid::create(0);
   large->tree().addTile(2, openvdb::Coord(0, 0, 0), 1, true);
   checkViewsAgainstReference(*context, makeGrid(large), ramp(0.01), {glm::dvec3(0), glm::dvec3(127)}, 1);
@@ -80,11 +80,12 @@ TEST_CASE("A level set is filled with its inside background", "[shade][gl]") {
   REQUIRE_FALSE(ball.grid->tree().isValueOn(openvdb::Coord(3, 4, -5)));
   const Box bounds{glm::dvec3(-10, -9, -18), glm::dvec3(16, 17, 8)};
   checkViewsAgainstReference(*context, ball, ramp(0.1, 0, -2), bounds, 0.5);
-  // A ray through the centre: sigma_t rises over two voxels on either side to its full value.
+  // On a ray through the centre, sigma_t rises over two voxels on either side to its full value.
   Camera camera = orthographicCamera({3, 4, 30}, {3, 4, -5}, 0.01, 1);
   camera.up = {0, 1, 0};
   const ResolvedScene scene = plainScene(ramp(0.1, 0, -2), camera, 0.5);
-  // 24 units inside less 2 for the two ramps. The narrow band is a distance to 1e-2 of a voxel between voxels.
+  // The ray is 24 units long inside, less 2 for the two ramps. The narrow band is a distance to 1e-2 of a
+  // voxel between voxels.
   CHECK(renderGrid(*context, ball, scene).colour.at(0, 0)[3] == Approx(-std::expm1(-0.1 * 22)).margin(2e-3));
 }
 
@@ -94,14 +95,14 @@ TEST_CASE("A background other than 0 is what the transfer function makes of it",
   const ScalarGrid soft = makeFilled(
       {20, 18, 16}, {-9, 4, 2}, [](const glm::ivec3& p) { return 5 - 0.2 * p.x * std::sin(0.3 * p.y); }, 5);
   const Box bounds{glm::dvec3(-10, 3, 1), glm::dvec3(11, 22, 18)};
-  checkViewsAgainstReference(*context, soft, ramp(0.1, 5, 1), bounds, 0.5);  // not seen
+  checkViewsAgainstReference(*context, soft, ramp(0.1, 5, 1), bounds, 0.5);  // the background is not seen
   checkViewsAgainstReference(*context, soft, ramp(0.1, 1, 5), bounds, 0.5);  // thick fog in the domain
 }
 
 TEST_CASE("Negative indices are like others", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const glm::ivec3 moved(-1027, -500, -77);  // across the lattice of bricks, too
+  const glm::ivec3 moved(-1027, -500, -77);  // also moves the voxels relative to the lattice of bricks
   const ScalarGrid here = makeNoise({11, 9, 10}), there = makeNoise({11, 9, 10}, moved);
   const TransferFunction transfer = ramp(0.4);
   checkViewsAgainstReference(*context, there, transfer, {glm::dvec3(moved), glm::dvec3(moved + 10)}, 0.5);
@@ -111,13 +112,13 @@ TEST_CASE("Negative indices are like others", "[shade][gl]") {
     const Image image = renderGrid(*context, here, scene).colour;
     scene.camera.eye += glm::dvec3(moved);
     scene.camera.lookAt += glm::dvec3(moved);
-    // Whole numbers move without rounding; bricks lie elsewhere, so that coordinates in the atlas round differently: by
+    // Whole numbers move without rounding. Bricks lie elsewhere, so that coordinates in the atlas round differently: by
     // 6e-8 of some 50 texels, where values differ by up to 1 from texel to texel, on each of some 40 slabs.
     CHECK(maxDifference(image, renderGrid(*context, there, scene).colour) < 40 * 0.4 * 0.5 * 3e-6);
   }
 }
 
-// 2e4 voxels along each axis, or 8e12 in the box, of which 1024 are active.
+// The voxels are 2e4 apart along each axis, with 8e12 voxels in the box, of which 1024 are active.
 TEST_CASE("Voxels far apart are rendered without what lies between them", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -132,11 +133,11 @@ TEST_CASE("Voxels far apart are rendered without what lies between them", "[shad
     scene.model = model;
     CHECK(maxDifference(renderGrid(*context, both, scene).colour, renderGrid(*context, one, scene).colour) == 0);
   }
-  // One behind the other, 35 000 voxels of nothing between them.
+  // The voxels lie one behind the other, with 35 000 empty voxels between them.
   ResolvedScene scene = plainScene(transfer, perspectiveCamera({-30, 36, -25}, glm::dvec3(far), 0.5, 24), 0.5);
   scene.sampling.spacing = 0.5;
   checkAgainstReference(*context, both, scene);
-  // Were that not nothing, it would be 2e9 bricks of it.
+  // If the space between were not empty, it would be 2e9 bricks.
   scene.transfer = ramp(0.2, -1, 1);
   CHECK_THAT(complaint<InvalidArgument>([&] { renderGrid(*context, both, scene); }),
              Contains("background") && Contains("more than the limit"));
@@ -147,21 +148,22 @@ TEST_CASE("Voxels near the limits of 32-bit indices are rendered or refused", "[
   if (!context) return;
   constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
   const TransferFunction transfer = ramp(0.4);
-  // Before the last 4096 voxels, a node of OpenVDB's tree that has no neighbour.
+  // The voxels lie in front of the last 4096, a node of OpenVDB's tree that has no neighbour.
   for (const glm::ivec3& at :
        {glm::ivec3(most - 4200), glm::ivec3(-most + 4200), glm::ivec3(most - 4200, 0, -most + 64)}) {
     INFO("at " << at.x << ' ' << at.y << ' ' << at.z);
     const ScalarGrid grid = makeNoise({8, 8, 8}, at);
     checkViewsAgainstReference(*context, grid, transfer, {glm::dvec3(at) - 1.0, glm::dvec3(at) + 8.0}, 0.5, 24);
   }
-  // Bricks reach nearly to the limit. The same as at the origin, but for the camera's coordinates: 5e-7 apart at 2e9.
+  // Bricks reach nearly to the limit. The picture is the same as at the origin, except for the camera's coordinates,
+  // which have steps of 5e-7 at 2e9.
   const glm::ivec3 moved(most - 127, 16, -most + 128);
   ResolvedScene origin = plainScene(transfer, orthographicCamera({20, 25, 30}, {4, 4, 4}, 16, 24), 0.5), limit = origin;
   limit.camera.eye += glm::dvec3(moved);
   limit.camera.lookAt += glm::dvec3(moved);
   CHECK(maxDifference(renderGrid(*context, makeNoise({8, 8, 8}), origin).colour,
                       renderGrid(*context, makeNoise({8, 8, 8}, moved), limit).colour) < 2e-5);
-  // The apron of the last brick would be beyond them.
+  // The apron of the last brick would be beyond the limits.
   const ScalarGrid last = makeVoxels({{glm::ivec3(most, 0, 0), 1.0f}});
   const ResolvedScene scene =
       plainScene(transfer, orthographicCamera(glm::dvec3(most, 0, 9), glm::dvec3(most, 0, 0), 10, 8), 0.5);

@@ -1,6 +1,6 @@
-// Hard cases of what voxels and the transfer function say: solid media, numbers that are none or hardly one.
-// Elsewhere: sigma_t d from 1e-8 to 1e4 (emission_gl_test), the formulas themselves (hard_formulas_gl_test, optics:
-// medium_test), the one line that the programs say of NaN and Inf (tools: hard_volumes_test).
+// Hard cases of what voxels and the transfer function say: solid media, values that are not finite or hardly differ.
+// Tested elsewhere: sigma_t d from 1e-8 to 1e4 (emission_gl_test), the formulas themselves (hard_formulas_gl_test,
+// optics: medium_test), the one line that the programs say of NaN and Inf (tools: hard_volumes_test).
 // SPDX-License-Identifier: Apache-2.0
 #include <limits>
 #include <string>
@@ -16,7 +16,7 @@ TransferFunction rampBetween(double low, double high, double sigma_t) {
   return TransferFunction({{low, {{0.8, 0.4, 0.1}, 0}}, {high, {{0.8, 0.4, 0.1}, sigma_t}}});
 }
 
-// A ball of value `inside` in `outside`, without anything between them but what interpolation makes.
+// Returns a ball of value `inside` in `outside`, with nothing between them but what interpolation makes.
 FieldBricks::Field ball(double inside, double outside) {
   return [=](const glm::ivec3& i) { return glm::length(glm::dvec3(i) - glm::dvec3(15.5)) < 8 ? inside : outside; };
 }
@@ -28,7 +28,7 @@ std::vector<Camera> ballCameras() {
 
 }  // namespace
 
-// The ball is what interpolation reaches: within a voxel of its voxels all is opaque, beyond it nothing is.
+// The ball is what interpolation reaches: within a voxel of the ball's voxels all is opaque, beyond that nothing is.
 TEST_CASE("Media as solid as numbers allow are opaque and empty space beside them stays empty", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -58,7 +58,7 @@ TEST_CASE("Media as solid as numbers allow are opaque and empty space beside the
                 const glm::dvec3 middle = glm::dvec3(15.5) - ray.origin;
                 const double distance = glm::length(middle - direction * glm::dot(middle, direction));
                 const float* pixel = image.at(x, y);
-                // The voxels nearest to the surface are at 7 to 8 from the middle.
+                // The voxels nearest to the surface are at a distance of 7 to 8 from the middle.
                 if (distance < 6.5) {
                   ++inside;
                   worst = std::max(worst, std::abs(1.0 - pixel[3]));
@@ -77,7 +77,7 @@ TEST_CASE("Media as solid as numbers allow are opaque and empty space beside the
         }
 }
 
-// The background is all that is transparent: no rounding may take it for a medium, whatever its place among the values
+// The background alone is transparent: no rounding may take it for a medium, whatever its place among the values
 // and the texels.
 TEST_CASE("Empty space beside a solid medium is exactly empty in any texels", "[shade][gl]") {
   const auto context = testContext();
@@ -120,7 +120,8 @@ TEST_CASE("A clip plane through a solid medium shows its cut", "[shade][gl]") {
   }
 }
 
-// The grid with NaN and Inf and that with background in their place: the same bricks, so the same pictures, to the bit.
+// The grid with NaN and Inf is compared with the grid that has background in their place: they have the same bricks, so
+// their pictures are the same, to the bit.
 TEST_CASE("NaN and infinite voxels are background for renderer and reference", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -138,7 +139,7 @@ TEST_CASE("NaN and infinite voxels are background for renderer and reference", "
     holed->tree().setValue(at, 0.25f);
     spoilt->tree().setValue(at, kinds[bad++ % 3]);
   }
-  // A tile, too, and one that is inactive, which nobody counts.
+  // One tile is not finite either, and another one is inactive, which nobody counts.
   holed->tree().addTile(1, openvdb::Coord(24, 0, 0), 0.25f, true);
   spoilt->tree().addTile(1, openvdb::Coord(24, 0, 0), infinity, true);
   holed->tree().addTile(1, openvdb::Coord(-32, 0, 0), 0.25f, false);
@@ -163,7 +164,7 @@ TEST_CASE("NaN and infinite voxels are background for renderer and reference", "
     }
 }
 
-// A driver may take them for 0.
+// A driver may take denormal numbers for 0.
 TEST_CASE("Denormal voxels are as good as 0 among others", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -181,7 +182,7 @@ TEST_CASE("Denormal voxels are as good as 0 among others", "[shade][gl]") {
   }
 }
 
-// All values within what a float can hardly tell from 0, or from each other: the medium is that of the one value.
+// All values lie within what a float can hardly tell from 0, or from each other: the medium is that of the one value.
 TEST_CASE("Volumes of next to one value show the medium of that value", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -204,6 +205,6 @@ TEST_CASE("Volumes of next to one value show the medium of that value", "[shade]
           const double alpha = -std::expm1(-sigma_t * keptDepths(ray, planes).length() * ray.stretch());
           worst = std::max(worst, !(std::abs(image.at(x, y)[3] - alpha) < 1) ? 1 : std::abs(image.at(x, y)[3] - alpha));
         }
-      CHECK(worst < 2e-5);  // chords to 1e-4 units, see emission_gl_test
+      CHECK(worst < 2e-5);  // chords are known to 1e-4 units, see emission_gl_test
     }
 }

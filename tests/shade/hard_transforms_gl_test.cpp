@@ -1,6 +1,6 @@
-// Hard cases of where a volume is and how it lies: index to world, cameras along its planes.
-// Elsewhere: chords through rotated, anisotropic, sheared and mirrored boxes (emission_gl_test); that bricks change
-// nothing in such volumes, on faces and voxel planes, and 1e6 voxels from the origin (check).
+// Hard cases of where a volume is and how it lies: index to world, cameras along its planes. Tested elsewhere: chords
+// through rotated, anisotropic, sheared and mirrored boxes (emission_gl_test); that bricks change nothing in such
+// volumes, on faces and voxel planes, and 1e6 voxels from the origin (check).
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 #include <utility>
@@ -18,7 +18,7 @@ ResolvedScene blobScene(Model model, const Camera& camera) {
   return scene;
 }
 
-// Everything of the scene with lengths `scale` times as long.
+// Returns the scene with all its lengths `scale` times as long.
 ResolvedScene scaled(ResolvedScene scene, double scale) {
   scene.camera.eye *= scale;
   scene.camera.lookAt *= scale;
@@ -32,9 +32,9 @@ ResolvedScene scaled(ResolvedScene scene, double scale) {
 
 }  // namespace
 
-// Bricks of a field, since OpenVDB takes no voxels below 1.5e-5 units. A scale by a power of two moves no digit; others
-// round coordinates, 6e-8 of an atlas of some 40 texels where values differ by up to a quarter from texel to texel,
-// optical depths by 0.15, on each of some 50 slabs: at worst 50 * 0.15 * 2.4e-6.
+// These are bricks of a field, since OpenVDB takes no voxels below 1.5e-5 units. A scale by a power of two moves no
+// digit. Other scales round coordinates, by 6e-8 of an atlas of some 40 texels, where values differ by up to a quarter
+// from texel to texel and optical depths by 0.15, on each of some 50 slabs: at worst 50 * 0.15 * 2.4e-6.
 TEST_CASE("Huge and tiny worlds look like one of unit size", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -75,7 +75,7 @@ TEST_CASE("Grids of the smallest voxels that OpenVDB takes and of huge ones matc
   }
 }
 
-// The apron and the slabs' reach follow from the axes, so that each of these needs other ones.
+// The apron and the slabs' reach follow from the axes, so that each of these grids needs other ones.
 TEST_CASE("Rotated, anisotropic, sheared and mirrored grids match the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -115,7 +115,7 @@ TEST_CASE("A mirrored world is the mirror image", "[shade][gl]") {
     }
 }
 
-// Double precision has steps of 1e-10 there, single precision of 0.06 voxels: nothing may pass through it.
+// Double precision has steps of 1e-10 there, single precision of 0.06 voxels, so no coordinate may be rounded to it.
 TEST_CASE("A grid 1e6 voxels from the origin looks like one at the origin", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -145,35 +145,35 @@ TEST_CASE("A grid 1e6 voxels from the origin looks like one at the origin", "[sh
         CHECK(maxDifference(here.colour, picture.colour) < 2e-5);
         CHECK(maxDifference(here.visibility, picture.visibility) < 2e-5);
       }
-  // Against the reference, which is double precision throughout.
+  // The picture is also compared with the reference, which computes in double precision throughout.
   const ScalarGrid grid = makeFilled({24, 24, 24}, far, smallBlobs);
   checkViewsAgainstReference(*context, grid, ramp(0.6), {glm::dvec3(far), glm::dvec3(far + 23)}, 0.5);
 }
 
-// Noise: each plane of voxels differs from the next as much as can be. Slices through the planes, or half-way between
-// them; rays along the planes, too, at centres of voxels and at faces between bricks.
-TEST_CASE("Views along planes of the grid, slices on planes of voxels match the reference", "[shade][gl][slow]") {
+// The volume is noise: each plane of voxels differs from the next as much as possible. Slices go through the planes or
+// half-way between them. Rays go along the planes, too, at centres of voxels and at faces between bricks.
+TEST_CASE("Views along planes of the grid and slices on planes of voxels match the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeNoise({20, 20, 20}, {0, 0, 0});
-  for (const double phase : {0.0, 0.25})   // of the slices' middles, voxels
-    for (const double aside : {0.0, 0.5})  // pixels' centres on voxel centres, or on faces
+  for (const double phase : {0.0, 0.25})   // of the slices' middles, in voxels
+    for (const double aside : {0.0, 0.5})  // pixels' centres lie on voxel centres, or on faces
       for (const glm::dvec3& axis : {glm::dvec3(1, 0, 0), glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1)})
         for (const Model model : {Model::emission, Model::cone}) {
           INFO("phase " << phase << ", aside " << aside << ", axis " << axis.x << ' ' << axis.y << ' ' << axis.z
                         << ", cone " << (model == Model::cone));
-          // Slices of 0.5 have their middles at quarters from the eye.
+          // Slices with a spacing of 0.5 have their middles at quarters from the eye.
           const glm::dvec3 middle(7.5 + aside);  // pixels are a voxel wide, 16 to a row
           Camera camera = orthographicCamera(middle + axis * (22.25 + phase), middle, 16, 16);
           camera.up = {axis.z, axis.x, -axis.y};
           ResolvedScene scene = plainScene(ramp(0.3), camera, 0.5);
           scene.model = model;
           scene.occlusion.aperture = 0;
-          // On planes of voxels the value is piecewise linear along a ray, and slabs of half a voxel cut at them are
-          // exact: then nothing is left to change but for the table, and the order of the error is not seen.
+          // On planes of voxels the value is piecewise linear along a ray, and slabs of half a voxel that end there are
+          // exact: then only the table is left to change anything, and the order of the error cannot be seen.
           checkAgainstReference(*context, grid, scene, 5e-5);
         }
-  // A perspective view straight at a face, with the eye in the plane of another.
+  // A perspective view looks straight at a face, with the eye in the plane of another one.
   ResolvedScene scene = plainScene(ramp(0.3), perspectiveCamera({-0.5, 7.5, 50}, {-0.5, 7.5, 0}, 0.7, 32), 0.5);
   scene.camera.up = {0, 1, 0};
   checkAgainstReference(*context, grid, scene);

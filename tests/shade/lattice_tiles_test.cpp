@@ -1,4 +1,4 @@
-// Lists of tiles against every texel of the lattice.
+// Compares lists of tiles with a look at every texel of the lattice.
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/lattice_tiles.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 using Tile = std::pair<int, int>;
 
-// Slices of rectangles in texels, each as a polygon of its own, seen in a parallel view whose image is the lattice.
+// Slices of rectangles in texels. Each is a polygon of its own, seen in a parallel view whose image is the lattice.
 struct Drawn {
   explicit Drawn(const glm::ivec2& size) {
     light.lattice.size = size;
@@ -23,7 +23,7 @@ struct Drawn {
     view.halfExtent = 0.5 * glm::dvec2(size);
     view.size = size;
     light.view = view;
-    // The view's centre is the first texel's corner, as that of the eye is.
+    // The view's centre is the first texel's corner, as the centre of the eye's view is.
     light.lattice.first = -size / 2;
   }
   static void addSlice(ProxySlices& slices, const std::vector<Rectangle>& rectangles, const glm::dvec2& halfExtent,
@@ -65,7 +65,7 @@ TEST_CASE("Tiles are those that hold something seen, with its neighbours, or som
   Drawn drawn({64, 48});                                      // 8 x 6 tiles, texels from (-32, -24)
   drawn.add({{{-31, -23}, {-30, -22}}}, {});                  // inside the first tile
   drawn.add({{{-24.5, -20}, {-24.4, -19}}}, {});              // its neighbours lie in the second tile
-  drawn.add({}, {{{-24.5, -20}, {-24.4, -19}}});              // an occluder has no neighbours
+  drawn.add({}, {{{-24.5, -20}, {-24.4, -19}}});              // an occluder is marked without neighbours
   drawn.add({}, {});                                          // nothing
   drawn.add({{{20, 10}, {21, 11}}}, {{{-31, 0}, {-15, 9}}});  // both, apart from each other
   const LatticeTiles tiles = drawn.tiles();
@@ -86,7 +86,7 @@ TEST_CASE("What is seen or occludes beyond the lattice marks no tile", "[shade]"
   const LatticeTiles tiles = drawn.tiles();
   const std::set<Tile> all{{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}};
   CHECK(tilesOf(tiles, 0, 0) == all);
-  CHECK(tiles.places.size() == all.size());  // each once
+  CHECK(tiles.places.size() == all.size());  // each tile stands there once
   // Light reaches only a part of an occluder.
   drawn = Drawn({20, 12});
   drawn.add({}, {{{-10, -6}, {10, 6}}});

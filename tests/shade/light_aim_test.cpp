@@ -64,7 +64,7 @@ TEST_CASE("One half is the same rounding for all directions, other roundings dif
   CHECK(found.size() == 40);
 }
 
-// At 45 degrees the middles of slabs as thick as texels are wide shift by a half each.
+// At 45 degrees the middles of slabs that are as thick as a texel is wide shift by a half each.
 TEST_CASE("A shift that ends in a half is rounded the same way on every slice", "[shade]") {
   const LightSlope light = lightSlope({std::numbers::sqrt2 / 2, -std::numbers::sqrt2 / 2, std::numbers::sqrt2 / 2});
   for (int slice = 0; slice < 10'000; ++slice) {

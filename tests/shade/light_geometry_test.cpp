@@ -1,4 +1,4 @@
-// The lattice of the light and what lies on it, without a context.
+// Tests the lattice of the light and what lies on it, without a context.
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/light_geometry.h"
 
@@ -90,7 +90,7 @@ TEST_CASE("The needed region of a slice holds every path to what is seen behind 
       INFO("round " << round << ", slice " << j);
       REQUIRE(needed[j].empty() == hull.empty());
       if (hull.empty()) continue;
-      // Sums of steep slopes, some 1e5 texels, in double precision.
+      // Sums of steep slopes reach some 1e5 texels in double precision.
       CHECK(glm::length(needed[j].min - hull.min) < 1e-9);
       CHECK(glm::length(needed[j].max - hull.max) < 1e-9);
     }
@@ -120,11 +120,11 @@ TEST_CASE("The view of a lattice sees points where the lattice has them, straigh
       const glm::dvec3 index = random.point(glm::dvec3(0), glm::dvec3(32));
       const glm::dvec3 seen = block.view.toView(index), onLattice = view.toView(index);
       CHECK(onLattice.z == seen.z);
-      // In device coordinates, [-1, 1] across the lattice, and so in texels from its first one.
+      // Device coordinates are in [-1, 1] across the lattice, which gives texels from its first one.
       const glm::dvec2 device = glm::dvec2(onLattice) / view.halfExtent;
       const glm::dvec2 texel = 0.5 * (device + 1.0) * glm::dvec2(lattice.size) + glm::dvec2(lattice.first);
       CHECK(glm::length(texel - (glm::dvec2(seen) / lattice.texel - lattice.shift)) < 1e-11);
-      // toIndex and eyeIndex lead back to the same point.
+      // The matrices toIndex and eyeIndex lead back to the same point.
       const glm::dvec3 back =
           view.eyeIndex + onLattice.x * view.toIndex[0] + onLattice.y * view.toIndex[1] + onLattice.z * view.toIndex[2];
       CHECK(glm::length(back - index) < 1e-11);
@@ -153,7 +153,7 @@ TEST_CASE("The lattice holds all that is seen, and what can occlude it", "[shade
       CHECK(holds(whole, light.extents.occluding[i], 0));
       CHECK(holds(needed[i].grown(2), light.extents.occluding[i], 0));
       seen += !light.extents.seen[i].empty();
-      // All of the block is in the picture, and so whatever is seen occludes as well. Vertices lie on the grids of the
+      // The whole block is in the picture, so that whatever is seen occludes as well. Vertices lie on the grids of the
       // rasterisers, 1/256 of a pixel or of a texel.
       CHECK(holds(light.extents.occluding[i], light.extents.seen[i], 0.05));
     }

@@ -1,4 +1,4 @@
-// What the light's windows hold, against a sweep that keeps every path for ever.
+// Compares what the light's windows hold with a sweep that keeps every path for ever.
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/light_plan.h"
 
@@ -21,14 +21,14 @@ Whole shiftOf(const LightExtents& extents, const LightSlope& light, std::size_t 
   return Whole(wholeShift(extents.depths[slice] / extents.texel, light, glm::dvec2(kHalfRounding)));
 }
 
-// In the order of slopesOf().
+// Returns the light windows of a run in the order of slopesOf().
 std::vector<LightWindow> windowsOf(const LightRun& run) {
   std::vector<LightWindow> windows;
   run.forEachWindow([&](const LightWindow& window) { windows.push_back(window); });
   return windows;
 }
 
-// Texels (i, j) that cover [i, i + 1) x [j, j + 1) and have their centre in the rectangle.
+// Visits the texels (i, j), which cover [i, i + 1) x [j, j + 1), whose centre is in the rectangle.
 template <class Visit>
 void forEachTexel(const Rectangle& rectangle, const Visit& visit) {
   if (rectangle.empty()) return;
@@ -37,8 +37,8 @@ void forEachTexel(const Rectangle& rectangle, const Visit& visit) {
       visit(Whole(x, y));
 }
 
-// The windows as textures that are addressed modulo their size, opened and stepped through as the shaders do; a path
-// counts the slices that have touched it instead of what they leave of its light.
+// Light windows as textures that are addressed modulo their size. They are opened and stepped through as the shaders do
+// it, but a path counts the slices that have touched it instead of what they leave of its light.
 class Windows {
  public:
   Windows(std::size_t directions, const std::vector<LightRun>& runs) : open_(directions) {
@@ -107,7 +107,7 @@ TEST_CASE("Runs hold all slices that have something, in order, and are no longer
   }
 }
 
-// Sweeps of a pool cut runs anywhere.
+// A pool of bricks may cut the sweeps, and so the runs, anywhere.
 TEST_CASE("What is read from windows is what a sweep that keeps every path has", "[shade]") {
   TestRandom random(13);
   std::int64_t read = 0, shadowed = 0;
@@ -133,7 +133,7 @@ TEST_CASE("What is read from windows is what a sweep that keeps every path has",
         const auto slice = static_cast<std::size_t>(i);
         for (std::size_t k = 0; k < slopes.size(); ++k) {
           const Whole shift = shiftOf(extents, slopes[k], slice);
-          // What is seen is interpolated between texels: centres up to one away.
+          // What is seen is interpolated between texels, whose centres are up to one texel away.
           if (!extents.seen[slice].empty())
             forEachTexel(extents.seen[slice].grown(1), [&](const Whole& x) {
               const Whole u = x + shift;
@@ -158,8 +158,8 @@ TEST_CASE("What is read from windows is what a sweep that keeps every path has",
   CHECK(shadowed < read);
 }
 
-// Paths that something has touched and that are still to be read lie within the width of what is on the slices, plus
-// what they move during a run, however far they move in all.
+// The paths that something has touched and that are still to be read lie within the width of what is on the slices,
+// plus the way that they move during a run, however far they move in all.
 TEST_CASE("A window is no wider than what is on the slices, however steep the light", "[shade]") {
   TestRandom random(14);
   for (const double towards : {0.9, 0.1, 1e-3, 1e-6, 1e-9, 1e-300}) {
@@ -182,7 +182,7 @@ TEST_CASE("A window is no wider than what is on the slices, however steep the li
         const glm::dvec2 moved =
             glm::abs(slope.slope) * spacing * static_cast<double>(run.slices.back() - run.slices.front());
         INFO("towards the viewer " << towards << ", slices " << run.slices.front() << " to " << run.slices.back());
-        // Two texels of border on each side, and rounding up to whole ones.
+        // There are two texels of border on each side, and sizes are rounded up to whole texels.
         const glm::dvec2 most = all.max - all.min + moved + 6.0;
         CHECK(run.lights[0].size.x <= most.x);
         CHECK(run.lights[0].size.y <= most.y);
@@ -207,7 +207,7 @@ TEST_CASE("What nobody sees needs no windows, nor does what nothing can occlude"
   for (const Rectangle& needed : neededRegions(extents, paths)) CHECK(needed.empty());
   for (const LightRun& run : LightPlanner(extents, paths).runs(0, 6, 4, 1e6))
     for (const LightWindow& window : windowsOf(run)) CHECK(window.size == glm::ivec2(0));
-  // Seen before anything occludes: all light arrives.
+  // Something is seen before anything occludes: all light arrives.
   extents.occluding[1] = {};
   extents.seen[0] = {{0, 0}, {5, 5}};
   extents.occluding[3] = {{0, 0}, {5, 5}};
@@ -223,7 +223,7 @@ TEST_CASE("A picture's runs lie within its sweeps, and one texture takes the win
     const auto count = static_cast<std::int64_t>(extents.depths.size());
     const std::int64_t cut = random.below(static_cast<int>(count) + 1);
     const std::vector<SweepRun> sweeps{{0, cut, {}}, {cut, count, {}}};
-    // 64 MiB are for all slices of a run: 8 of these, or one of those that take more than that.
+    // All slices of a run share 64 MiB: 8 of these, or one of those that take more than that.
     for (const auto& [bytes, longest] : {std::pair(double(8 << 20), 8), std::pair(1e9, 1), std::pair(1.0, 32)}) {
       const LightRuns plan = planLightRuns(planner, sweeps, bytes);
       CHECK(plan.slicesTogether == longest);

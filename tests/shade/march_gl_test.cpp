@@ -1,4 +1,4 @@
-// Emission and absorption of smooth fields against a ray march in double precision, and texel formats.
+// Compares emission and absorption of smooth fields with a ray march in double precision, and texel formats.
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <string>
@@ -13,7 +13,7 @@ namespace {
 
 const IndexBox kSmoothBlock{glm::ivec3(-8), glm::ivec3(39)};
 
-// Wavelengths of 13 to 25 voxels, in (0, 1).
+// Returns a field with wavelengths of 13 to 25 voxels and values in (0, 1).
 double smoothField(const glm::ivec3& i) {
   return 0.5 + 0.16 * (std::sin(0.41 * i.x + 0.2 * i.z) + std::cos(0.31 * i.y - 0.25 * i.x + 1) +
                        std::sin(0.35 * i.z + 0.2 * i.y + 2));
@@ -23,7 +23,7 @@ TransferFunction smoothTransfer() {
   return TransferFunction({{0, {{0.9, 0.1, 0.3}, 0}}, {1, {{0.2, 0.8, 0.5}, 0.35}}});
 }
 
-// The emission-absorption integral along a ray by `steps` midpoints, front to back.
+// Returns the emission-absorption integral along a ray by `steps` midpoints, front to back.
 glm::dvec4 march(const FieldBricks& volume, const TransferFunction& transfer, const ViewRay& ray,
                  const DepthInterval& kept, int steps) {
   glm::dvec3 colour(0);
@@ -63,8 +63,8 @@ Reference marchPicture(const FieldBricks& volume, const ResolvedScene& scene, in
 
 }  // namespace
 
-// Of four spacings, each half the one before, the root mean square error must fall by 4 each time. Slabs that clip
-// planes cut differ from one spacing to the next, which leaves the order a little to chance.
+// There are four spacings, each half of the one before, and the root mean square error must fall by 4 each time. Slabs
+// that clip planes cut differ from one spacing to the next, which leaves the order a little to chance.
 TEST_CASE("A smooth field converges to a march in double precision at second order", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -75,7 +75,7 @@ TEST_CASE("A smooth field converges to a march in double precision at second ord
     ResolvedScene scene = plainScene(smoothTransfer(), camera, 4);
     scene.clipPlanes = boxPlanes(kMediumIndex);
     const FieldBricks volume = fieldFor(scene, smoothField, kSmoothBlock);
-    // 1200 steps over 45 voxels or less: an error of (0.04 / 0.5)^2 of that at the smallest spacing.
+    // The march takes 1200 steps over 45 voxels or less: its error is (0.04 / 0.5)^2 of that at the smallest spacing.
     const Reference exact = marchPicture(volume, scene, 1200);
     for (const Quadrature quadrature : {Quadrature::preintegrated, Quadrature::midpoint}) {
       scene.sampling.quadrature = quadrature;
@@ -99,7 +99,7 @@ TEST_CASE("A smooth field converges to a march in double precision at second ord
 TEST_CASE("A thin shell of a steep field is seen by pre-integration at any phase of the slices", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
-  // value = z / 40 crosses a peak of width 0.02 (0.8 voxels): tau = area of the peak times 40.
+  // The value z / 40 crosses a peak of width 0.02 (0.8 voxels): tau is the area of the peak times 40.
   const double sigma_t = 2;
   const TransferFunction transfer({{0.39, {{1, 1, 1}, 0}}, {0.4, {{1, 1, 1}, sigma_t}}, {0.41, {{1, 1, 1}, 0}}});
   const double tau = 0.5 * 0.02 * sigma_t * 40;
@@ -110,9 +110,9 @@ TEST_CASE("A thin shell of a steep field is seen by pre-integration at any phase
         scene, [](const glm::ivec3& i) { return i.z / 40.0; }, kSmoothBlock);
     const Picture picture = renderPicture(*context, volume, scene);
     INFO("phase " << phase);
-    // The values are -0.225 to 1.05, so a bin is 0.00125, a sixteenth of the peak. Means from node to node are exact;
-    // between nodes the integral, a parabola, is off by an eighth of its curvature, sigma_t / 0.01, times a squared
-    // bin.
+    // The values are -0.225 to 1.05, so a bin is 0.00125, a sixteenth of the peak. Means from node to node are
+    // exact. Between nodes the integral is a parabola: it is off by an eighth of its curvature, sigma_t / 0.01,
+    // times a squared bin.
     const double error = 2 * 40 * sigma_t / 0.01 * 0.00125 * 0.00125 / 8;  // two slabs meet in the peak
     for (const int pixel : {0, 7, 15}) CHECK(std::abs(picture.colour.at(pixel, pixel)[3] + std::expm1(-tau)) < error);
   }
@@ -122,7 +122,7 @@ TEST_CASE("Texel formats agree within the error that they state", "[shade][gl]")
   const auto context = testContext();
   if (!context) return;
   const Camera camera = perspectiveCamera({45, 38, 42}, kMediumIndex.centre(), 0.9, 32);
-  // Grid units of a CT: not near [0, 1].
+  // The values are grid units of a CT, which are not near [0, 1].
   const double low = -1000, high = 3000, sigma_t = 0.3;
   const TransferFunction transfer({{low, {{1, 0.5, 0.2}, 0}}, {high, {{1, 0.5, 0.2}, sigma_t}}});
   ResolvedScene scene = plainScene(transfer, camera, 0.5);
@@ -146,20 +146,20 @@ TEST_CASE("Texel formats agree within the error that they state", "[shade][gl]")
     const double extent = static_cast<double>(volume.value.max) - volume.value.min;
     const struct {
       const char* name;
-      double error;    // most that a voxel may be off
-      double weights;  // most that 8-bit filter weights add: 3 axes, half a step of 1/256, neighbours up to 250 apart
+      double error;    // the most by which a voxel may be wrong
+      double weights;  // the most that 8-bit weights add: 3 axes, half a step of 1/256, neighbours up to 250 apart
     } formats[] = {{"unorm8", 0.5 * extent / 255, 3 * 250 / 512.0},
                    {"unorm16", wholeNumbers ? 0.0 : 0.5 * extent / 65535, 0},
-                   {"half", 1.0, 0},  // half the distance of half-floats from 2048 to 4096
+                   {"half", 1.0, 0},  // half the distance between half-floats from 2048 to 4096
                    {"auto", 0, 0}};
     for (const auto& [name, error, weights] : formats) {
       INFO(name << ", whole numbers " << wholeNumbers);
       scene.bricks.format = name;
       const Picture picture = renderPicture(*context, volume, scene);
       CHECK(picture.stats.formatError <= error * (1 + 1e-6));
-      CHECK(picture.stats.formatError >= 0.9 * error);  // some of so many voxels are nearly the worst
+      CHECK(picture.stats.formatError >= 0.9 * error);  // among so many voxels some are nearly the worst
       const double slope = sigma_t / (high - low);
-      // A change of optical depth changes alpha by less than itself; so many slabs round.
+      // A change of optical depth changes alpha by less than itself, and each slab rounds.
       CHECK(maxDifference(exact.colour, picture.colour) <=
             (picture.stats.formatError + weights) * slope * longest + 2e-5);
     }

@@ -1,4 +1,4 @@
-// Directional occlusion: laws, closed forms, and a sweep on the CPU.
+// Tests directional occlusion with laws, closed forms, and a sweep on the CPU.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <catch2/catch.hpp>
@@ -21,7 +21,8 @@ ResolvedScene coneScene(const TransferFunction& transfer, const Camera& camera, 
 
 }  // namespace
 
-// Both compute in turn what the other computes at once, in the same words of the shader.
+// Two passes compute one after the other what multiple render targets compute at once, from the same lines
+// of the shader.
 TEST_CASE("Two passes a slice and multiple render targets agree to the last bit", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -42,7 +43,7 @@ TEST_CASE("Two passes a slice and multiple render targets agree to the last bit"
     }
 }
 
-// Differences are of single-precision coordinates: 6e-8 of an image of 40 pixels moves a lookup by 2e-6 pixels, where
+// The two differ by single-precision coordinates: 6e-8 of an image of 40 pixels moves a lookup by 2e-6 pixels, where
 // neighbours differ by up to 0.1, on each of some 50 slices.
 TEST_CASE("The occlusion sweep agrees with one in double precision", "[shade][gl][slow]") {
   const auto context = testContext();
@@ -53,7 +54,7 @@ TEST_CASE("The occlusion sweep agrees with one in double precision", "[shade][gl
         for (const bool correction : {true, false}) {
           const bool perspective = camera.projection == Projection::perspective;
           if (!correction && (!perspective || footprint != 3)) continue;
-          if (theta != 0.3 && footprint == 1) continue;  // the centre alone: no cone
+          if (theta != 0.3 && footprint == 1) continue;  // the centre alone makes no cone
           const int algorithm = footprint % 2 ? 2 : 3;
           INFO("perspective " << perspective << ", theta " << theta << ", footprint " << footprint << ", algorithm "
                               << algorithm << ", correction " << correction);
@@ -76,8 +77,9 @@ TEST_CASE("The occlusion sweep agrees with one in double precision", "[shade][gl
           INFO("errors " << colour << ' ' << alpha << ' ' << visibility);
           CHECK(alpha < 1e-5);
           CHECK(visibility < 1e-5);
-          // sigma_s is a parabola of the value, albedo times sigma_t, and linear between the 256 nodes of the table:
-          // off by an eighth of its second derivative 2 * 0.6 * 1.5 times a squared bin, over a path of some 10.
+          // sigma_s is albedo times sigma_t, a parabola of the value, but linear between the 256 nodes of the
+          // table: it is off by an eighth of its second derivative 2 * 0.6 * 1.5 times a squared bin, over a path
+          // of some 10 units.
           CHECK(colour < 4e-5);
           CHECK(shadow > 0.3);  // there is something to compare
         }
@@ -95,7 +97,7 @@ TEST_CASE("With an aperture of 0 Algorithms 2 and 3 are the same", "[shade][gl]"
     const Picture exact = renderPicture(*context, volume, scene, kLayers);
     scene.occlusion.dos.algorithm = 3;
     const Picture sliced = renderPicture(*context, volume, scene, kLayers);
-    // The sum of nine products against the product of a sum: a few roundings a slice.
+    // A sum of nine products differs from the product of a sum by a few roundings per slice.
     CHECK(maxDifference(exact.colour, sliced.colour) < 80 * 4 * kFloatRounding);
     scene.occlusion.aperture = 0.5;
     scene.occlusion.dos.algorithm = 2;
@@ -103,8 +105,8 @@ TEST_CASE("With an aperture of 0 Algorithms 2 and 3 are the same", "[shade][gl]"
   }
 }
 
-// Slab i of a medium that fills the image is lit by exp(-sigma_t d i), however wide the cone; only the first is cut by
-// a clip plane. All is seen through slabs of length d_e: a geometric series.
+// Slab i of a medium that fills the image is lit by exp(-sigma_t d i), however wide the cone; only the first slab is
+// cut by a clip plane. All of it is seen through slabs of length d_e: a geometric series.
 TEST_CASE("In a medium wider than the image light falls by each slab's transmittance", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -135,8 +137,9 @@ TEST_CASE("In a medium wider than the image light falls by each slab's transmitt
               if (kept <= 0) continue;
               const double alpha = -std::expm1(-sigma_t * kept * stretch);
               visibility += through * alpha * light;
-              // The buffer is rounded to 24 bits once a slab, or to fixed point three times: what is spread, a slab's
-              // transmittance and their product. Taps and exponentials round a few times more in single precision.
+              // The buffer is rounded to 24 bits once per slab, or to fixed point three times: the light that is
+              // spread, a slab's transmittance and their product. Taps and exponentials round a few times more
+              // in single precision.
               rounding +=
                   through * alpha * ((bits == 16 ? slabs * 1.5 * std::exp2(-16) : 0) + 10 * kFloatRounding * light);
               rounding += 2 * kFloatRounding;
@@ -179,15 +182,15 @@ TEST_CASE("The layers of a thin slab are its depth and the light that it gets", 
   CHECK(std::isinf(empty.depth.at(3, 3)[0]));
 }
 
-// A plate of one voxel's thickness casts its shadow through empty space on another one. Every carried slice takes the
+// A plate of one voxel's thickness casts its shadow through empty space on another plate. Every carried slice takes the
 // mean of the slice before over the footprint: the sum of what is dark stays, and its variance grows by that of the
 // footprint and of the linear interpolation, f (1 - f) at a fraction f.
 TEST_CASE("Carried light keeps its sum, and its variance grows as a walk's", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   const int size = 96, front = 60, back = 20;
-  // Values below 0 are the black occluder, values above it the white receiver; in between nothing, also where rounding
-  // lets a slice see a little of the plane next to its own.
+  // Values below 0 are the black occluder, values above it the white receiver. In between there is nothing, so that
+  // nothing shows where rounding lets a slice see a little of the plane next to its own.
   const double occluderSigma = 0.3, receiverSigma = 0.5;
   const TransferFunction transfer({{-1, {{0, 0, 0}, occluderSigma}},
                                    {-0.1, {{0, 0, 0}, 0}},
@@ -197,7 +200,7 @@ TEST_CASE("Carried light keeps its sum, and its variance grows as a walk's", "[s
     if (i.z == front) return i.x >= 28 && i.x < 36 && i.y >= 30 && i.y < 34 ? -1.0 : 0.0;
     return i.z == back ? 1.0 : 0.0;
   };
-  // Slice middles on planes of voxels, half a voxel to the pixel.
+  // Slice middles lie on planes of voxels, and a pixel is half a voxel wide.
   Camera camera = orthographicCamera({32, 32, 70.5}, {32, 32, 0}, 48, size);
   camera.up = {0, 1, 0};
   for (const double theta : {0.3, 0.7})
@@ -222,8 +225,8 @@ TEST_CASE("Carried light keeps its sum, and its variance grows as a walk's", "[s
         for (int x = 0; x < size; ++x) {
           const double inFront = alone.colour.at(x, y)[3], both = picture.colour.at(x, y)[3];
           occluder.add(inFront, x, y);
-          // The occluder itself is fully lit: what the visibility lacks is the receiver's. Roundings of 1e-7 would add
-          // up over the whole image; a Gaussian has 1e-4 of its variance below 1e-6 of its height.
+          // The occluder itself is fully lit: only the receiver can lack visibility. Roundings of 1e-7 would add up
+          // over the whole image, while a Gaussian has 1e-4 of its variance below 1e-6 of its height.
           const double dark = (both - picture.visibility.at(x, y)[0]) / (both - inFront);
           if (dark > 1e-6) shadow.add(dark, x, y);
         }

@@ -1,5 +1,5 @@
-// Directional occlusion shading in double precision on the CPU, written from the paper: what the renderer must agree
-// with. Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, Algorithms 2 and 3, Eqs. 11-15
+// Directional occlusion shading in double precision on the CPU, written from the paper: the renderer must agree with
+// it. Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x, Algorithms 2 and 3, Eqs. 11-15
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
@@ -9,14 +9,14 @@
 
 namespace umbrick {
 
-/// One number for each pixel.
+/// A plane holds one number for each pixel.
 struct Plane {
   int width = 0, height = 0;
   std::vector<double> values;
   Plane(int w, int h, double value) : width(w), height(h), values(static_cast<std::size_t>(w * h), value) {}
   double& at(int x, int y) { return values[static_cast<std::size_t>(y * width + x)]; }
   double at(int x, int y) const { return values[static_cast<std::size_t>(y * width + x)]; }
-  /// Linear between pixel centres (at halves), constant beyond the outer ones.
+  /// Interpolates linearly between pixel centres (at halves); the plane is constant beyond the outer ones.
   double bilinear(double x, double y) const {
     const double left = std::floor(x - 0.5), bottom = std::floor(y - 0.5), fx = x - 0.5 - left, fy = y - 0.5 - bottom;
     const auto pixel = [&](double i, double j) {
@@ -27,7 +27,7 @@ struct Plane {
   }
 };
 
-/// Colour (3), opacity, visibility of each pixel, with the medium at the middle of every slab.
+/// Returns colour (3), opacity and visibility of each pixel, with the medium at the middle of every slab.
 /// @param slices  from the eye on
 inline std::vector<std::array<double, 5>> sweepOcclusion(const FieldBricks& volume, const ResolvedScene& scene,
                                                          int slices) {
@@ -41,7 +41,8 @@ inline std::vector<std::array<double, 5>> sweepOcclusion(const FieldBricks& volu
   Plane before(width, height, 1);
   for (int slice = 0; slice < slices; ++slice) {
     const double depth = (slice + 0.5) * d;
-    // How large a length on the slice before appears, and where a point straight before this one does.
+    // On the slice before, `scale` tells where a point straight before this one appears, `perPixel` how large
+    // a length appears.
     double scale = 1, perPixel = pixelSize;
     if (camera.projection == Projection::perspective && !options.dos.perspectiveCorrection) {
       perPixel = pixelSize * glm::length(camera.lookAt - camera.eye);

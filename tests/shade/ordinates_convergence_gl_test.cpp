@@ -22,12 +22,12 @@ Image exactPicture(const ScalarGrid& grid, const ResolvedScene& scene, double to
   return renderReference(grid, scene, options).colour;
 }
 
-// The reference of the directions that the renderer takes.
+// Returns the reference for the directions that the renderer takes.
 Image exactOrdinates(const ScalarGrid& grid, const ResolvedScene& scene, double tolerance) {
   return exactPicture(grid, scene, tolerance, lightDirections(scene, scene.occlusion.ordinates.directions));
 }
 
-// Window texels as large as slabs are thick, voxels being of unit size.
+// Returns the scene with window texels as large as slabs are thick, voxels being of unit size.
 ResolvedScene refined(ResolvedScene scene, double spacing) {
   scene.sampling.spacing = spacing;
   scene.occlusion.ordinates.scale = 1 / spacing;
@@ -36,10 +36,11 @@ ResolvedScene refined(ResolvedScene scene, double spacing) {
 
 }  // namespace
 
-// Where the medium is smooth, straight light is of second order. Slanting paths are rounded to texels, each slice by
-// itself: errors of a texel's size, first order for each slice, which average out as far as slices differ. The slab's
-// own shadow takes one mean path for all directions, first order as well, the more the directions differ. Measured when
-// this was written, over these spacings: 1.8 for K = 1, 1.67 at 57 degrees, 1.13 at 80.
+// Where the medium is smooth, straight light is of second order. Slanting paths are rounded to texels, on each slice
+// separately. These are errors of a texel's size, of first order for each slice, which average out as far as slices
+// differ. The slab's own shadow takes one mean path for all directions, which is of first order as well, the more the
+// directions differ. The orders measured over these spacings when this was written are 1.8 for K = 1, 1.67 at 57
+// degrees, 1.13 at 80.
 TEST_CASE("Light by ordinates converges to that of the same directions", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -70,13 +71,14 @@ TEST_CASE("Light by ordinates converges to that of the same directions", "[shade
     }
 }
 
-// Edges of shadows are known to a texel: in pixels at edges, as many as a texel is wide, light is off by some of its
-// whole: mean square of first order, its root of half order, as long as a texel is no less than what blurs the edges:
-// a voxel and a pixel; below that of first order. Measured over texels of 1.6, 0.8 and 0.4 voxels: 0.8.
+// Edges of shadows are known to a texel: in the pixels at edges, as many as a texel is wide, light is off by a part of
+// its whole. The mean square is of first order and its root of half order, as long as a texel is no smaller than what
+// blurs the edges, which is a voxel and a pixel; below that the root is of first order. Measured over texels of 1.6,
+// 0.8 and 0.4 voxels: 0.8.
 //
 // dos levels off at 0.075 (see convergence_gl_test); with 1024 slices it has 0.084 at 60 degrees and 0.079 at 80. By
-// ordinates, 128 slices have with 16 directions a seventh of that, with 8 less than a quarter, most of which is that of
-// 8 directions instead of the cone, whatever renders them.
+// ordinates, 128 slices have a seventh of that with 16 directions, and less than a quarter with 8. Most of the latter
+// is the error of 8 directions instead of the cone, whatever renders them.
 TEST_CASE("Light by ordinates converges to the cone where dos does not", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -106,8 +108,8 @@ TEST_CASE("Light by ordinates converges to the cone where dos does not", "[shade
     INFO("perspective " << perspective << ", dos " << dos << "; K = 4, 8, 16, to the same directions " << method[0]
                         << ' ' << method[1] << ' ' << method[2] << ", to the cone " << whole[0] << ' ' << whole[1]
                         << ' ' << whole[2] << ", of exact ones " << few[0] << ' ' << few[1] << ' ' << few[2]);
-    // What slices and windows get wrong does not fall with the number of directions: it is another error. That of the
-    // single four ones is a matter of chance.
+    // The error of slices and windows is another one and does not fall with the number of directions. That of the four
+    // directions alone is a matter of chance.
     CHECK(method[2] == Approx(method[1]).epsilon(0.15));
     CHECK(method[0] == Approx(method[1]).epsilon(0.45));
     CHECK(whole[1] < 0.85 * whole[0]);

@@ -1,4 +1,4 @@
-// Light by ordinates: closed forms, laws, and a sweep on the CPU.
+// Tests light by ordinates with closed forms, laws, and a sweep on the CPU.
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <functional>
@@ -44,9 +44,9 @@ Camera straightCamera(bool perspective, double z, int size) {
   return camera;
 }
 
-// Texture coordinates are rounded to 6e-8 of some 50 texels, 3e-6 voxels, places on the lattice of the light to as much
-// of a texel; values and shares differ by up to a quarter from voxel to voxel, and optical depths of slabs by as much,
-// on each of some 80 slabs: 80 * 0.25 * 3e-6 at the very worst, and a third of that as a walk.
+// Texture coordinates are rounded to 6e-8 of some 50 texels, 3e-6 voxels, and places on the lattice of the light to as
+// much of a texel. Values and shares differ by up to a quarter from voxel to voxel, and optical depths of slabs by as
+// much, on each of some 80 slabs: 80 * 0.25 * 3e-6 at the very worst, and a third of that as a random walk.
 constexpr double kPictureRounding = 2e-5;
 
 }  // namespace
@@ -78,16 +78,17 @@ TEST_CASE("Light by ordinates agrees with a sweep in double precision", "[shade]
                             << scale << ": errors " << colour << ' ' << alpha << ' ' << visibility);
         CHECK(alpha < 1e-5);
         CHECK(visibility < kPictureRounding);
-        // sigma_s is a parabola of the value, and linear between the 256 nodes of the table, see occlusion_gl_test.
+        // sigma_s is a parabola of the value, but linear between the 256 nodes of the table, see occlusion_gl_test.
         CHECK(colour < kPictureRounding + 3e-5);
         CHECK(shadow > 0.3);  // there is something to compare
       }
 }
 
-// The slab is integrated: a homogeneous layer of thickness L under one direction scatters
-//   d_e / (d_e + d_k) (1 - exp(-sigma_t L (d_e + d_k)))     d_e, d_k: lengths per depth of the eye's path and the
-//   light's
-// into each pixel, however it is cut into slabs. Behind two clip planes, or, with the eye inside, from the eye on.
+// A slab is integrated: a homogeneous layer of thickness L under one direction scatters
+//   d_e / (d_e + d_k) (1 - exp(-sigma_t L (d_e + d_k)))     d_e, d_k: lengths per depth of the eye's and the light's
+//   path
+// into each pixel, however it is cut into slabs. The layer lies behind two clip planes or, with the eye inside, begins
+// at the eye.
 TEST_CASE("A homogeneous layer under one direction has its closed form at any slice distance", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -101,7 +102,7 @@ TEST_CASE("A homogeneous layer under one direction has its closed form at any sl
           ResolvedScene scene =
               ordinatesScene(tintedRamp({1, 0.5, 0.25}, sigma_t), straightCamera(perspective, z, 24), d, 0, 1);
           setLights(scene, {lightFrom(towards)});
-          // In a volume so wide that light from aside comes through all of the layer.
+          // The volume is so wide that light from aside comes through all of the layer.
           scene.clipPlanes = {{0, 0, 1, last - z}};
           if (!inside) scene.clipPlanes.push_back({0, 0, -1, z - first});
           const FieldBricks volume = fieldFor(
@@ -118,14 +119,14 @@ TEST_CASE("A homogeneous layer under one direction has its closed form at any sl
             }
           INFO("perspective " << perspective << ", inside " << inside << ", towards " << towards.x << ", spacing "
                               << d);
-          // Some roundings a slab of what is blended and carried; planes are placed to 1e-6 of a slab.
+          // Blending and carrying take a few roundings per slab; planes are placed to 1e-6 of a slab.
           const double slabs = (last - first) / d + 1;
           CHECK(worst < slabs * 10 * kFloatRounding + 4e-6 * sigma_t * d);
         }
 }
 
-// Light falls from slab to slab as each direction's own path says; what a slab's own medium leaves is computed with the
-// mean length of the paths that share / weighted is (see window_step.comp).
+// Light falls from slab to slab as each direction's own path says. What a slab's own medium leaves is computed with the
+// mean length of paths that follows from share / weighted (see window_step.comp).
 TEST_CASE("In a medium wider than the image each direction falls along its own path", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -159,7 +160,7 @@ TEST_CASE("In a medium wider than the image each direction falls along its own p
               }
               const double tau = sigma_t * kept * eye, both = tau * (1 + (share / weighted - 1) / eye);
               visibility += through * tau * share * -std::expm1(-both) / both;
-              // 16 bits round each window to half of 1/65535 a slab; all of it may be the same way.
+              // 16 bits round each window to half of 1/65535 per slab, perhaps always in the same direction.
               rounding += through * tau * ((bits == 16 ? slabs * 0.5 / 65535 : 0) + 20 * kFloatRounding);
               through *= std::exp(-tau);
               before += kept;
@@ -171,7 +172,7 @@ TEST_CASE("In a medium wider than the image each direction falls along its own p
       }
 }
 
-TEST_CASE("Two slabs under one direction, as the light of each says", "[shade][gl][slow]") {
+TEST_CASE("Two slabs under one direction are lit as the closed form of each says", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const TwoSlabs slabs;
@@ -186,8 +187,8 @@ TEST_CASE("Two slabs under one direction, as the light of each says", "[shade][g
       const double light = 1 / glm::normalize(towards).z, tauA = 0.4 * 3.3, tauB = 0.15 * 4.35;
       const auto scattered = [&](double tau) { return -std::expm1(-tau * (1 + light)) / (1 + light); };
       const double bins = 24.0 / 1023 * 4 * 0.4 * (1 + light);  // four edges, each displaced by a bin at most
-      // A slab with an edge of a medium in it counts as one of its mean: off by up to an eighth of its squared optical
-      // depth, light's and eye's, at each edge.
+      // A slab with an edge of a medium in it counts as one slab of the mean: at each edge it is off by up to an eighth
+      // of its squared optical depth, of light and eye together.
       const double edges = 2 * (0.4 * 0.4 + 0.15 * 0.15) * d * d * (1 + light) * (1 + light) / 8;
       for (int c = 0; c < 3; ++c) {
         const double expected =
@@ -200,7 +201,7 @@ TEST_CASE("Two slabs under one direction, as the light of each says", "[shade][g
     }
 }
 
-// A plate beside the image, through which all of the light comes that reaches the plate in it.
+// All of the light that reaches the plate in the image comes through a plate beside the image.
 TEST_CASE("What is off the screen casts its shadow", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -210,7 +211,7 @@ TEST_CASE("What is off the screen casts its shadow", "[shade][gl]") {
     return i.z >= 18 && i.z < 20 ? 1.0 : 0.0;
   };
   const double sigma_t = 0.4;
-  const glm::dvec3 towards(1, 0.1, 1);  // 22 or so to the right where the plate is
+  const glm::dvec3 towards(1, 0.1, 1);  // at the plate's height, light is some 22 units farther to the right
   for (const bool perspective : {false, true}) {
     ResolvedScene scene =
         ordinatesScene(tintedRamp(glm::dvec3(1), sigma_t), straightCamera(perspective, 64, 24), 0.5, 0, 1);
@@ -236,7 +237,7 @@ TEST_CASE("What is off the screen casts its shadow", "[shade][gl]") {
   }
 }
 
-// As shareBeyond says; see closed_forms_gl_test for the scene and for what dos makes of it.
+// The light is what shareBeyond says; see closed_forms_gl_test for the scene and for what dos makes of it.
 TEST_CASE("Below an opaque half-plane ordinates have the light of the cone", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -261,9 +262,9 @@ TEST_CASE("Below an opaque half-plane ordinates have the light of the cone", "[s
     worst = std::max(worst, std::abs(difference));
   }
   INFO("rms " << std::sqrt(squares / pixels) << ", worst " << worst);
-  // The edge of the roof is known to half a texel, 20 units away from the floor, across a share that changes by up to
-  // 0.04 per unit there. 160 directions, of which some 13 lie side by side along the edge, count a share to 1/26 of the
-  // part of the cone that they stand for, a tenth, or rather to less where rows are staggered.
+  // The edge of the roof is known to half a texel, 20 units away from the floor, and the share changes by up to 0.04
+  // per unit there. 160 directions, of which some 13 lie side by side along the edge, count a share to 1/26 of the part
+  // of the cone that they stand for, which is a tenth, or to less where rows are staggered.
   CHECK(worst < 0.02 + 0.004);
   CHECK(std::sqrt(squares / pixels) < 0.01);
 }
@@ -290,8 +291,8 @@ TEST_CASE("Clipping an occluder away lights what is behind it, by ordinates as w
   }
 }
 
-// Slices only multiply what is on the lattice, which is the same whatever bricks there are, so that only the roundings
-// of texture coordinates differ. The volume has a wide gap that culling leaves out, also of the slices.
+// Slices only multiply what is on the lattice, which does not depend on the bricks, so that only the roundings of
+// texture coordinates differ. The volume has a wide gap that culling leaves out, also of the slices.
 TEST_CASE("Bricks, culling, pools and textures change nothing of light by ordinates", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -340,14 +341,14 @@ TEST_CASE("Bricks, culling, pools and textures change nothing of light by ordina
   }
 }
 
-// The same picture, and the same one after another: also from a camera that needs larger windows.
+// The same picture is made on its own and after another one, also from a camera that needs larger windows.
 TEST_CASE("A picture by ordinates does not depend on the ones before", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   ResolvedScene scene = ordinatesScene(tintedRamp({0.9, 0.5, 0.2}, 1.2), blobCameras()[0], 0.8, 1.2, 20);
   FieldOptions options;
   options.interior = scene.bricks.interior;
-  options.apron = 2;  // for the widest of the views
+  options.apron = 2;  // enough for the widest of the views
   const FieldBricks volume(blobs, kBlock, options);
   const Picture alone = renderPicture(*context, volume, scene, kLayers);
   SliceRenderer renderer(*context, volume, scene, kLayers);
@@ -361,7 +362,7 @@ TEST_CASE("A picture by ordinates does not depend on the ones before", "[shade][
   }
 }
 
-// A set of directions that is listed several times over is the same light, in more than one group of a shader's.
+// A set of directions that is listed several times is the same light, but needs more than one group of directions.
 TEST_CASE("Many directions are lit in groups, which add up to what one group has", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -386,14 +387,14 @@ TEST_CASE("Many directions are lit in groups, which add up to what one group has
       const Picture groups = renderPicture(*context, volume, scene, kLayers);
       INFO("coloured " << coloured << ", perspective " << (camera.projection == Projection::perspective));
       CHECK(groups.stats.directions == static_cast<int>(often.size()));
-      // Sums of 150 numbers instead of 15.
+      // These are sums of 150 numbers instead of 15.
       CHECK(layersDifference(groups, one) < 150 * kFloatRounding);
       if (!coloured) CHECK(layersDifference(one, cone) < 15 * kFloatRounding);
     }
 }
 
-// Paths of equal length through a slab: what it keeps of each is the same, alone or together. Else it is computed with
-// the mean of the lengths, which is off the less the thinner the slabs.
+// Where paths through a slab have equal lengths, the slab keeps the same of each, alone or together. Otherwise this is
+// computed with the mean of the lengths, whose error falls as slabs get thinner.
 TEST_CASE("Pictures of lights add up to the picture of all of them", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -422,8 +423,8 @@ TEST_CASE("Pictures of lights add up to the picture of all of them", "[shade][gl
     }
 }
 
-// A window is rounded to half of 1/65535 each time that a slice multiplies it, so that after N of them it is off by N
-// times that at most: less than SamplingOptions::bits promises.
+// A window is rounded to half of 1/65535 each time that a slice multiplies it, so that after N slices it is off by N
+// times that at most: this is less than SamplingOptions::bits promises.
 TEST_CASE("Windows of 16 bits stay within half a step per slice", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;

@@ -1,4 +1,4 @@
-// Hard cases of light by ordinates. Elsewhere: that bricks change nothing far from the origin and on faces (check).
+// Hard cases of light by ordinates. The room check tests that bricks change nothing far from the origin and on faces.
 // SPDX-License-Identifier: Apache-2.0
 #include <limits>
 #include <numbers>
@@ -27,10 +27,10 @@ void setLights(ResolvedScene& scene, const std::vector<ListedDirection>& list, L
   scene.lights = {{frame, ListedLight{list}}};
 }
 
-// Against the reference of the same directions, at the scene's spacing and at half of it, window texels as large as
-// slabs. Of first order at least (see ordinates_convergence_gl_test), so that what is left is no more than what the
-// halving changed; slices that happen to be better than their order, the tolerance of the reference and the table allow
-// for `floor`.
+// Compares with the reference of the same directions, at the scene's spacing and at half of it, with window texels as
+// large as slabs. The error is of first order at least (see ordinates_convergence_gl_test), so that the remaining error
+// is no more than what the halving changed. Slices that happen to be better than their order, the tolerance of the
+// reference and the table are allowed for by `floor`.
 void checkAgainstDirections(const GlContext& context, const ScalarGrid& grid, ResolvedScene scene, double floor = 1e-3,
                             double changes = 1) {
   ReferenceOptions options;
@@ -55,7 +55,7 @@ void checkAgainstDirections(const GlContext& context, const ScalarGrid& grid, Re
 
 }  // namespace
 
-// See the closed form in ordinates_gl_test.
+// The closed form is explained in ordinates_gl_test.
 TEST_CASE("Slabs of optical depths from 1e-8 to 1e4 scatter what they should, by ordinates", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -72,7 +72,7 @@ TEST_CASE("Slabs of optical depths from 1e-8 to 1e4 scatter what they should, by
       const double expected = -std::expm1(-slab * depth / d * both) / both;
       const double found = *renderPicture(*context, volume, scene, kLayers).visibility.at(2, 2);
       INFO("optical depth of a slab " << slab << ", towards " << towards.x << ": " << found << " for " << expected);
-      CHECK(found == Approx(expected).epsilon(1e-5));  // slabFactor to 1e-6, single precision on 20 slabs
+      CHECK(found == Approx(expected).epsilon(1e-5));  // slabFactor is exact to 1e-6, and 20 slabs are rounded
     }
   }
 }
@@ -90,7 +90,7 @@ TEST_CASE("Media as solid as numbers allow are lit in front and dark behind, at 
                             << ", perspective " << (camera.projection == Projection::perspective));
             ResolvedScene scene = ordinatesScene(ramp(sigma_t), camera, 0.5, theta, directions);
             scene.occlusion.bits = bits;
-            // The half of the ball behind its middle: a front that no part of it shades.
+            // Only the front half of the ball is compared, which no part of the ball shades.
             const glm::dvec3 forward = cameraFrame(camera).forward;
             scene.clipPlanes = {{forward, -glm::dot(forward, kSmallCentre)}};
             const FieldBricks volume = fieldFor(scene, ball, {glm::ivec3(0), glm::ivec3(23)});
@@ -99,8 +99,8 @@ TEST_CASE("Media as solid as numbers allow are lit in front and dark behind, at 
             CHECK(allWithin(picture.visibility, 0, 1));
             CHECK(picture.colour.at(10, 10)[3] == Approx(1).epsilon(1e-6));
             CHECK(picture.colour.at(0, 10)[3] == 0);
-            // Nothing is in front of the first slab, which is all that is seen; it shades itself: d_e / (d_e + d_k),
-            // with the mean path of all directions.
+            // Only the first slab is seen, and nothing is in front of it; it shades itself: d_e / (d_e + d_k), with the
+            // mean path of all directions.
             double weighted = 0;
             for (const LightDirection& light : lightDirections(scene, directions))
               weighted += light.radiance.r / (1 - 1 / glm::dot(light.direction, cameraFrame(camera).forward));
@@ -109,8 +109,9 @@ TEST_CASE("Media as solid as numbers allow are lit in front and dark behind, at 
           }
 }
 
-// Drift: a window is multiplied 10 000 times. Single precision rounds each time by 6e-8 of it; 16 bits by half of
-// 1/65535, at worst always the same way, and then light does not fall at all when a slab takes less than half a step.
+// A window is multiplied 10 000 times and may drift. Single precision rounds each time by 6e-8 of it, 16 bits by
+// half of 1/65535, at worst always in the same direction: then light does not fall at all when a slab takes less
+// than half a step.
 TEST_CASE("Windows that 10 000 slices have multiplied are off by half a step per slice at most", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -133,7 +134,7 @@ TEST_CASE("Windows that 10 000 slices have multiplied are off by half a step per
         const double error = *picture.visibility.at(1, 1) - exact;
         INFO("optical depth " << whole << ", slices " << slices << ", bits " << bits << ": error " << error);
         CHECK(std::abs(error) < rounding + (bits == 16 ? 0.5 / 65535 * slices : 0));
-        // Slabs of 5e-6: not one of them is seen by the light.
+        // Slabs take 5e-6 each, and the light sees none of them.
         if (bits == 16 && whole == 0.05 && slices == 10'000) {
           const double unshadowed = -std::expm1(-whole);
           CHECK(*picture.visibility.at(1, 1) == Approx(unshadowed).epsilon(1e-3));
@@ -143,7 +144,7 @@ TEST_CASE("Windows that 10 000 slices have multiplied are off by half a step per
 }
 
 // Of 24 directions in 89.9 degrees the steepest move by 9 to 44 units per unit of depth, and meet the medium once in as
-// many slabs: too rarely for an order before slabs are a tenth as thick. Measured: 2.9 times the change is left.
+// many slabs: too rarely to show an order before slabs are a tenth as thick. Measured: 2.9 times the change remains.
 TEST_CASE("Apertures of 0 and 89.9 degrees, one direction and many, match the reference", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -158,7 +159,7 @@ TEST_CASE("Apertures of 0 and 89.9 degrees, one direction and many, match the re
     }
 }
 
-// Light that nearly grazes the slices: of what a slab takes, little is left, and nothing comes from anywhere else.
+// Where light nearly grazes the slices, a slab takes nearly all of it, and no light comes from anywhere else.
 TEST_CASE("Light at a grazing angle is blocked by what is beside a point, or not at all", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -173,12 +174,13 @@ TEST_CASE("Light at a grazing angle is blocked by what is beside a point, or not
       CHECK(allWithin(picture.visibility, 0, 1));
       double brightest = 0;
       for (const float v : picture.visibility.pixels) brightest = std::max(brightest, static_cast<double>(v));
-      // Through a slab of 0.5, the path is 0.5 / towards: but for a rim of the blobs all is dark.
+      // Through a slab of 0.5 the path is 0.5 / towards: everything is dark except for a rim of the blobs.
       CHECK(brightest < 30 * towards + 1e-3);
     }
 }
 
-// Bricks of a field, as OpenVDB takes no voxels below 1.5e-5 units. Roundings as in hard_transforms_gl_test.
+// These are bricks of a field, since OpenVDB takes no voxels below 1.5e-5 units. Roundings are as in
+// hard_transforms_gl_test.
 TEST_CASE("Huge and tiny worlds, by ordinates, look like one of unit size", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -309,7 +311,7 @@ TEST_CASE("From inside an opaque brick the eye sees its first slab, in its own l
   }
 }
 
-// Paths and lattice hang on the view axis, not on the picture and its edges.
+// Paths and lattice depend on the view axis, not on the picture and its edges.
 TEST_CASE("One-pixel and narrow images, by ordinates, are cut-outs of larger ones", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -347,7 +349,7 @@ TEST_CASE("What a grid holds, nothing, one voxel, tiles or fog, is lit as the re
   CHECK(maxDifference(empty.visibility, Image(8, 8, 1)) == 0);
   ResolvedScene beside = eightDirections(ramp(1), orthographicCamera({0, 0, 9}, {0, 0, 0}, 4, 8), 0.5);
   CHECK(maxDifference(renderGrid(*context, makeVoxels({{{30, 0, 0}, 1.0f}}), beside).colour, Image(8, 8)) == 0);
-  beside.camera = orthographicCamera({0, 0, -9}, {0, 0, -20}, 100, 8);  // all is behind the eye
+  beside.camera = orthographicCamera({0, 0, -9}, {0, 0, -20}, 100, 8);  // everything is behind the eye
   CHECK(maxDifference(renderGrid(*context, makeVoxels({{{0, 0, 0}, 1.0f}}), beside).colour, Image(8, 8)) == 0);
 
   const openvdb::FloatGrid::Ptr tiles = openvdb::FloatGrid::create(0);
@@ -409,9 +411,9 @@ TEST_CASE("Lights without radiance and maps that are dark in front give opacity 
   }
 }
 
-// Where slices are and how paths are rounded hangs on depths from the eye, the directions as the camera sees them and
-// the size of a texel, none of which a moving camera changes. Steps of 1 / 1024 of a step: a jump would stay as it is,
-// see continuity_gl_test.
+// Where slices are and how paths are rounded depends on distances from the eye, the directions as the camera sees them
+// and the size of a texel, none of which a moving camera changes. The steps are 1 / 1024 of a step of the path: a jump
+// would stay as it is, see continuity_gl_test.
 //
 // Lights of the world turn as the camera moves: then one path after another is rounded to another texel in one slice
 // after another. Each jumps by a share of the light of one slab.
@@ -464,30 +466,32 @@ TEST_CASE("No step of the camera is so small that light by ordinates jumps", "[s
           INFO("perspective " << perspective << ", dolly " << dolly << ", light " << static_cast<int>(light)
                               << ", scale " << scale << ": largest step " << largestStep << ", largest jump " << jump);
           CHECK(largestStep > 2e-4);
-          // One of two directions, or of eight, and all that a slab of theirs takes where it is most solid.
+          // One of two directions, or of eight, may jump by all that its slab takes where it is most solid.
           const double share = light == Light::cone ? 0.125 : 0.5;
           CHECK(jump < (steady ? 8 * largestStep / 1024 + 3e-5 : share * -std::expm1(-0.6 * 0.5 * 1.9)));
         }
 }
 
-// A wall along the view axis, one voxel thick, between the light and a floor. Windows sample it at the centres of their
-// texels: with texels of a voxel its optical depth is right at any phase, as the tents of linear interpolation add up
-// to one; larger texels see it in some phases too thick and in others not at all, on average over phases as thick as
-// it is. It leaks then, on average the more the larger a texel is and at worst all of the light, which is why scale 0
-// takes texels of a voxel unless slabs are larger.
-TEST_CASE("A wall thinner than a texel of the windows leaks as the test says", "[shade][gl][slow]") {
+// A wall along the view axis, one voxel thick, stands between the light and a floor. Windows sample it at the centres
+// of their texels. With texels of a voxel its optical depth is right at any phase, as the tents of linear interpolation
+// add up to one. Larger texels see it too thick in some phases and not at all in others, and as thick as it is on
+// average over phases. The wall leaks then, on average the more the larger a texel is and at worst all of the light.
+// This is why scale 0 takes texels of a voxel unless slabs are larger.
+TEST_CASE("A wall thinner than a texel of the light windows leaks, at worst all of the light", "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto field = [](const glm::ivec3& i) { return i.z == 4 || (i.x == 16 && i.z > 8 && i.z < 40) ? 1.0 : 0.0; };
   const double sigma_t = 4, tilt = 1;  // light moves as far to the right as up
-  // What the wall lets through of light that crosses it at 45 degrees: a tent's area, on the way across.
+  // This is the share of light that the wall lets through where light crosses it at 45 degrees: a tent's area, on
+  // the way across.
   const double through = std::exp(-sigma_t * std::sqrt(2.0));
   std::vector<double> mean, most;
   for (const double scale : {0.25, 0.5, 1.0, 2.0}) {
     double sum = 0, largest = 0;
     const int phases = 8;
     for (int phase = 0; phase < phases; ++phase) {
-      // On the floor, 9 to 11 units to the left of the wall: all of the light there has crossed it half-way up.
+      // The place is on the floor, 9 to 11 units to the left of the wall: all light there has crossed the
+      // wall half-way up.
       const double x = 6 + phase / scale / phases;
       Camera camera = orthographicCamera({x, 16, 44.25}, {x, 16, 0}, 1, 2);
       camera.up = {0, 1, 0};
@@ -506,7 +510,7 @@ TEST_CASE("A wall thinner than a texel of the windows leaks as the test says", "
   }
   INFO("behind the wall " << through << "; mean " << mean[0] << ' ' << mean[1] << ' ' << mean[2] << ' ' << mean[3]
                           << ", most " << most[0] << ' ' << most[1] << ' ' << most[2] << ' ' << most[3]);
-  CHECK(most[0] > 0.9);  // all of it: what a user who asks for so large texels gets
+  CHECK(most[0] > 0.9);  // all of the light, which a user must expect of texels so large
   CHECK(mean[0] > mean[1]);
   CHECK(mean[1] > mean[2]);
   CHECK(most[1] > 0.9);
@@ -514,7 +518,7 @@ TEST_CASE("A wall thinner than a texel of the windows leaks as the test says", "
   CHECK(most[3] == Approx(through).epsilon(1e-3));
 }
 
-TEST_CASE("Windows that no driver has room for are refused, saying why", "[shade][gl]") {
+TEST_CASE("Light windows that no driver has room for are refused with the reason", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   ResolvedScene scene = eightDirections(ramp(0.6), smallCameras()[0], 0.5);

@@ -18,7 +18,7 @@ inline ResolvedScene ordinatesScene(const TransferFunction& transfer, const Came
   return scene;
 }
 
-/// Largest difference of colours and visibilities.
+/// Returns the largest difference of colours and visibilities.
 inline double layersDifference(const Picture& a, const Picture& b) {
   return std::max(maxDifference(a.colour, b.colour), maxDifference(a.visibility, b.visibility));
 }

@@ -1,4 +1,4 @@
-// Light by ordinates in double precision on the CPU, written from its equations: what the renderer must agree with.
+// Light by ordinates in double precision on the CPU, written from its equations: the renderer must agree with it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -11,8 +11,10 @@
 
 namespace umbrick {
 
-/// Colour (3), opacity, visibility of each pixel, with the medium at the middle of every slab, for light of one colour.
-/// Every path is kept for ever. @param texel  of the lattice, world units; `slices` from the eye on
+/// Returns colour (3), opacity and visibility of each pixel, with the medium at the middle of every slab, for light of
+/// one colour. Every path is kept for ever.
+/// @param texel  of the lattice, world units
+/// @param slices  from the eye on
 inline std::vector<std::array<double, 5>> sweepOrdinates(const FieldBricks& volume, const ResolvedScene& scene,
                                                          double texel, int slices) {
   const Camera& camera = scene.camera;
@@ -36,7 +38,7 @@ inline std::vector<std::array<double, 5>> sweepOrdinates(const FieldBricks& volu
                      {}});
   }
   paths.push_back({0, 0, 1, 0, {}});
-  // Texels of the lattice that the volume can be in.
+  // The volume can only be in so many texels of the lattice on each side.
   const int reach = static_cast<int>(std::ceil(glm::length(glm::dvec3(volume.domain.extent())) / texel)) + 2;
   const glm::dvec3 middle = glm::dvec3(
       volume.indexToWorld * glm::dvec4(0.5 * (glm::dvec3(volume.domain.min) + glm::dvec3(volume.domain.max)), 1));
@@ -71,7 +73,8 @@ inline std::vector<std::array<double, 5>> sweepOrdinates(const FieldBricks& volu
         share /= weights;
         weighted /= weights;
         const double tau = medium.sigma_t * d * ray.stretch();
-        // Mean length of the paths of light over that to the eye, such that it is right for the most solid slabs.
+        // The mean length of the light's paths over that of the eye's is such that it is right for the
+        // most solid slabs.
         const double both = tau * (1 + (share / weighted - 1) / ray.stretch());
         auto& pixel = eye[static_cast<std::size_t>(y * camera.width + x)];
         const double through = 1 - pixel[3], seen = through * tau * share * -std::expm1(-both) / both;

@@ -1,4 +1,4 @@
-// Pictures of many passes: what they converge to, how fast, and whether they know how far off they are.
+// Pictures that are the mean of samples: what they converge to, how fast, and how well they know their own error.
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/shade/progressive.h"
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The courtyard in few pixels, slabs and directions.
+// Returns the courtyard in few pixels, slabs and directions.
 ResolvedScene smallScene(int slices = 16, int directions = 3) {
   ResolvedScene scene = courtyardScene(60, slices);
   scene.camera.width = scene.camera.height = 24;
@@ -27,8 +27,8 @@ ResolvedScene smallScene(int slices = 16, int directions = 3) {
   return scene;
 }
 
-// A layer of depth 40.3 to 56.2, far wider than the picture, under light from one direction: nothing in it depends on
-// directions, and slabs are exact (see ordinates_gl_test).
+// Returns a layer of depth 40.3 to 56.2, far wider than the picture, under light from one direction: nothing in it
+// depends on directions, and slabs are exact (see ordinates_gl_test).
 ResolvedScene layerScene(bool perspective, double eyeDepth = 40.3) {
   const double z = 50 + eyeDepth;
   ResolvedScene scene = plainScene(TransferFunction({{0, {{1, 0.5, 0.25}, 0}}, {1, {{1, 0.5, 0.25}, 0.11}}}),
@@ -47,12 +47,12 @@ FieldBricks layerVolume(const ResolvedScene& scene) {
   return fieldFor(scene, [](const glm::ivec3&) { return 1.0; }, {glm::ivec3(-64, -64, 0), glm::ivec3(95, 95, 63)});
 }
 
-// Bricks that slabs twice as thick fit as well.
+// Returns bricks whose apron also fits slabs that are twice as thick.
 std::unique_ptr<Bricks> bricksForPasses(const ScalarGrid& grid, const ResolvedScene& scene) {
   return bricksFor(grid, coarserScene(scene));
 }
 
-// Of R, G, B, as the estimates are.
+// Returns the RMS difference of R, G and B, as the estimates are meant.
 double rmsOfRgb(const Image& a, const Image& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i)
@@ -85,11 +85,11 @@ TEST_CASE("A homogeneous layer looks the same whatever the sample", "[shade][gl]
               scene.camera, {.lights = {}, .phase = phase, .latticeShift = shift, .rounding = rounding});
           INFO("perspective " << perspective << ", phase " << phase << ", shift " << shift.x << ", rounding "
                               << rounding.x);
-          // The slices do lie elsewhere.
+          // The slices do lie at other depths.
           const double steps = (renderer.sliceDepths().front() - depth) / scene.sampling.spacing - (phase - 0.5);
           CHECK(steps == Approx(std::round(steps)).margin(1e-9));
-          // Some roundings a slab, and planes placed to 1e-6 of one, as the closed form of ordinates_gl_test has them,
-          // for either picture.
+          // For each of the two pictures, a slab takes a few roundings, and planes are placed to 1e-6 of a slab, as in
+          // the closed form of ordinates_gl_test.
           const double slabs = 16 / scene.sampling.spacing + 2;
           const double tolerance = 2 * (slabs * 10 * kFloatRounding + 4e-6 * 0.11 * scene.sampling.spacing);
           CHECK(maxDifference(picture.colour, plain.colour) < tolerance);
@@ -101,7 +101,7 @@ TEST_CASE("A homogeneous layer looks the same whatever the sample", "[shade][gl]
 TEST_CASE("A phase is ignored where the eye is inside", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const ResolvedScene scene = layerScene(true, -5);  // 5 deep in the layer
+  const ResolvedScene scene = layerScene(true, -5);  // the eye is 5 units deep in the layer
   const FieldBricks volume = layerVolume(scene);
   SliceRenderer renderer(*context, volume, scene);
   const Picture plain = renderer.render();
@@ -113,13 +113,13 @@ TEST_CASE("A phase is ignored where the eye is inside", "[shade][gl]") {
   }
 }
 
-TEST_CASE("The picture after n passes is the mean of n pictures", "[shade][gl]") {
+TEST_CASE("The picture after n samples is the mean of n pictures", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();
   ResolvedScene scene = smallScene();
   const auto volume = bricksForPasses(grid, scene);
-  // A pass of its own is what the next mean has more of.
+  // Each sample is the difference that it makes to the sum of the samples.
   std::vector<Image> means;
   const ProgressivePicture all =
       renderProgressive(*context, *volume, scene, {.passes = 6}, kLayers, [&](const ProgressivePicture& picture) {
@@ -143,7 +143,7 @@ TEST_CASE("The picture after n passes is the mean of n pictures", "[shade][gl]")
       most = std::max(most, one);
       change = std::max(change, std::abs(one - means[0].pixels[i]));
     }
-  // Each of them is one: in [0, 1] but for 11 roundings; and not the same as the first.
+  // Each sample is a picture: in [0, 1] except for 11 roundings, and not the same as the first.
   CHECK(least > -11 * kFloatRounding);
   CHECK(most < 1 + 11 * kFloatRounding);
   CHECK(change > 0.1);
@@ -158,7 +158,7 @@ TEST_CASE("Layers are averaged as the picture is", "[shade][gl]") {
   const Picture picture = renderProgressive(*context, *volume, scene, {.passes = 8}, kLayers).picture;
   REQUIRE(picture.visibility.pixels.size() == picture.colour.pixels.size() / 4);
   REQUIRE(picture.depth.pixels.size() == picture.colour.pixels.size() / 4);
-  // V does not depend on the pass more than the picture does: with one albedo it is the picture.
+  // V depends on the sample no more than the picture does: with one albedo it is the picture.
   scene.transfer = TransferFunction({{0, {glm::dvec3(0.5), 0}}, {1, {glm::dvec3(0.5), 3}}});
   const Picture grey = renderProgressive(*context, *volume, scene, {.passes = 8}, kLayers).picture;
   double worst = 0;
@@ -166,7 +166,8 @@ TEST_CASE("Layers are averaged as the picture is", "[shade][gl]") {
     worst = std::max(worst, std::abs(grey.visibility.pixels[i] - 2.0 * grey.colour.pixels[4 * i]));
   // sigma_s / sigma_t comes from a table of single precision, 16 slabs of which are blended.
   CHECK(worst < 16 * 4 * kFloatRounding);
-  // Depth is a mean weighted by opacity: on average over opaque pixels that of a single picture to within half a slab.
+  // Depth is a mean weighted by opacity: over opaque pixels it is on average that of a single picture to within
+  // half a slab.
   const Picture single = renderPicture(*context, *volume, scene, kLayers);
   double apart = 0, opaque = 0;
   for (std::size_t i = 0; i < single.depth.pixels.size(); ++i)
@@ -177,7 +178,7 @@ TEST_CASE("Layers are averaged as the picture is", "[shade][gl]") {
   REQUIRE(opaque > 100);
   CHECK(apart > 0);
   CHECK(apart / opaque < 0.5 * scene.sampling.spacing);
-  // What nothing is in has no depth.
+  // Where there is nothing there is no depth.
   scene.clipPlanes = {{0, 0, 1, -1000}};
   const Picture empty = renderProgressive(*context, *volume, scene, {.passes = 4}, kLayers).picture;
   for (const float depth : empty.depth.pixels) CHECK(depth == std::numeric_limits<float>::infinity());
@@ -203,9 +204,10 @@ TEST_CASE("The same seed gives the same picture to the bit, another seed another
 }
 
 // Four streams leave 3 degrees of freedom to a pixel, and pixels share directions: a picture's estimate has perhaps
-// ten, and is off by a quarter in one of three pictures, hardly ever by a factor of two. Of 12 pictures it is known to
-// a third of that; measured: 0.92 to 0.97 of what is found. The error falls with the power 0.7 of the passes.
-TEST_CASE("The standard error is that of the mean, which falls faster than with the root of the passes",
+// ten, and is off by a quarter in one of three pictures, hardly ever by a factor of two. Over 12 pictures it is known
+// to a third of that; measured: 0.92 to 0.97 of the error that is found. The error falls with the power 0.7 of the
+// number of samples.
+TEST_CASE("The standard error is that of the samples' mean, which falls faster than with the root of their number",
           "[shade][gl][slow]") {
   const auto context = testContext();
   if (!context) return;
@@ -240,7 +242,7 @@ TEST_CASE("The standard error is that of the mean, which falls faster than with 
   CHECK(order < -0.5);
 }
 
-// Quality of the courtyard in so many pixels: walls of 4 voxels, a shell of 3, edges of one.
+// Returns the courtyard of a quality in so many pixels: walls of 4 voxels, a shell of 3, edges of one.
 ResolvedScene qualityScene(Quality quality, int pixels) {
   Scene scene = unresolved(smallScene());
   scene.camera.width = scene.camera.height = pixels;
@@ -248,8 +250,8 @@ ResolvedScene qualityScene(Quality quality, int pixels) {
   return resolvedAnywhere(scene);  // a voxel is a world unit
 }
 
-// Pixels of 1.8 and 0.9 voxels. Where texels followed pixels, `high` had slabs of 1.25 voxels and texels of 1.8 in the
-// smaller picture, and an estimate that was too low.
+// Pixels have a width of 1.8 and 0.9 voxels. When texels followed pixels, `high` had slabs of 1.25 voxels and texels of
+// 1.8 in the smaller picture, and an estimate that was too low.
 TEST_CASE("Better quality is nearer to the reference at any size and estimates how near, within a factor of two",
           "[shade][gl][slow]") {
   const auto context = testContext();
@@ -281,14 +283,14 @@ TEST_CASE("Better quality is nearer to the reference at any size and estimates h
   }
 }
 
-TEST_CASE("Passes end where the target is reached, at the time limit, or when told", "[shade][gl]") {
+TEST_CASE("Samples end where the target is reached, at the time limit, or when told", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();
   const ResolvedScene scene = smallScene(64);
   const auto volume = bricksForPasses(grid, scene);
   const ProgressivePicture four = renderProgressive(*context, *volume, scene, {.passes = 4});
-  // A target between the error after four passes and what no number of passes gets below.
+  // The target lies between the error after four samples and the error that no number of samples gets below.
   const double target = std::hypot(four.error.systematic, 0.6 * four.error.statistical);
   const ProgressivePicture reached =
       renderProgressive(*context, *volume, scene, {.passes = 200, .targetError = target});
@@ -297,7 +299,7 @@ TEST_CASE("Passes end where the target is reached, at the time limit, or when to
   CHECK(reached.passes > 4);
   CHECK(reached.passes < 40);
   CHECK(reached.scene == scene);
-  // As if so many had been asked for.
+  // The picture is the same as if so many samples had been asked for.
   const ProgressivePicture asked = renderProgressive(*context, *volume, scene, {.passes = reached.passes});
   CHECK((asked.picture.colour.pixels == reached.picture.colour.pixels));
   CHECK_FALSE(asked.reachedTarget);
@@ -305,7 +307,7 @@ TEST_CASE("Passes end where the target is reached, at the time limit, or when to
       renderProgressive(*context, *volume, scene, {.passes = 10, .targetError = 0.5 * four.error.systematic});
   CHECK_FALSE(missed.reachedTarget);
   CHECK(missed.passes == 10);
-  CHECK(missed.scene == scene);  // nobody said that it may be refined
+  CHECK(missed.scene == scene);  // nobody has allowed the scene to be refined
 
   CHECK(renderProgressive(*context, *volume, scene, {.passes = 100, .maxSeconds = 1e-9}).passes == 1);
   int calls = 0;
@@ -349,7 +351,8 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
   CHECK(maxDifference(again.picture.colour, fine.picture.colour) < 2e-5);
   CHECK(again.error.systematic < coarse.error.systematic);
 
-  // Not at the expense of what there is: with no passes left that would tell the error of finer ones.
+  // A scene is not refined at the expense of the present one: when the samples that are left would not tell the error
+  // of finer slabs.
   for (const int passes : {4, 5, 7}) {
     options.passes = passes;
     const ProgressivePicture last = renderProgressive(*context, *volume, scene, options);
@@ -358,11 +361,11 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
     CHECK(last.scene == scene);
     CHECK(std::isfinite(last.error.total()));
   }
-  // No finer than an eighth of a voxel.
+  // Slabs get no finer than an eighth of a voxel.
   options.passes = 9;
   options.targetError = 1e-9;
   ResolvedScene finest = scene;
-  finest.clipPlanes = {{0, 0, -1, 3}};  // fewer slices
+  finest.clipPlanes = {{0, 0, -1, 3}};  // leaves fewer slices
   finest.sampling.spacing = 0.125;
   CHECK(renderProgressive(*context, *volume, finest, options).scene == finest);
 }
@@ -384,19 +387,19 @@ TEST_CASE("Without bricks for thicker slabs, thinner ones tell the systematic er
                   << picture.error.statistical << ", found " << found);
   CHECK(found < 2 * picture.error.total());
   CHECK(found > 0.5 * picture.error.total());
-  // Texture coordinates in other bricks are rounded otherwise, by up to 3e-6 voxels; the optical depth of a slab, 3.25
-  // of sigma_t 3, changes by up to 16 a voxel: 5e-5, of the one or two slabs that make a pixel opaque.
+  // Texture coordinates in other bricks are rounded differently, by up to 3e-6 voxels. The optical depth of a slab,
+  // 3.25 of sigma_t 3, changes by up to 16 per voxel: 5e-5, in each of the one or two slabs that make a pixel opaque.
   CHECK(maxDifference(other.picture.colour, picture.picture.colour) < 1e-4);
 }
 
-// Nothing to average but slices and texels: the light itself is the same in every pass.
-TEST_CASE("Listed directions come whole in every pass", "[shade][gl]") {
+// Only slices and texels are left to average over: the light itself is the same in every sample.
+TEST_CASE("Listed directions come whole in every sample", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   const ResolvedScene layer = layerScene(false);
   const FieldBricks volume = layerVolume(coarserScene(layer));
   const ProgressivePicture passes = renderProgressive(*context, volume, layer, {.passes = 8});
-  // As the test of samples says: all passes are one picture, to which slabs twice as thick make no difference.
+  // As the test of samples says, all samples are one picture, to which slabs twice as thick make no difference.
   const double slabs = 16 / layer.sampling.spacing + 2;
   const double tolerance = 2 * (slabs * 10 * kFloatRounding + 4e-6 * 0.11 * 2 * layer.sampling.spacing);
   CHECK(maxDifference(passes.picture.colour, renderPicture(*context, volume, layer).colour) < tolerance);
@@ -415,13 +418,14 @@ TEST_CASE("Listed directions come whole in every pass", "[shade][gl]") {
   const ProgressivePicture lit = renderProgressive(*context, *bricks, scene, {.passes = 16});
   const double mean = rmsOfRgb(lit.picture.colour, exact);
   INFO("estimated " << lit.error.statistical << " and " << lit.error.systematic << ", found " << mean);
-  // Texels of a pixel, 1.8 voxels, twice as wide as slabs are thick: what they blur is in the estimate, too.
-  // At hard edges the order is between 1/2 and 1, and the difference to slabs twice as large 0.41 to 1 of the error.
+  // Texels are as wide as a pixel, 1.8 voxels, and twice as wide as slabs are thick: their blur is in the
+  // estimate, too. At hard edges the order is between 1/2 and 1, and the difference to slabs twice as large is
+  // 0.41 to 1 of the error.
   CHECK(mean < 2.4 * lit.error.total());
   CHECK(mean > 0.5 * lit.error.total());
 }
 
-TEST_CASE("Passes that make no sense are refused", "[shade][gl]") {
+TEST_CASE("Options of samples that make no sense are refused", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = courtyard();

@@ -38,7 +38,7 @@ inline LightPaths randomPaths(TestRandom& random) {
   return paths;
 }
 
-/// The view axis and the directions of the light, in the order of LightRun::forEachWindow.
+/// Returns the view axis and the directions of the light, in the order of LightRun::forEachWindow.
 inline std::vector<LightSlope> slopesOf(const LightPaths& paths) {
   std::vector<LightSlope> slopes{paths.view};
   slopes.insert(slopes.end(), paths.lights.begin(), paths.lights.end());

@@ -13,8 +13,8 @@ using namespace umbrick;
 
 namespace {
 
-// A sweep of opaque and translucent rectangles, as the renderer's occlusion pass makes it: two buffers in turn, carried
-// pixels only inside `regions`. Collects what covered pixels read.
+// Makes a sweep of opaque and translucent rectangles as the renderer's occlusion pass does: with two buffers in turn,
+// and pixels carried only inside `regions`. Collects what covered pixels read.
 std::vector<double> sweep(const std::vector<ScreenRegion>& covered, const std::vector<SliceStep>& steps,
                           const std::vector<double>& through, const std::vector<glm::dvec2>& disk, int width,
                           int height, const std::vector<ScreenRegion>& regions) {
@@ -47,8 +47,8 @@ std::vector<double> sweep(const std::vector<ScreenRegion>& covered, const std::v
 
 }  // namespace
 
-// All that bricks read must be what a sweep of whole images gives, but for what a walk carries farther than kWalkReach
-// deviations: 3e-5.
+// All that bricks read must be what a sweep of whole images gives, except for what a random walk carries farther than
+// kWalkReach deviations: 3e-5.
 TEST_CASE("Outside of its region occlusion is 1 or is read no more", "[shade][slow]") {
   std::mt19937 random(11);
   const auto uniform = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
@@ -65,7 +65,7 @@ TEST_CASE("Outside of its region occlusion is 1 or is read no more", "[shade][sl
     std::vector<SliceStep> steps;
     std::vector<double> through;
     for (int i = 0; i < count; ++i) {
-      // Depths in slices: nearest + i; lengths shrink with the depth of the slice before.
+      // Depths are in slices: nearest + i; lengths shrink with the depth of the slice before.
       const double before = nearest + i - 1;
       SliceStep step{1, tangent * pixelsPerSlice, 0};
       if (perspective)
@@ -110,7 +110,7 @@ TEST_CASE("Regions are no larger than light can spread and is wanted", "[shade]"
   const glm::ivec2 size(400, 300);
   const ScreenRegion spot{{200, 150}, {202, 152}}, none;
   const std::vector<SliceStep> steps(5, SliceStep{1, 2, 1});
-  // Before the first and behind the last brick there is nothing to carry.
+  // In front of the first and behind the last brick there is nothing to carry.
   const auto single = occlusionRegions(std::vector<ScreenRegion>{none, none, spot, none, none}, steps, size);
   CHECK(single[0].empty());
   CHECK(single[1].empty());

@@ -17,18 +17,18 @@ namespace umbrick {
 
 inline const RenderOptions kLayers{.visibilityAndDepth = true};
 inline const IndexBox kBlock{glm::ivec3(0), glm::ivec3(31)};
-/// Between voxels in each direction.
+/// A box in index coordinates whose faces lie between voxels in each direction.
 inline const Box kMediumIndex{glm::dvec3(2.3, 3.1, 2.7), glm::dvec3(28.6, 27.9, 28.2)};
 inline constexpr glm::dvec3 kAlbedo(0.9, 0.5, 0.2);
 
-/// Nothing at the value `empty`, the full medium at `full`.
+/// Returns a transfer function with nothing at the value `empty` and the full medium at `full`.
 inline TransferFunction ramp(double sigma_t, double empty = 0, double full = 1) {
   const Medium nothing{kAlbedo, 0}, medium{kAlbedo, sigma_t};
   return empty < full ? TransferFunction({{empty, nothing}, {full, medium}})
                       : TransferFunction({{full, medium}, {empty, nothing}});
 }
 
-/// The largest of cones that fall from 1 at a centre (xyz) to 0 at a distance (w), and nothing beyond them.
+/// Returns the largest of cones that fall from 1 at a centre (xyz) to 0 at a distance (w), and 0 beyond them.
 inline double coneAt(const glm::ivec3& i, std::initializer_list<glm::dvec4> cones) {
   double value = 0;
   for (const glm::dvec4& cone : cones)
@@ -38,12 +38,12 @@ inline double coneAt(const glm::ivec3& i, std::initializer_list<glm::dvec4> cone
 
 /// Blobs that fade to nothing before the block ends, where slabs are drawn whole or not at all.
 inline double blobs(const glm::ivec3& i) { return coneAt(i, {{11, 12, 20, 8}, {20, 19, 12, 9}, {18, 9, 16, 5}}); }
-/// Both kinds, on the block.
+/// Returns a parallel and a perspective camera that look at the block.
 inline std::vector<Camera> blobCameras() {
   return {orthographicCamera({45, 5, 40}, {16, 16, 16}, 40, 40), perspectiveCamera({36, 2, 38}, {16, 16, 16}, 0.8, 40)};
 }
 
-/// A field in bricks as the scene needs them.
+/// Makes a field in bricks as the scene needs them.
 inline FieldBricks fieldFor(const ResolvedScene& scene, FieldBricks::Field field, const IndexBox& box,
                             FieldOptions options = {}) {
   options.interior = scene.bricks.interior;

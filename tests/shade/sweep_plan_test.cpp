@@ -19,7 +19,7 @@ std::set<std::int32_t> bricksOf(const ProxySlices& slices, std::int64_t first, s
   return bricks;
 }
 
-// Each brick is cut by a run of consecutive slices.
+// Returns slices in which each brick is cut by a run of consecutive slices.
 ProxySlices randomSlices(std::mt19937& random, int bricks, int count) {
   std::vector<std::vector<std::int32_t>> cut(static_cast<std::size_t>(count));
   for (std::int32_t brick = 0; brick < bricks; ++brick) {
@@ -55,9 +55,9 @@ TEST_CASE("Runs cover the sweep in order, each with its bricks and none longer t
       if (r > 0) CHECK(run.first == runs[r - 1].last);
       const std::set<std::int32_t> needed = bricksOf(slices, run.first, run.last);
       CHECK(std::vector<std::int32_t>(needed.begin(), needed.end()) == run.bricks);
-      // A run of more than fits has but one slice with bricks.
+      // A run of more bricks than fit has only one slice with bricks.
       if (run.bricks.size() > slots) CHECK(bricksOf(slices, run.last - 1, run.last) == needed);
-      // It ended where the next slice would not fit.
+      // The run ended where the next slice would not fit.
       if (run.last < count) CHECK(bricksOf(slices, run.first, run.last + 1).size() > slots);
     }
   }

@@ -69,7 +69,7 @@ TEST_CASE("A range is invisible only where no texel of it is seen, and seen no f
   }
 }
 
-// Gradients are rounded by half-floats also where values are not.
+// Gradients are rounded by half-floats even where values are not.
 TEST_CASE("Gradients that half-floats round across a step are not culled", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;

@@ -1,4 +1,5 @@
-// Pictures must not depend on where values lie, how far apart, how far others lie from them, and how fine slices are.
+// Pictures must not depend on where values lie, how far apart they lie, how far others lie from them, and how fine
+// slices are.
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/hard_case.h"
 
@@ -6,19 +7,19 @@ using namespace umbrick;
 
 namespace {
 
-// Blobs with values from `offset` to `offset` + `range`, and one voxel far from all others where it is asked for.
+// Returns blobs with values from `offset` to `offset` + `range`, and one voxel far from all others if asked for.
 ScalarGrid blobGrid(double offset, double range, double background, bool outlier = false) {
   return makeFilled(
       glm::ivec3(24), glm::ivec3(0),
       [&](const glm::ivec3& i) {
-        // In front of nothing and behind nothing: a corner.
+        // The voxel is in a corner, where nothing lies in front of it or behind it.
         if (outlier && i == glm::ivec3(22, 1, 1)) return -9999.0;
         return offset + range * smallBlobs(i);
       },
       static_cast<float>(background));
 }
 
-// The same function of the place in the range, transparent where empty space is.
+// Returns a function that depends only on the place in the range, and is transparent where empty space is.
 TransferFunction rampOf(double offset, double range) {
   return TransferFunction({{offset + 0.1 * range, {kAlbedo, 0}},
                            {offset + 0.4 * range, {kAlbedo, 0.05}},
@@ -42,7 +43,7 @@ TEST_CASE("The error does not depend on offset, range, background and outliers",
     for (const double range : {1e-3, 1.0, 100.0, 1e6})
       for (const bool farBackground : {false, true})
         for (const bool outlier : {false, true}) {
-          // Voxels are single precision: what they cannot tell apart nobody can render.
+          // Voxels are single precision: nobody can render what they cannot tell apart.
           if (range < offset * 0x1p-20) continue;
           INFO("offset " << offset << ", range " << range << ", background 0: " << farBackground << ", outlier "
                          << outlier);
@@ -51,14 +52,15 @@ TEST_CASE("The error does not depend on offset, range, background and outliers",
           const ScalarGrid grid = blobGrid(offset, range, background, outlier);
           ResolvedScene scene = plain;
           scene.transfer = rampOf(offset, range);
-          // Twice the error of the plain case, and that of voxels rounded to 24 bits, whose steps an interpolation
-          // hits differently: of a slope of sigma_t of 2.25 over the range along a ray of some 20 units.
+          // The bound is twice the error of the plain case, and the error of voxels rounded to 24 bits, whose
+          // steps an interpolation hits at other places: sigma_t has a slope of 2.25 over the range, along a ray
+          // of some 20 units.
           const double steps = std::abs(offset) * 0x1p-24 / range;
           CHECK(errorOf(*context, grid, scene) < 2 * base + 2.25 * 20 * steps);
         }
 }
 
-// Labels are whole numbers, and a function holds "at a step and above" what its second side says.
+// Labels are whole numbers, and at a step the function has the value of its second side.
 TEST_CASE("Values exactly on a step belong to its upper side in every format", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -69,7 +71,7 @@ TEST_CASE("Values exactly on a step belong to its upper side in every format", "
                                  {2, {glm::dvec3(1, 0, 0), 0.1}},
                                  {3, {glm::dvec3(1, 0, 0), 0.1}},
                                  {3, {glm::dvec3(0, 1, 0), 0.4}}});
-  // Along the faces, where rays through the middle of a label meet nothing but that label and empty space.
+  // The view is along the faces, where rays through the middle of a label meet nothing but that label and empty space.
   ResolvedScene scene = plainScene(labels, orthographicCamera({9.5, 9.5, 60}, glm::dvec3(9.5), 20, 20), 0.5);
   scene.camera.up = {0, 1, 0};
   const Image exact = renderReference(grid, scene).colour;
@@ -82,15 +84,15 @@ TEST_CASE("Values exactly on a step belong to its upper side in every format", "
       for (const int x : {6, 7, 12, 13})
         for (int channel = 0; channel < 4; ++channel) {
           INFO("pixel " << x << ", channel " << channel);
-          // The midpoint rule meets a label up to half a slab too soon or late at either end: an optical depth of 0.05
-          // and 0.2 in front of others.
+          // The midpoint rule meets a label up to half a slab too soon or too late at either end: an optical depth of
+          // 0.05, and 0.2 in front of others.
           CHECK(found.at(x, 10)[channel] == Approx(exact.at(x, 10)[channel]).margin(0.04));
         }
-      CHECK(found.at(6, 10)[1] < 1e-6);  // no share of the label beyond the step
+      CHECK(found.at(6, 10)[1] < 1e-6);  // nothing of the label beyond the step is seen
     }
 }
 
-// A format that rounds voxels must not take one across the step that it stands on.
+// A format that rounds voxels must not move a voxel across the step on which its value lies.
 TEST_CASE("Values exactly on a step stay there in formats that round them", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -107,8 +109,8 @@ TEST_CASE("Values exactly on a step stay there in formats that round them", "[sh
     for (const std::string format : {"unorm8", "unorm16", "half"}) {
       INFO(label << " in " << format);
       scene.bricks.format = format;
-      // A slope from 0 to the label is rounded to so many codes: to 26 of 8 bits for 0.1, so that its end is met up to
-      // 1/26 of a voxel sooner or later.
+      // A slope from 0 to the label is rounded to so many codes: with 8 bits to 26 of them for 0.1, so that its end is
+      // met up to 1/26 of a voxel sooner or later.
       CHECK(rmsDifference(renderGrid(*context, grid, scene).colour, exact) < (format == "unorm8" ? 0.03 : 5e-3));
     }
   }
@@ -150,7 +152,8 @@ TEST_CASE("A quarter of a volume may be a marker of missing data", "[shade][gl]"
         smallCameras()[1], 0.25);
     return errorOf(*context, marked(offset), scene);
   };
-  // Voxels near 1e6 are multiples of 1/16: the same field as near by, but for what single precision rounds.
+  // Voxels near 1e6 are multiples of 1/16: the field is the same as the other one, except for what
+  // single precision rounds.
   CHECK(errorAt(1e6) < 2 * errorAt(0) + 2e-3);
 }
 
@@ -159,7 +162,7 @@ TEST_CASE("A peak of any width keeps its optical depth, however fine the slices"
   if (!context) return;
   const ScalarGrid grid = blobGrid(0, 1, 0);
   for (const double halfWidth : {1e-2, 1e-3, 1e-5}) {
-    // The same optical depth along a given slope of values.
+    // The optical depth is the same along a given slope of values.
     const double most = 0.05 / halfWidth;
     ResolvedScene scene = plainScene(
         TransferFunction({{0.5 - halfWidth, {kAlbedo, 0}}, {0.5, {kAlbedo, most}}, {0.5 + halfWidth, {kAlbedo, 0}}}),
@@ -172,9 +175,9 @@ TEST_CASE("A peak of any width keeps its optical depth, however fine the slices"
       scene.sampling.segments = segments;
       const double error = rmsDifference(renderGrid(*context, grid, scene).colour, exact);
       INFO("half-width " << halfWidth << ", spacing " << spacing << " in " << segments << ", error " << error);
-      // A ray's value is taken as linear over a segment. Where it turns close to the peak, the whole peak is gained or
-      // lost; that happens to a share of the rays which falls with the length of segments, so the root mean square
-      // falls with its root or, where peaks are as wide as what a segment spans, faster.
+      // A ray's value counts as linear over a segment. Where it turns close to the peak, the whole peak is gained or
+      // lost. That happens to a share of the rays which falls with the length of segments, so the root mean square
+      // falls with the root of the length or, where peaks are as wide as what a segment spans, faster.
       CHECK(error < 0.07 * std::sqrt(spacing / segments));
     }
   }
@@ -185,7 +188,8 @@ TEST_CASE("A 2D function is exact between its lattice lines, steps and narrow pe
   if (!context) return;
   const ScalarGrid grid = blobGrid(1000, 1, 1000);
   const Medium none{kAlbedo, 0}, thin{{0.2, 0.9, 0.4}, 0.3}, dense{kAlbedo, 60};
-  // Nothing below 1000.2; a thin medium up to a peak of half-width 0.001 at 1000.6, denser at larger gradients.
+  // There is nothing below 1000.2, then a thin medium up to a peak of half-width 0.001 at 1000.6, denser
+  // at larger gradients.
   const std::vector<double> values{1000.2, 1000.2, 1000.599, 1000.6, 1000.601};
   const std::vector<double> gradients{0, 0.1, 0.3};
   const std::vector<Medium> media{none,  thin, thin, thin, thin, none,  thin, thin,

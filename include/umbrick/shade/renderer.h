@@ -1,7 +1,8 @@
 // What every technique of rendering provides: a renderer that lives as long as its volume is looked at.
 //
 // A new technique is a class that derives from Renderer, in a file of its own in src/shade, and a row in the table of
-// techniques (render/techniques.h). Blending, depth and how a picture is resolved from buffers are its own business.
+// techniques (render/techniques.h). How it blends, what depth means to it and how a picture is resolved from its
+// buffers are up to the technique.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -15,52 +16,52 @@
 
 namespace umbrick {
 
-/// What a renderer makes besides colour.
+/// Options of what a renderer makes besides colour, and of what it measures.
 struct RenderOptions {
   bool visibilityAndDepth = false;  // also make the layers of Picture
   bool countFragments = true;
   bool timePasses = false;     // RenderStats::passes; waiting for each pass makes a picture slower
-  bool reverseBricks = false;  // draw the bricks of a slice in the opposite order: must change nothing
+  bool reverseBricks = false;  // draw the bricks of a slice in the opposite order, which must change nothing
 };
 
-/// Where the time of a sweep goes, ms.
+/// Where the time of a sweep goes, in ms.
 struct PassTimes {
-  double extinctionMs = 0;  // ordinates: bricks to the slices' optical depth on the lattice of the light
-  double windowsMs = 0;     // ordinates: light through the slices
-  double eyeMs = 0;         // bricks to the eye; for dos, light as well
+  double extinctionMs = 0;  // ordinates: drawing bricks into the slices' optical depth on the lattice of the light
+  double windowsMs = 0;     // ordinates: taking light through the slices
+  double eyeMs = 0;         // drawing bricks for the eye; for dos, light as well
 };
 
 struct RenderStats {
   std::int64_t slices = 0;        // planes between the nearest and the farthest visible brick
-  std::size_t bricks = 0;         // of the volume
-  std::size_t visibleBricks = 0;  // after culling
+  std::size_t bricks = 0;         // bricks of the volume
+  std::size_t visibleBricks = 0;  // bricks that culling leaves
   std::size_t polygons = 0;
-  std::uint64_t fragments = 0;       // of bricks that passed the depth test, all passes; 0 when not counted
-  std::size_t brickSlots = 0;        // that the visible bricks take; those of one value share one
-  std::uint64_t uploadedBricks = 0;  // for this picture: 0 where all were resident already
-  std::uint64_t textureBytes = 0;    // of bricks
-  int textures = 0;                  // that hold bricks
-  int textureEdge = 0;               // longest, texels
-  std::uint64_t bufferBytes = 0;     // eye, occlusion, depth and layers
-  int directions = 0;                // ordinates: of the light
+  std::uint64_t fragments = 0;       // fragments of bricks that passed the depth test, in all passes; 0: not counted
+  std::size_t brickSlots = 0;        // slots that the visible bricks take; bricks of one value share one
+  std::uint64_t uploadedBricks = 0;  // bricks uploaded for this picture; 0 where all were resident already
+  std::uint64_t textureBytes = 0;    // of the textures that hold bricks
+  int textures = 0;                  // number of textures that hold bricks
+  int textureEdge = 0;               // longest edge of those textures, texels
+  std::uint64_t bufferBytes = 0;     // of the buffers for eye, occlusion, depth and layers
+  int directions = 0;                // ordinates: number of directions of the light
   double windowTexel = 0;            // ordinates: edge of a texel of the windows, world units
   std::uint64_t windowBytes = 0;     // ordinates: of the windows and of what light is computed on, part of bufferBytes
-  std::uint64_t windowUpdates = 0;   // ordinates: texels of windows that slices were taken through
-  PassTimes passes;                  // when asked for
+  std::uint64_t windowUpdates = 0;   // ordinates: texels of windows that light was taken through slices in
+  PassTimes passes;                  // only when asked for
   double formatError = 0;            // largest |voxel - texel|, grid units
-  double geometryMs = 0;             // cutting slices into polygons
-  double uploadMs = 0;               // bricks and polygons to textures and buffers
-  double sweepMs = 0;                // drawing, until the last fragment is done
-  double readMs = 0;                 // picture back to memory
+  double geometryMs = 0;             // to cut slices into polygons
+  double uploadMs = 0;               // to bring bricks and polygons to textures and buffers
+  double sweepMs = 0;                // to draw, until the last fragment is done
+  double readMs = 0;                 // to bring the picture back to memory
 };
 
-/// Where the freedom of a picture lies: pictures of other samples have other errors, so that their mean has less. The
-/// defaults are those of a single picture.
+/// The choices that are free for a picture. Pictures of other samples have other errors, so that the mean of several
+/// has a smaller one. The defaults are those of a single picture.
 struct RenderSample {
-  std::vector<LightDirection> lights;  // of ordinates; empty: lightDirections() of the scene
-  double phase = 0.5;          // of the slices, see ProxySlices; 1/2 where less than a slab is between eye and volume
-  glm::dvec2 latticeShift{0};  // of ordinates: of the lattice of the light, texels
-  glm::dvec2 rounding{0.5};    // of ordinates: what is added to shifts before they are cut to whole texels, in [0, 1)
+  std::vector<LightDirection> lights;  // directions for ordinates; empty: lightDirections() of the scene
+  double phase = 0.5;  // place of the slices, see ProxySlices; 1/2 where less than a slab is between eye and volume
+  glm::dvec2 latticeShift{0};  // ordinates: shift of the lattice of the light, texels
+  glm::dvec2 rounding{0.5};    // ordinates: what is added to shifts before they are cut to whole texels, in [0, 1)
 };
 
 struct Picture {
@@ -74,19 +75,18 @@ struct Picture {
 /// clip planes, lights and the size of the picture upload nothing, and another transfer function uploads the bricks
 /// that became visible and are not resident.
 ///
-/// The scene's texel format and memory budget are those that the volume was made resident with; others in a later scene
-/// mean nothing.
+/// The volume was made resident with a texel format and a memory budget; other ones in a later scene have no effect.
 class Renderer {
  public:
   virtual ~Renderer() = default;
 
   const ResolvedScene& scene() const { return *scene_; }
-  /// Takes another scene of the same volume. When it throws, the scene before stays.
-  /// @throw InvalidArgument  what the technique cannot render: says what it can
+  /// Takes another scene of the same volume. When this throws, the renderer keeps the scene that it had.
+  /// @throw InvalidArgument  the technique cannot render the scene; the message says what it can render
   /// @throw GlError
   void setScene(const ResolvedScene& scene);
 
-  // One part of the scene. Each throws as setScene().
+  // Each of these setters changes one part of the scene and throws as setScene().
   void setCamera(const Camera& camera);
   void setTransfer(const TransferFunction& transfer);
   void setClip(const std::vector<ClipPlane>& planes, const std::optional<Box>& box);
@@ -103,9 +103,10 @@ class Renderer {
   Picture render(const RenderSample& sample = {});
 
  protected:
-  /// Prepares for a scene; the one before is still scene(), or none is set. Whatever throws changes nothing.
+  /// Prepares for a scene, while scene() is still the one before, or none is set. Where this throws,
+  /// nothing has changed.
   virtual void update(const ResolvedScene& next) = 0;
-  /// Is there a scene before the one that update() is for?
+  /// Tells whether there is a scene before the one that update() is called for.
   bool hasScene() const { return scene_.has_value(); }
 
  private:

@@ -18,47 +18,50 @@ namespace umbrick {
 /// is in front (Engel, Kraus, Ertl 2001, doi:10.1145/383507.383515, without their table). So the picture depends
 /// neither on where values lie nor on how far others lie apart, and no peak of the function is missed.
 ///
-/// For every slab with mean medium (sigma_s, sigma_t), eye path d_e and slice distance d, front to back, from O = 1, C
-/// = A = 0:
+/// Slabs are drawn front to back, from O = 1, C = A = 0. For a slab with the mean medium (sigma_s, sigma_t), the length
+/// d_e of the eye's path through it and the slice distance d:
 ///   alpha = 1 - exp(-sigma_t d_e)
 ///   C += (1 - A) (sigma_s / sigma_t) alpha O L_a        emission: O = 1
 ///   A += (1 - A) alpha
 ///   O  = exp(-sigma_t d) * mean of O over the cone's footprint on the slice before   (Algorithm 3; 2 as in the paper)
-/// and in the end C + (1 - A) L_b. O is read straight before a point along the slice normal. That is emission and dos.
-/// By ordinates, with directions k of radiance L_k, lengths per depth c_k of their paths, and of the path to the eye r:
+/// and in the end C + (1 - A) L_b. O is read straight before a point along the slice normal. These are the equations of
+/// emission and of dos.
+///
+/// Ordinates have directions k of radiance L_k. The length of a path per depth is c_k for direction k, and r for the
+/// path to the eye:
 ///   C += (1 - A) (sigma_s / sigma_t) (1 - exp(-tau (1 + a))) / (1 + a) L_a sum_k L_k T_k      tau = sigma_t d r
 ///   T_k = exp(-c_k tau_j / r) over all slabs j in front, along the path of k, met in whole texels of the lattice of
-///   light
-/// with a = c / r for the one c that would scatter the same from a solid slab: sum_k L_k T_k / (1 + c_k) = sum_k L_k
-/// T_k / (1 + c). Between texels, sums are interpolated with the transmittance along the view axis as their weight.
+///         light
+/// with a = c / r for the one c that would scatter the same from a solid slab:
+///   sum_k L_k T_k / (1 + c_k) = sum_k L_k T_k / (1 + c)
+/// Between texels, sums are interpolated with the transmittance along the view axis as their weight.
 /// Sources: Max 1995, doi:10.1109/2945.468400; Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
 class SliceRenderer : public Renderer {
  public:
-  /// Culls, makes room in the volume's atlas and compiles what the scene needs; bricks are uploaded by the first
-  /// draw().
+  /// Culls, makes room in the volume's atlas and compiles what the scene needs. The first draw() uploads bricks.
   /// @param volume  must have the apron and the gradients that the scene needs; outlives this
-  /// @throw InvalidArgument  an image beyond the driver's limit, a volume with a too narrow apron, a budget too small
+  /// @throw InvalidArgument  the image is beyond the driver's limit, the apron too narrow or the budget too small
   /// @throw GlError
   /// @pre the context of `volume` is current
   SliceRenderer(ResidentVolume& volume, const ResolvedScene& scene, const RenderOptions& options = {});
-  /// With a resident volume of its own. @param context,volume  outlive this
-  /// @param limits  of the atlas; format and budget 0 are the scene's
+  /// Makes a resident volume of its own. @param context,volume  outlive this
+  /// @param limits  of the atlas; a format or a budget of 0 stands for the scene's
   SliceRenderer(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
                 const RenderOptions& options = {}, const AtlasLimits& limits = {});
   ~SliceRenderer() override;
 
   using Renderer::render;
-  /// The same scene from another camera. @throw InvalidArgument  slabs that reach beyond the apron
+  /// Renders the same scene from another camera. @throw InvalidArgument  slabs reach beyond the apron
   Picture render(const Camera& camera, const RenderSample& sample = {});
 
   void draw(const RenderSample& sample = {}) override;
   Picture read() override;
 
-  /// What slice i (of those in the last picture) samples: channel 0 the interpolated value, grid units, at the middle
-  /// of the slab, channel 1 how many bricks shade the pixel.
-  /// @throw InvalidArgument  no such slice
+  /// Returns what slice i of the last picture samples: channel 0 is the interpolated value, grid units, at the middle
+  /// of the slab, channel 1 the number of bricks that shade the pixel.
+  /// @throw InvalidArgument  there is no such slice
   Image probe(std::int64_t slice);
-  /// Depths of the slices of the last picture, world units.
+  /// Returns the depths of the slices of the last picture, world units.
   std::vector<double> sliceDepths() const;
 
  protected:
@@ -66,7 +69,7 @@ class SliceRenderer : public Renderer {
 
  private:
   class Implementation;
-  std::unique_ptr<ResidentVolume> own_;  // null where it is shared
+  std::unique_ptr<ResidentVolume> own_;  // the resident volume that this made for itself; null where it is shared
   std::unique_ptr<Implementation> implementation_;
 };
 
