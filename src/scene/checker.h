@@ -1,4 +1,4 @@
-// How the ranges of fields are checked: the first complaint counts, and messages read alike.
+// Checks the ranges of fields: the first complaint counts, and all messages have the same form.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
@@ -17,7 +17,7 @@ inline std::string printDegrees(double radians) { return print(radians * 180 / 3
 
 inline bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// Collects the first complaint; the checks read as a table of fields and ranges.
+/// Collects the first complaint, so that the checks read as a table of fields and ranges.
 class Checker {
  public:
   void require(bool holds, const std::string& field, const std::string& is, const std::string& range) {

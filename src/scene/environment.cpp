@@ -13,14 +13,14 @@
 
 namespace umbrick {
 namespace {
-constexpr int kRows = 256, kColumns = 512;  // of cells, about
+constexpr int kRows = 256, kColumns = 512;  // approximate number of cells
 
 glm::dvec3 radianceAt(const Image& image, int x, int y) {
   const float* pixel = image.at(x, y);
   return image.channels < 3 ? glm::dvec3(pixel[0]) : glm::dvec3(pixel[0], pixel[1], pixel[2]);
 }
 
-// What is wrong with a map, if something is.
+// Returns what is wrong with a map; empty where nothing is.
 std::string flawOf(const Image& image) {
   if (image.channels != 1 && image.channels != 3 && image.channels != 4)
     return "has " + std::to_string(image.channels) + " channels, must have 1, 3 or 4";
@@ -41,7 +41,7 @@ glm::dmat3 axesOf(const EnvironmentLight& light) {
   return {glm::cross(up, right), right, up};
 }
 
-// Part of the hemisphere in equal-area coordinates.
+// A part of the hemisphere in equal-area coordinates.
 struct Piece {
   glm::dvec2 place;
   double power;
@@ -49,7 +49,8 @@ struct Piece {
 };
 using Pieces = std::vector<Piece>;
 
-// Where to cut pieces, which it sorts by halves, so that about `power` lies in front: at least one on each side.
+// Returns where to cut pieces so that about `power` lies in front of the cut and at least one piece on each side. It
+// sorts the pieces only as far as needed, by halves.
 Pieces::iterator cut(Pieces::iterator begin, Pieces::iterator end, int axis, double power) {
   Pieces::iterator low = begin, high = end;
   while (high - low > 1) {
@@ -65,7 +66,7 @@ Pieces::iterator cut(Pieces::iterator begin, Pieces::iterator end, int axis, dou
       low = middle;
     }
   }
-  // The piece at `low` holds the place: to the side that it has more of.
+  // The place of the cut is in the piece at `low`, which goes to the side that most of it is on.
   if (power > 0.5 * low->power) ++low;
   return std::clamp(low, begin + 1, end - 1);
 }
@@ -124,7 +125,8 @@ Environment::Environment(const EnvironmentLight& light, const glm::dmat3& toWorl
   setSize(scale_ * rowsUpTo_.back(), solidAngleInFront());
 }
 
-// As large as an even light that has as much power and as much square of it; all of the half if there is none.
+// Returns the solid angle of an even light with the same power and the same integral of its square; that of the whole
+// half if there is no light.
 double Environment::solidAngleInFront() const {
   double squares = 0;
   for (int y = 0; y < image_->height; ++y) {
@@ -142,7 +144,7 @@ double Environment::solidAngleInFront() const {
   return squares > 0 && power > 0 ? std::min(power * power / squares, 2 * std::numbers::pi) : 2 * std::numbers::pi;
 }
 
-// Of the lower edge of a row.
+// Returns the sine of the latitude of a row's lower edge.
 double Environment::sineOf(int row) const {
   return std::sin(std::numbers::pi * (static_cast<double>(row) / rows_ - 0.5));
 }
@@ -155,7 +157,8 @@ glm::dvec3 Environment::direction(double s, double x) const {
   return glm::normalize(axes_ * glm::dvec3(cosine * std::cos(longitude), cosine * std::sin(longitude), s));
 }
 
-// Where cos(latitude) (front cos x + right sin x) + s up > 0, with the viewer's coordinates in the map.
+// Returns the columns x where cos(latitude) (front cos x + right sin x) + s up > 0, with the viewer's coordinates
+// in the map.
 Environment::Interval Environment::front(double s) const {
   const double across = std::hypot(viewerInMap_.x, viewerInMap_.y) * std::sqrt(std::max(0.0, (1 - s) * (1 + s)));
   const double below = -s * viewerInMap_.z;
@@ -169,7 +172,7 @@ Environment::Interval Environment::front(double s) const {
   return {columnOf(middle - half), columnOf(middle + half)};
 }
 
-// Power of a circle of latitude from column 0 on, x in any period.
+// Returns the power of a circle of latitude from column 0 on; x may be in any period.
 double Environment::powerUpTo(int row, double x) const {
   const double* sums = sums_.data() + static_cast<std::size_t>(imageRow(row)) * static_cast<std::size_t>(width_ + 1);
   const double turns = std::floor(x / width_), rest = std::clamp(x - turns * width_, 0.0, static_cast<double>(width_));
@@ -177,13 +180,13 @@ double Environment::powerUpTo(int row, double x) const {
   return turns * sums[width_] + sums[column] + (rest - column) * (sums[column + 1] - sums[column]);
 }
 
-// In front of the viewer, per unit of s.
+// Returns the power of a circle of latitude in front of the viewer, per unit of s.
 double Environment::powerOfCircle(int row, double s) const {
   const Interval part = front(s);
   return 2 * std::numbers::pi / width_ * (powerUpTo(row, part.end) - powerUpTo(row, part.begin));
 }
 
-// The inverse of powerUpTo.
+// Returns the column at which powerUpTo reaches the power: its inverse.
 double Environment::column(int row, double power) const {
   const double* sums = sums_.data() + static_cast<std::size_t>(imageRow(row)) * static_cast<std::size_t>(width_ + 1);
   const double turns = std::floor(power / sums[width_]), rest = power - turns * sums[width_];
@@ -202,7 +205,8 @@ void Environment::sumAlongRows() {
     sums_.push_back(sum);
     for (int x = 0; x < width_; ++x) sums_.push_back(sum += powerOf(radianceAt(*image_, x, y)));
   }
-  // Simpson's rule: of nested intervals the longest is at one of a row's edges, so a row that has light has a sum.
+  // This is Simpson's rule. Of nested intervals the longest is at one of a row's edges, so a row that has light
+  // has a sum.
   double sum = 0;
   for (int row = 0; row < rows_; ++row) {
     const double low = sineOf(row), high = sineOf(row + 1);
@@ -212,7 +216,7 @@ void Environment::sumAlongRows() {
   }
 }
 
-// What lies in front of a strip of a row around s.
+// Adds what lies in front of the viewer in a strip of a row around s.
 void Environment::addToBlocks(int row, double s, double height, std::vector<Cell>& blocks) const {
   const int fine = width_ * subColumns_;
   const Interval part = front(s);
@@ -237,7 +241,7 @@ std::vector<Environment::Cell> Environment::gatherCells() const {
   for (int row = 0; row < rows_; ++row) {
     if (row % blockRows == 0) blocks.assign(static_cast<std::size_t>(across), Cell{});
     const double low = sineOf(row), high = sineOf(row + 1);
-    // A part of a row is as wide as its middle: finer where the viewer's plane runs along the row.
+    // A part of a row is as wide as its middle, so parts are finer where the viewer's plane runs along the row.
     const Interval lower = front(low), upper = front(high);
     const double slant = std::abs(upper.end - lower.end) / width_;
     const int parts = std::clamp(static_cast<int>(std::ceil(slant * 600)), 1, 64);
@@ -253,7 +257,7 @@ std::vector<Environment::Cell> Environment::gatherCells() const {
 std::vector<LightDirection> Environment::directions(int count, double rotation) const {
   const std::vector<Cell> cells = gatherCells();
   if (cells.empty() || scale_ == 0) return {{viewer_, glm::dvec3(0)}};
-  // Any two axes across the view do, as `rotation` counts from one of them.
+  // Any two axes across the view are good enough, as `rotation` counts from one of them.
   const glm::dvec3 aside = std::abs(viewer_.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 u = glm::normalize(glm::cross(viewer_, aside)), v = glm::cross(viewer_, u);
   const glm::dvec3 first = std::cos(rotation) * u + std::sin(rotation) * v, second = glm::cross(viewer_, first);
@@ -287,14 +291,14 @@ LightDirection Environment::sample(double u, double v) const {
   const Interval part = front(s);
   const double begin = powerUpTo(row, part.begin), end = powerUpTo(row, part.end);
   if (!(end > begin)) return {viewer_, glm::dvec3(0)};
-  // Off the ends of the interval, which lie on the viewer's plane, by more than rounding.
+  // The place keeps more than rounding away from the ends of the interval, which lie on the viewer's plane.
   const double margin = 1e-9 * (part.end - part.begin);
   const double x = std::clamp(column(row, begin + v * (end - begin)), part.begin + margin, part.end - margin);
   const auto at = static_cast<int>(std::floor(x)) % width_;
   const glm::dvec3 light = pixel(row, (at + width_) % width_);
   const double power = powerOf(light);
   if (!(power > 0)) return {viewer_, glm::dvec3(0)};
-  // The densities: own / total / (high - low) in s, power / (end - begin) in columns.
+  // The two densities are own / total / (high - low) in s and power / (end - begin) in columns.
   const double area = (high - low) * rowsUpTo_.back() / own * (2 * std::numbers::pi / width_) * (end - begin) / power;
   return {direction(s, x), scale_ * area * light};
 }

@@ -1,4 +1,4 @@
-// The half of an environment map in front of the viewer, as directions.
+// Turns the half of an environment map in front of the viewer into directions.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/mat3x3.hpp>
@@ -8,28 +8,29 @@
 
 namespace umbrick {
 
-/// An environment map where latitude and longitude are continuous: sine of the latitude s in [-1, 1], longitude as
-/// column x, of period the map's width. A circle of latitude is in front of the viewer's plane on one interval of x,
-/// whose ends are known: nothing of the map is cut along pixels.
+/// An environment map with continuous latitude and longitude: the sine of the latitude is s in [-1, 1], and the
+/// longitude is a column x, whose period is the map's width. A circle of latitude is in front of the viewer's plane on
+/// one interval of x, whose ends are known: the map is not cut along pixels.
 class Environment : public Light {
  public:
-  /// @param toWorld  of the source's frame  @param viewer  towards the viewer, unit length, world
-  /// @throw InvalidArgument  a pixel that is negative or not finite
+  /// @param toWorld  converts the source's frame to the world  @param viewer  towards the viewer, unit length, world
+  /// @throw InvalidArgument  a pixel is negative or not finite
   Environment(const EnvironmentLight& light, const glm::dmat3& toWorld, const glm::dvec3& viewer);
 
-  /// Median cut (Debevec 2005, "A Median Cut Algorithm for Light Probe Sampling"): the front half is cut where half of
-  /// its power is on each side, and so are the halves, across where they are longest; a direction is the centre of
-  /// power of its part and has the radiance of all of it. Parts are flat pieces of Lambert's equal-area map of the
-  /// hemisphere, which cuts along its axes: `rotation` turns them. They consist of cells of about 0.7 degrees: a light
-  /// smaller than that is one direction.
+  /// Returns directions by median cut (Debevec 2005, "A Median Cut Algorithm for Light Probe Sampling"): the front half
+  /// is cut where half of its power is on each side, and so are the halves, across where they are longest. A direction
+  /// is the centre of power of its part and has the radiance of all of it. Parts are flat pieces of Lambert's
+  /// equal-area map of the hemisphere, which is cut along its axes; `rotation` turns these. Parts consist of cells of
+  /// about 0.7 degrees: a light smaller than that is one direction.
   std::vector<LightDirection> directions(int count, double rotation) const override;
-  /// By inversion: latitude by the power of its circles, then longitude by the power of pixels along the circle.
+  /// Returns a direction by inversion: latitude by the power of its circles, then longitude by the power of pixels
+  /// along the circle.
   LightDirection sample(double u, double v) const override;
 
  private:
   struct Cell {
     glm::dvec3 light{0};   // radiance times solid angle
-    glm::dvec3 moment{0};  // of power, with directions in the world
+    glm::dvec3 moment{0};  // power times direction, in the world
   };
   struct Interval {
     double begin, end;  // columns, end - begin <= width
@@ -49,12 +50,12 @@ class Environment : public Light {
   std::vector<Cell> gatherCells() const;
 
   std::shared_ptr<const Image> image_;
-  int width_, rows_, subRows_;     // rows are parts of the image's
-  int subColumns_, blockColumns_;  // a column in parts for cells, and how many parts a cell takes
-  double scale_;                   // of radiance, 1/(4 pi) included
-  glm::dmat3 axes_;                // of the map: front, right, up, in the world
+  int width_, rows_, subRows_;     // rows are parts of the image's rows
+  int subColumns_, blockColumns_;  // parts of a column for cells, and how many of them a cell takes
+  double scale_;                   // of radiance, the factor 1/(4 pi) included
+  glm::dmat3 axes_;                // of the map: front, right, up; in the world
   glm::dvec3 viewer_, viewerInMap_;
-  std::vector<double> sums_;      // width + 1 per image row: power of the pixels to the left
+  std::vector<double> sums_;      // power of the pixels to the left; width + 1 numbers per image row
   std::vector<double> rowsUpTo_;  // power of rows 0 to i
 };
 

@@ -11,8 +11,8 @@
 namespace umbrick {
 namespace {
 
-// Beside a handler of the rest (`const auto&`), one of a pointer takes exactly that type: from `double*` the rest is
-// nearer than `const double*`.
+// Joins handlers for std::visit. Beside a handler of the rest (`const auto&`), a handler that takes a pointer takes
+// exactly that type: a `double*` fits the handler of the rest better than one of `const double*`.
 template <class... Handlers>
 struct Overload : Handlers... {
   using Handlers::operator()...;
@@ -30,7 +30,7 @@ bool within(double value, const FieldRange& range, double unit = 1) {
   return range.multipleOf == 1 || std::fmod(value, range.multipleOf) == 0;
 }
 
-// Scenes that have all fields between them.
+// Scenes that together have all fields.
 class Defaults {
  public:
   Defaults() { placed_.orbit.reset(); }
@@ -149,12 +149,13 @@ std::string helpText(const SceneField& field) {
   Scene scene;
   const FieldPlace place = field.place(scene);
   std::string text(field.help);
-  // Names are listed by the help itself, and vectors and sizes need no range; of numbers those that can be wrong do.
+  // The help lists names itself, and vectors and sizes need no range; of numbers, only those that can be
+  // wrong need one.
   const bool whole = std::holds_alternative<int*>(place) && !field.range.endsOnly;
   const bool bounded = std::isfinite(field.range.low) && std::isfinite(field.range.high);
   if (whole || (bounded && (std::holds_alternative<double*>(place) || std::holds_alternative<Angle>(place))))
     text += ", " + rangeText(field);
-  // A field that scenes have only sometimes has no default but what `otherwise` says.
+  // A field that scenes have only sometimes has no default except what `otherwise` says.
   const std::string usual = std::holds_alternative<std::monostate>(place) ? std::string() : defaultText(field);
   const std::string shown = usual + std::string(field.otherwise);
   return shown.empty() ? text : text + " [" + shown + "]";

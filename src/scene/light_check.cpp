@@ -12,7 +12,7 @@ namespace {
 
 std::string nameOf(std::size_t number) { return "light.sources[" + std::to_string(number) + "]"; }
 
-// Angles that are computed come without the digits that rounding makes up.
+// Returns degrees of a computed angle without the last digits, which only come from rounding.
 std::string printRounded(double radians) { return print(std::round(radians * 180 / std::numbers::pi * 1e9) / 1e9); }
 
 void check(Checker& checker, const ConeLight& cone, const std::string& field) {
@@ -69,7 +69,7 @@ void checkFront(Checker& checker, const ListedLight& light, LightFrame frame, co
   }
 }
 
-// The half of a map that is not in front is left out.
+// A map needs no check, since the half of it that is not in front is left out.
 void checkFront(Checker&, const EnvironmentLight&, LightFrame, const std::string&, const glm::dvec3&) {}
 
 }  // namespace

@@ -17,7 +17,7 @@ glm::dvec3 vectorOf(const JsonValue& value) {
   const std::vector<double> numbers = value.numbers(3);
   return {numbers[0], numbers[1], numbers[2]};
 }
-// Three numbers, or one for all.
+// Reads three numbers, or one for all three.
 glm::dvec3 radianceOf(const JsonValue& value) { return value.isArray() ? vectorOf(value) : glm::dvec3(value.number()); }
 
 ConeLight readCone(const JsonValue& value, std::string_view axis, std::string_view angle, bool sharp) {
@@ -51,7 +51,7 @@ EnvironmentLight readEnvironment(const JsonValue& value, LightFrame frame, const
   } catch (const IoError& error) {
     file.fail(error.what());
   }
-  // As the camera of azimuth 0 and elevation 0 has them: there the frames agree.
+  // The axes are those of the camera of azimuth 0 and elevation 0, where both frames agree.
   if (frame == LightFrame::world) {
     light.up = {0, 0, 1};
     light.front = {0, -1, 0};

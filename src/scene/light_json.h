@@ -1,4 +1,4 @@
-// Light sources as JSON, see parseScene.
+// Reads and writes light sources as JSON, see parseScene.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace umbrick {
 
-/// @param folder  that file names are relative to
+/// Reads a light source. @param folder  that file names are relative to
 LightSource readLightSource(const JsonValue& value, const std::filesystem::path& folder);
 std::string printLightSource(const LightSource& source);
 

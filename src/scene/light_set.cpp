@@ -18,7 +18,7 @@
 namespace umbrick {
 namespace {
 
-// Directions are those of the light's own frame: a light that moves with the camera keeps them, seen from there.
+// A cone whose directions are those of the light's own frame, so that a light that moves with the camera keeps them.
 class UniformCone : public Light {
  public:
   UniformCone(const ConeLight& cone, const glm::dmat3& toWorld)
@@ -28,7 +28,7 @@ class UniformCone : public Light {
 
   std::vector<LightDirection> directions(int count, double rotation) const override {
     std::vector<LightDirection> result;
-    const bool few = count <= 64;  // beyond, exact rings win where light is smooth
+    const bool few = count <= 64;  // with more directions, exact rings are better where light is smooth
     for (const auto& [direction, weight] : few ? spiralDirections(cone_.axis, cone_.aperture, count, rotation)
                                                : coneDirections(cone_.axis, cone_.aperture, count, rotation))
       result.push_back({glm::normalize(toWorld_ * direction), weight * cone_.radiance});
@@ -67,7 +67,7 @@ class ListOfDirections : public Light {
 
  private:
   std::vector<LightDirection> list_;
-  std::vector<double> sums_;  // of the powers up to and with each one
+  std::vector<double> sums_;  // sum of the powers up to and including each one
 };
 
 std::unique_ptr<Light> makeLight(const ConeLight& cone, const glm::dmat3& toWorld, const glm::dvec3&) {
@@ -85,8 +85,8 @@ std::unique_ptr<Light> makeLight(const EnvironmentLight& light, const glm::dmat3
   return std::make_unique<Environment>(light, toWorld, viewer);
 }
 
-// Point `index` of the sequence R2: multiples of 1/g and 1/g^2, g^3 = g + 1. In fixed point, so that no index is too
-// large for it.
+// Point `index` of the sequence R2: multiples of 1/g and 1/g^2, with g^3 = g + 1. It is computed in fixed point, so
+// that no index is too large for it.
 struct UnitPoint {
   double u, v;
 };
@@ -139,7 +139,7 @@ LightSet::LightSet(std::vector<LightDirection> directions) {
   power_ = lights_.front()->power();
 }
 
-// How many of `count` directions each source takes; 1 for those that do not ask.
+// Returns how many of `count` directions each source takes; 1 for sources whose number does not depend on it.
 std::vector<int> LightSet::shares(int count) const {
   std::vector<double> wanted;
   double sum = 0;
@@ -202,7 +202,7 @@ LightDirection LightSet::sample(double source, double u, double v) const {
     if (below < light->power()) break;
     below -= light->power();
   }
-  // Light of no power comes from anywhere.
+  // Where no light has power any direction will do.
   if (!chosen) return {lights_.front()->directions(1, 0).front().direction, glm::dvec3(0)};
   const LightDirection sample = chosen->sample(u, v);
   return {sample.direction, lights_.size() == 1 ? sample.radiance : sample.radiance * (power_ / chosen->power())};

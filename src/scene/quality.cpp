@@ -12,13 +12,13 @@ struct QualityRow {
   double spacing;  // voxels
   int segments, directions;
 };
-// `draft` has segments of twice the usual length.
+// The segments of `draft` have twice the usual length.
 constexpr QualityRow kRows[]{{Quality::draft, 5, 4, 6}, {Quality::normal, 2.5, 4, 16}, {Quality::high, 1.25, 2, 32}};
 
 }  // namespace
 
 int segmentsOf(double slabVoxels) {
-  // A slab of exactly one segment's length, but for rounding, is one segment.
+  // A slab of exactly one segment's length is one segment, even where rounding makes it a little longer.
   return std::clamp(static_cast<int>(std::ceil(slabVoxels / kSegmentVoxels - 1e-9)), 1, kMostSegments);
 }
 

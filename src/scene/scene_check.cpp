@@ -22,7 +22,7 @@ void checkFields(Checker& check, std::string_view section, Scene& scene) {
     }
 }
 
-// Eye, view direction and up make a frame, once each of them is in its range.
+// Checks that eye, view direction and up make a frame, once each of them is in its range.
 void checkFrame(Checker& check, const Scene& scene) {
   if (scene.orbit || check.complaint()) return;
   try {
@@ -51,7 +51,8 @@ void checkClip(Checker& check, const Scene& scene) {
       "clip.box", print(box.min) + " to " + print(box.max), "two corners, each number of the first smaller");
 }
 
-// What a light of the world has in front of it is known where the camera stands: see lightDirections.
+// Checks lights of the view's frame. For a light of the world, what is in front of it is known where the camera is
+// placed: see lightDirections.
 void checkLights(Checker& check, const Scene& scene) {
   check.require(!traitsOf(scene.model).sources || !scene.lights.empty(), "light.sources", "empty",
                 "one source or more for the model lights");
@@ -64,7 +65,7 @@ void checkLights(Checker& check, const Scene& scene) {
 }  // namespace
 
 std::optional<Complaint> findComplaint(const Scene& given) {
-  Scene scene = given;  // a field's place is that of a scene that may be changed
+  Scene scene = given;  // a copy, since a field's place is that of a scene that may be changed
   Checker check;
   checkFields(check, "camera", scene);
   checkFrame(check, scene);

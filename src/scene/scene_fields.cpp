@@ -10,7 +10,7 @@
 namespace umbrick {
 namespace {
 
-// The table. Help tells what a field is; range and default are added by helpText().
+// Returns the table. Its help texts say what a field is; helpText() adds range and default.
 const std::vector<SceneField>& table() {
   static const std::vector<SceneField> fields{
       {"camera.projection", "", "Camera", "perspective or orthographic",

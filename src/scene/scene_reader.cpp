@@ -22,7 +22,7 @@ glm::dvec3 vectorOf(const JsonValue& value) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-// Sets a field to a value of its kind; ranges are checked when the scene is whole.
+// Sets a field to a value of its kind. Ranges are checked once the scene is complete.
 void readField(const JsonValue& value, const FieldPlace& place) {
   std::visit(Overload{[](std::monostate) {}, [&](double* target) { *target = value.number(); },
                       [&](const Angle& angle) { *angle.radians = value.degrees(); },
@@ -59,7 +59,7 @@ void readVolume(const JsonValue& value, const std::filesystem::path& folder, Vol
   if (const auto grid = value.find("grid")) volume.grid = grid->string();
 }
 
-// A camera is placed by its eye or by angles around the volume.
+// Reads the camera, which is placed by its eye or by angles around the volume.
 void readCamera(const JsonValue& value, Scene& scene) {
   if (value.isObject() && value.find("eye")) {
     for (const char* key : {"azimuth", "elevation"})
@@ -129,12 +129,12 @@ Scene parseScene(std::string_view text, const std::string& source, const std::fi
   if (const auto window = root.find("window")) scene.transfer = windowedBy(*scene.transfer, *window);
   if (const auto factor = root.find("sigmaScale")) scene.transfer = scaledBy(*scene.transfer, *factor);
   if (const auto light = root.find("light")) readLight(*light, folder, scene);
-  // Scenes of earlier versions have the size of a table that there is no more.
+  // Scenes of earlier versions have the size of a table that no longer exists.
   if (const auto sampling = root.find("sampling")) readSection(*sampling, "sampling", scene, {"tableSize"});
   if (const auto occlusion = root.find("occlusion")) readSection(*occlusion, "occlusion", scene);
   if (const auto clip = root.find("clip")) readClip(*clip, scene);
   if (const auto bricks = root.find("bricks")) readSection(*bricks, "bricks", scene);
-  // Ranges are those of any scene; here they are reported where the text breaks them.
+  // The ranges are those of any scene; here they are reported at the place in the text that breaks them.
   if (const auto complaint = findComplaint(scene)) document.closest(complaint->field).fail(complaint->message);
   return scene;
 }

@@ -7,7 +7,7 @@ namespace umbrick {
 namespace {
 
 std::string printed(const glm::dvec3& v) { return jsonNumbers({v.x, v.y, v.z}); }
-// The fields of a section that the scene has.
+// Returns those fields of a section that the scene has.
 JsonFields printedFields(std::string_view section, Scene& scene) {
   JsonFields fields;
   for (const SceneField& field : sceneFields()) {
@@ -44,7 +44,7 @@ std::string printedClip(const Scene& scene) {
 }  // namespace
 
 std::string printScene(const Scene& given) {
-  Scene scene = given;  // a field's place is that of a scene that may be changed
+  Scene scene = given;  // a copy, since a field's place is that of a scene that may be changed
   JsonFields fields;
   if (scene.volume != VolumeReference{}) fields.emplace_back("volume", printedVolume(scene.volume));
   fields.emplace_back("camera", jsonObject(printedFields("camera", scene)));

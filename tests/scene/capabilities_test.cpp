@@ -16,11 +16,11 @@ TEST_CASE("Every model and every method has the traits that it is asked for", "[
     CHECK(traits.model == model);
     CHECK_FALSE(traits.meaning.empty());
     CHECK(meanings.insert(traits.meaning).second);
-    // What is said of light that is occluded needs occlusion, and of a cone's axis a cone.
+    // Traits of occluded light need occlusion, and a cone's axis needs a cone.
     if (traits.cone || traits.sphere || traits.directions || traits.sources || traits.behindEye)
       CHECK(traits.occlusion);
     if (traits.aroundRay) CHECK(traits.cone);
-    // Light of a set of directions in front of the viewer meets nothing behind the eye.
+    // Light from a set of directions in front of the viewer meets nothing behind the eye.
     CHECK_FALSE((traits.directions && traits.behindEye));
   }
   CHECK(modelTraits().size() == std::size(kModels));

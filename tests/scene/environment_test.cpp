@@ -1,4 +1,4 @@
-// Environment maps as lists and samples of directions.
+// Tests environment maps as lists and samples of directions.
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -21,7 +21,7 @@ using Catch::Contains;
 
 namespace {
 
-using Sky = std::function<glm::dvec3(double u, double v)>;  // from the left and from the bottom, in [0, 1]
+using Sky = std::function<glm::dvec3(double u, double v)>;  // u from the left and v from the bottom, in [0, 1]
 
 LightSource environment(int width, int height, const Sky& sky, LightFrame frame = LightFrame::view) {
   Image image(width, height, 3);
@@ -34,7 +34,7 @@ LightSource environment(int width, int height, const Sky& sky, LightFrame frame 
   return {frame, light};
 }
 
-// One pixel of a map that is black elsewhere, counted from the left and from the bottom.
+// Returns a map with one bright pixel, counted from the left and from the bottom; the rest is black.
 LightSource onePixel(int width, int height, int atX, int atY, const glm::dvec3& radiance) {
   return environment(width, height, [=](double u, double v) {
     return static_cast<int>(u * width) == atX && static_cast<int>(v * height) == atY ? radiance : glm::dvec3(0);
@@ -43,14 +43,14 @@ LightSource onePixel(int width, int height, int atX, int atY, const glm::dvec3& 
 
 EnvironmentLight& mapOf(LightSource& source) { return std::get<EnvironmentLight>(source.light); }
 
-// Smooth, with a bright spot, coloured.
+// Returns a smooth and coloured map with a bright spot.
 glm::dvec3 varied(double u, double v) {
   const double spot = 40 * std::exp(-300 * ((u - 0.6) * (u - 0.6) + (v - 0.7) * (v - 0.7)));
   return {1 + 0.8 * std::sin(6 * u) + spot, 0.5 + 0.4 * std::cos(9 * v) + 0.8 * spot, v + 0.3 * spot};
 }
 
-// The sum over a map of pixels, each cut into parts, of what is in front: no part of the code under test. Each pixel's
-// edge towards the plane is off by a part of it at most.
+// Returns the sum of f over the part of a map that is in front. Each pixel is cut into parts, and the code under test
+// is not used. A pixel's edge towards the plane is off by a part of it at most.
 glm::dvec3 bruteForce(const ResolvedScene& scene, const std::function<double(const glm::dvec3&)>& f, int parts) {
   const auto& light = std::get<EnvironmentLight>(scene.lights[0].light);
   const CameraFrame frame = cameraFrame(scene.camera);
@@ -81,7 +81,7 @@ double relative(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a
 }  // namespace
 
 TEST_CASE("A map is seen from its centre: up, front and to the right of it", "[scene]") {
-  // Small pixels of a map of 64 x 32 around places that are known; in the view the middle is towards the viewer.
+  // Small pixels of a map of 64 x 32 lie around places that are known; in the view the middle is towards the viewer.
   const auto towards = [](const LightSource& source) {
     const ResolvedScene scene = sceneWith({source});
     const auto list = lightDirections(scene, 1);
@@ -94,22 +94,22 @@ TEST_CASE("A map is seen from its centre: up, front and to the right of it", "[s
     return glm::dvec3(-std::sin(longitude) * std::cos(latitude), std::sin(latitude),
                       std::cos(longitude) * std::cos(latitude));
   };
-  // Centres of pixels of 0.1 rad; the centre of power of one is off towards the equator by about a twelfth of the
-  // square of that times the tangent of the latitude, which is up to 3.
+  // Pixels are 0.1 rad wide. The centre of power of a pixel is nearer to the equator than its centre, by about a
+  // twelfth of the squared width times the tangent of the latitude, which is up to 3.
   const double step = std::numbers::pi / 32;
   CHECK(glm::length(towards(onePixel(64, 32, 32, 16, glm::dvec3(1))) - at(0.5 * step, 0.5 * step)) < 3e-3);
   CHECK(glm::length(towards(onePixel(64, 32, 40, 16, glm::dvec3(1))) - at(8.5 * step, 0.5 * step)) < 3e-3);
   CHECK(glm::length(towards(onePixel(64, 32, 30, 28, glm::dvec3(1))) - at(-1.5 * step, 12.5 * step)) < 3e-3);
-  // With the front to the viewer's right the column a quarter right of the middle is before the viewer.
+  // With the front to the viewer's right the column a quarter right of the middle is in front of the viewer.
   LightSource turned = onePixel(64, 32, 48, 16, glm::dvec3(1));
-  mapOf(turned).front = {5, 3, 0};  // only its part across up counts
+  mapOf(turned).front = {5, 3, 0};  // only the part perpendicular to up counts
   CHECK(glm::length(towards(turned) - at(0.5 * step, 0.5 * step)) < 3e-3);
   LightSource upsideDown = onePixel(64, 32, 32, 28, glm::dvec3(1));
   mapOf(upsideDown).up = {0, -2, 0};
   CHECK(towards(upsideDown).y < -0.9);
 }
 
-TEST_CASE("Without a frame's angles said, view and world agree at azimuth 0 and elevation 0", "[scene]") {
+TEST_CASE("By default the frames view and world agree at azimuth 0 and elevation 0", "[scene]") {
   const TemporaryFolder folder;
   Image image(16, 8, 3);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(i % 7);
@@ -130,7 +130,7 @@ TEST_CASE("Without a frame's angles said, view and world agree at azimuth 0 and 
   }
 }
 
-TEST_CASE("Of a constant map the front half is the hemisphere, however it is turned", "[scene]") {
+TEST_CASE("The front half of a constant map is the hemisphere, however it is turned", "[scene]") {
   for (const glm::dvec3& up :
        {glm::dvec3(0, 1, 0), glm::dvec3(1, 2, 3), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, -1e-9)}) {
     LightSource source = environment(5, 3, [](double, double) { return glm::dvec3(2, 1, 0.5); });
@@ -139,12 +139,13 @@ TEST_CASE("Of a constant map the front half is the hemisphere, however it is tur
     mapOf(source).scale = 3;
     const ResolvedScene scene = sceneWith({source});
     const glm::dvec3 n = towardsViewer(scene);
-    // Half of the sphere, by the midpoints of strips that the viewer's plane cuts.
+    // The sum is half of the sphere, by the midpoints of strips that the viewer's plane cuts.
     CHECK(relative(total(lightDirections(scene, 2000)), 1.5 * glm::dvec3(2, 1, 0.5)) < 2e-4);
     for (const auto& list : {lightDirections(scene, 2000), lightSamples(scene, 0, 2000, 1)}) {
-      // Samples of a strip that the plane touches weigh more or less: some of 2000.
+      // Of 2000 samples those in a strip that the plane touches weigh more or less.
       CHECK(relative(total(list), 1.5 * glm::dvec3(2, 1, 0.5)) < 2e-3);
-      // The mean cosine over it is 1/2, what passes a slab of unit depth E2(1); 2000 parts are a 45th of it across.
+      // The mean cosine over the hemisphere is 1/2, and E2(1) of it passes a slab of unit depth; each of 2000 parts is
+      // a 45th of the hemisphere across.
       CHECK(relative(applied(list, [&](const glm::dvec3& w) { return glm::dot(w, n); }), 0.75 * glm::dvec3(2, 1, 0.5)) <
             2e-3);
       const double exact = integral(0, 1, [](double c) { return c > 0 ? std::exp(-1 / c) : 0; });
@@ -158,7 +159,7 @@ TEST_CASE("Of a constant map the front half is the hemisphere, however it is tur
   }
 }
 
-// The sum over parts is the same for any number of them, and that of the map.
+// The sum over parts is the same for any number of them, and it is that of the map.
 TEST_CASE("The median cut keeps all of the light", "[scene]") {
   LightSource source = environment(96, 48, varied, LightFrame::world);
   mapOf(source).up = {0.2, 0.9, -0.4};
@@ -166,7 +167,7 @@ TEST_CASE("The median cut keeps all of the light", "[scene]") {
   const glm::dvec3 exact = bruteForce(
       scene, [](const glm::dvec3&) { return 1.0; }, 16);
   const glm::dvec3 one = total(lightDirections(scene, 1));
-  CHECK(relative(one, exact) < 5e-4);  // of 768 rows, as above
+  CHECK(relative(one, exact) < 5e-4);  // the map has 768 rows, as above
   for (const int count : {2, 3, 16, 17, 100, 1000})
     for (const double rotation : {0.0, 0.7, 4.0}) {
       const auto list = lightDirections(scene, count, rotation);
@@ -174,7 +175,8 @@ TEST_CASE("The median cut keeps all of the light", "[scene]") {
       // A cell of the spot may hold several of a thousand shares.
       CHECK(static_cast<int>(list.size()) <= count);
       CHECK(static_cast<int>(list.size()) >= (count > 100 ? count * 99 / 100 : count));
-      // Parts are of equal power, up to the cells that they consist of; the spot's are a few thousandths of all.
+      // Parts have equal power, up to the cells that they consist of; the spot's cells have a few thousandths
+      // of all power.
       if (count > 100) continue;
       const double share = (one.r + one.g + one.b) / count;
       for (const LightDirection& light : list)
@@ -188,9 +190,9 @@ TEST_CASE("The median cut converges, and its rotations average to a better one",
   const glm::dvec3 axis = towardsViewer(scene);
   const auto f = [&](const glm::dvec3& w) { return std::exp(-1 / std::max(1e-9, glm::dot(w, axis))); };
   const glm::dvec3 exact = bruteForce(scene, f, 8);
-  // Parts are of second order in their width, where they are as long as they are wide; those at the edge of the bright
-  // spot are not. By the mean over rotations, as single sets are off by more and by less: four times as many directions
-  // never have a larger error, and 256 times as many less than a hundredth of it.
+  // The error is of second order in the width of parts where they are as long as they are wide, which parts at the edge
+  // of the bright spot are not. The mean over rotations is compared, since single sets are off by more or by less: four
+  // times as many directions never have a larger error, and 256 times as many less than a hundredth of it.
   std::vector<double> errors;
   for (const int count : {4, 16, 64, 256, 1024}) {
     double error = 0;
@@ -215,7 +217,7 @@ TEST_CASE("Samples of a map have its mean over seeds, and converge faster than r
   LightSource source = environment(32, 16, varied, LightFrame::world);
   mapOf(source).up = {0.2, 0.9, -0.4};
   const ResolvedScene scene = sceneWith({source});
-  // Not symmetric around the view, and large at its edge, where pixels are cut.
+  // The function is not symmetric around the view, and large at its edge, where pixels are cut.
   const glm::dvec3 axis = glm::normalize(towardsViewer(scene) + glm::dvec3(0.5, -0.3, 0.4));
   const auto f = [&](const glm::dvec3& w) { return 1 + glm::dot(w, axis) * glm::dot(w, axis); };
   const glm::dvec3 exact = bruteForce(scene, f, 32);
@@ -232,11 +234,11 @@ TEST_CASE("Samples of a map have its mean over seeds, and converge faster than r
     const double n = seeds / count;
     for (int c = 0; c < 3; ++c) {
       const double mean = sum[c] / n, error = std::sqrt((squares[c] / n - mean * mean) / n);
-      // Four standard errors, and what the sum over 512 x 512 parts of the map is off by along the plane.
+      // Allowed are four standard errors, and the error of the sum over 512 x 512 parts of the map along the plane.
       CHECK(std::abs(mean - exact[c]) < 4 * error + 1e-3 * exact[c]);
     }
   }
-  // Against the samples' own limit, which needs no other's: 2^15 of them.
+  // The samples are compared with their own limit, 2^15 of them, so that no other error matters.
   const glm::dvec3 limit = applied(lightSamples(scene, 0, 1 << 15, 99), f);
   CHECK(relative(limit, exact) < 2e-3);
   const auto error = [&](int count) {
@@ -249,7 +251,7 @@ TEST_CASE("Samples of a map have its mean over seeds, and converge faster than r
   };
   const double order = std::log2(error(16) / error(1024)) / 6;
   INFO("order " << order);
-  CHECK(order > 0.65);  // 0.5 for random ones
+  CHECK(order > 0.65);  // the order of random samples is 0.5
 }
 
 // A sun of one pixel is a sharp light of its radiance times its solid angle / (4 pi), in lists and in samples.
@@ -300,7 +302,7 @@ TEST_CASE("An environment comes back from its JSON with its file's name and pixe
   CHECK_THAT(complaint<InvalidArgument>([&] { printScene(other); }), Contains("no file"));
 }
 
-TEST_CASE("Maps that cannot be used are named with what is wrong", "[scene]") {
+TEST_CASE("Maps that cannot be used are refused with what is wrong", "[scene]") {
   const TemporaryFolder folder;
   const auto write = [&](const std::string& name, const std::vector<ImageLayer>& layers) {
     writeExr(folder.path() / name, layers);
@@ -332,7 +334,7 @@ TEST_CASE("Maps that cannot be used are named with what is wrong", "[scene]") {
   CHECK_THAT(refused(R"("file": "good.exr", "scale": -1)"),
              Contains("light.sources[0].scale: is -1, must be 0 or more"));
   CHECK_THAT(refused(R"("file": "good.exr", "theta": 1)"), Contains("light.sources[0].theta: unknown field"));
-  // From code.
+  // The same light is refused when it is made in code.
   ResolvedScene scene = sceneWith({LightSource{LightFrame::view, EnvironmentLight{}}});
   CHECK_THAT(complaint<InvalidArgument>([&] { validateScene(scene); }),
              Contains("light.sources[0].file: is not loaded"));

@@ -1,4 +1,4 @@
-// A resolved scene for its lights' sake.
+// A resolved scene that is made for its lights.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
@@ -8,7 +8,7 @@
 
 namespace umbrick {
 
-/// Its camera looks along no axis. The lights may be ones that no scene would be resolved with.
+/// Returns a scene whose camera looks along no axis. The lights may be ones that no scene could be resolved with.
 inline ResolvedScene sceneWith(const std::vector<LightSource>& lights) {
   Scene scene;
   scene.transfer = TransferFunction({{0, {glm::dvec3(1), 1}}});  // no light depends on it
@@ -22,7 +22,7 @@ inline ResolvedScene sceneWith(const std::vector<LightSource>& lights) {
   return resolved;
 }
 
-/// What the light makes of a function of the direction.
+/// Returns the integral of the light times a function of the direction.
 inline glm::dvec3 applied(const std::vector<LightDirection>& directions,
                           const std::function<double(const glm::dvec3&)>& f) {
   glm::dvec3 sum(0);

@@ -24,7 +24,7 @@ LightSource cone(const glm::dvec3& axis, double degrees, const glm::dvec3& radia
   return {LightFrame::view, ConeLight{axis, degrees * std::numbers::pi / 180, radiance}};
 }
 
-// What the light makes of a function of the direction.
+// Returns one channel of the integral of the light times a function of the direction.
 double appliedChannel(const std::vector<LightDirection>& directions, const std::function<double(const glm::dvec3&)>& f,
                       int channel = 0) {
   double sum = 0;
@@ -32,7 +32,8 @@ double appliedChannel(const std::vector<LightDirection>& directions, const std::
   return sum;
 }
 
-// Light that has passed a slab of unit depth which faces `axis`: smooth, and of no symmetry around other axes.
+// Returns the light that has passed a slab of unit depth which faces `axis`: smooth, and not symmetric
+// around other axes.
 std::function<double(const glm::dvec3&)> throughSlab(const glm::dvec3& axis) {
   return [axis](const glm::dvec3& w) { return std::exp(-1 / std::max(1e-9, glm::dot(w, axis))); };
 }
@@ -56,7 +57,7 @@ TEST_CASE("A cone around the view axis is the model cone, in lists and in sample
     same.occlusion.aperture = degrees * std::numbers::pi / 180;
     CHECK(largestDifference(lightDirections(lights, 37, 0.3), lightDirections(same, 37, 0.3)) == 0);
     CHECK(largestDifference(lightSamples(lights, 50, 25, 7), lightSamples(same, 50, 25, 7)) == 0);
-    // The quadrature of optics as it is, in the coordinates of the view.
+    // This is the quadrature of optics as it is, in the coordinates of the view.
     const CameraFrame frame = cameraFrame(same.camera);
     const glm::dmat3 viewToWorld(frame.right, frame.up, -frame.forward);
     for (const int count : {37, 137}) {
@@ -72,7 +73,7 @@ TEST_CASE("A cone around the view axis is the model cone, in lists and in sample
   }
 }
 
-// Else its shadows would turn around the view axis as the camera does, and jump where tangents change.
+// Otherwise its shadows would turn around the view axis as the camera does, and jump where tangents change.
 TEST_CASE("A cone that moves with the camera keeps its directions, seen from there", "[scene]") {
   ResolvedScene scene = sceneWith({cone({0.3, -0.1, 1}, 40, glm::dvec3(1)), cone({0, 0, 1}, 20, glm::dvec3(2))});
   const auto seen = [&] {
@@ -86,11 +87,11 @@ TEST_CASE("A cone that moves with the camera keeps its directions, seen from the
   const std::vector<LightDirection> first = seen();
   for (const glm::dvec3& eye : {glm::dvec3(-5, 2, 1), glm::dvec3(0.5, 1.1, -9), glm::dvec3(4, -7, -1.0001)}) {
     scene.camera.eye = eye;
-    CHECK(largestDifference(seen(), first) < 2e-15);  // of matrices and their products
+    CHECK(largestDifference(seen(), first) < 2e-15);  // matrices and their products are rounded
   }
 }
 
-TEST_CASE("Radiances add up to the light, each source has directions in its cone", "[scene]") {
+TEST_CASE("Radiances add up to the light, and each source has directions in its cone", "[scene]") {
   const glm::dvec3 red(3, 0.2, 0.1), blue(0.1, 0.2, 0.5);
   const std::vector<LightSource> sources{
       cone({1, 0, 1}, 30, red),
@@ -101,7 +102,7 @@ TEST_CASE("Radiances add up to the light, each source has directions in its cone
   const glm::dvec3 expected = red + blue + glm::dvec3(0.25) + 0.5 * red + 2.0 * blue;
   for (const int count : {1, 4, 30, 500}) {
     const auto list = lightDirections(scene, count, 1.1), samples = lightSamples(scene, 3, count, 4);
-    // Each source has one at least, the list its two; rings round their share.
+    // Each source has at least one direction, the list has its two; rings round their share.
     CHECK(static_cast<int>(list.size()) >= std::max(5, count * 9 / 10));
     CHECK(static_cast<int>(list.size()) <= std::max(5, count * 11 / 10 + 2));
     CHECK(glm::length(total(list) - expected) < 1e-13);
@@ -112,8 +113,8 @@ TEST_CASE("Radiances add up to the light, each source has directions in its cone
         CHECK(glm::dot(light.direction, towardsViewer(scene)) > 0);
       }
   }
-  // Of two cones of one size the one that is twice as bright has twice as many; of one brightness the one of four
-  // times the solid angle has.
+  // Of two cones of one size, the one that is twice as bright has twice as many directions. Of two cones of one
+  // brightness, the one with four times the solid angle has.
   const auto share = [](const LightSource& a, const LightSource& b) {
     const ResolvedScene two = sceneWith({a, b});
     const double sum = static_cast<double>(lightSamples(two, 0, 300, 1).size());
@@ -158,9 +159,10 @@ TEST_CASE("A light of the view moves with the camera, one of the world stays", "
   CHECK(glm::length(after[1].direction - glm::normalize(0.3 * frame.right - frame.forward)) < 1e-15);
 }
 
-// One set of n points is off by less than a random one, and sets that follow each other fill its gaps: a random union
-// of 2^j sets has an error of 2^(-j/2) of the first's. The points of R2 are of discrepancy log(n)^2 / n at best; over
-// seven doublings that asks for an order of 0.7 at least, with the mean of eight seeds to smooth what single ones do.
+// One set of n points has a smaller error than a random one, and sets that follow each other fill its gaps. A random
+// union of 2^j sets has an error of 2^(-j/2) of the first's. The points of R2 have a discrepancy of log(n)^2 / n at
+// best. Over seven doublings that asks for an order of 0.7 at least, where the mean of eight seeds smooths what
+// single seeds do.
 TEST_CASE("Samples that follow each other converge faster than random ones", "[scene][slow]") {
   const ResolvedScene scene =
       sceneWith({cone({0.5, 0.2, 1}, 50, {1, 0.5, 0.2}), cone({-1, 0, 1}, 10, {0.1, 0.2, 0.9})});
@@ -180,7 +182,7 @@ TEST_CASE("Samples that follow each other converge faster than random ones", "[s
   const double order = std::log2(first / last) / 7;
   INFO("errors " << first << " and " << last << ", order " << order);
   CHECK(order > 0.7);
-  // The union is that of one long set, whatever it was cut into.
+  // The union is that of one long set, however it was cut into sets.
   CHECK(error(16, 128) < 2 * last);
 }
 
@@ -190,7 +192,7 @@ TEST_CASE("Every set of samples has the light's mean over seeds", "[scene]") {
   const auto f = throughSlab(towardsViewer(scene));
   for (const std::uint64_t first : {std::uint64_t(0), std::uint64_t(5), std::uint64_t(1) << 60})
     for (const int count : {1, 8}) {
-      // Of 4000 seeds: one in 16 000 means is off by four standard errors.
+      // With 4000 seeds, one in 16 000 means is off by four standard errors.
       for (const int channel : {0, 2}) {
         const double exact = appliedChannel(lightDirections(scene, 20'000), f, channel);
         double sum = 0, squares = 0;
@@ -205,7 +207,7 @@ TEST_CASE("Every set of samples has the light's mean over seeds", "[scene]") {
     }
 }
 
-TEST_CASE("Lights behind the viewer's plane are named with their angles", "[scene]") {
+TEST_CASE("Lights behind the viewer's plane are refused with their angles", "[scene]") {
   const auto message = [](const ResolvedScene& scene) {
     const std::string sampled = complaint<InvalidArgument>([&] { lightSamples(scene, 0, 1, 0); });
     CHECK(sampled == complaint<InvalidArgument>([&] { lightDirections(scene, 4); }));
@@ -219,7 +221,7 @@ TEST_CASE("Lights behind the viewer's plane are named with their angles", "[scen
   CHECK_THAT(message(sceneWith({cone({1, 0, 0}, 0, glm::dvec3(1))})), Contains("together 90, must be below 90"));
   CHECK(message(sceneWith({good, {LightFrame::view, ListedLight{{{{0, 0, 1}}, {{1, 0, -0.5}}}}}})) ==
         "light.sources[1].list[1].direction: is [1, 0, -0.5], of which -0.5 is towards the viewer, must be above 0");
-  // The view's are refused with the scene, the world's once the camera has its place.
+  // Lights of the view are refused with the scene, lights of the world once the camera has its place.
   CHECK_THROWS_WITH(validateScene(sceneWith({cone({1, 0, 1}, 50, glm::dvec3(1))})), Contains("together 95"));
   ResolvedScene world = sceneWith({});
   world.lights = {{LightFrame::world, ConeLight{-towardsViewer(world), 0, glm::dvec3(1)}}};
@@ -244,7 +246,7 @@ TEST_CASE("What has no list of directions is refused", "[scene]") {
 }
 
 // Lights that are switched off are black, not NaN.
-TEST_CASE("A light of no power has directions of no radiance", "[scene]") {
+TEST_CASE("A light without power has directions without radiance", "[scene]") {
   const ResolvedScene scene =
       sceneWith({cone({0, 0, 1}, 30, glm::dvec3(0)), {LightFrame::view, ListedLight{{{{0, 0, 1}, 0}}}}});
   for (const auto& list : {lightDirections(scene, 16), lightSamples(scene, 0, 16, 1)}) {

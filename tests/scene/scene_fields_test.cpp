@@ -1,4 +1,4 @@
-// What must hold for every row of the table of a scene's fields, whatever rows there are.
+// Tests what must hold for every row of the table of a scene's fields, whatever rows there are.
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/scene/scene_fields.h"
 
@@ -34,7 +34,7 @@ struct Overload : Handlers... {
 
 Scene parse(const std::string& text) { return parseScene(text, "s.json"); }
 
-// The default scene, its camera placed by its eye where only that has the field.
+// Returns the default scene, with its camera placed by its eye where only such a scene has the field.
 Scene sceneOf(const SceneField& field) {
   Scene scene;
   if (std::holds_alternative<std::monostate>(field.place(scene))) scene.orbit.reset();
@@ -42,21 +42,21 @@ Scene sceneOf(const SceneField& field) {
   return scene;
 }
 
-// A number in a range that has a lower end; another `share` of the way from 0 to 1 is another number.
+// Returns a number in a range that has a lower end; another `share` of the way from 0 to 1 is another number.
 double inside(const FieldRange& range, double share) {
   const double low = range.low;
   const double high = std::isfinite(range.high) ? range.high : low + 20;
   return low + (high - low) * share;
 }
 
-// Likewise for what may be no other number than those.
+// Returns a whole number in the range that is not the present one.
 double wholeInside(const FieldRange& range, double present) {
   if (range.endsOnly) return present == range.low ? range.high : range.low;
   const double next = range.low + range.multipleOf;
   return next == present ? next + range.multipleOf : next;
 }
 
-// Gives a field a valid value that it has not now.
+// Gives a field a valid value that it does not have now.
 void change(const SceneField& field, Scene& scene) {
   const FieldRange& range = field.range;
   const auto number = [&](double present, double share) {
@@ -100,14 +100,14 @@ bool isWhole(const FieldPlace& place) {
          std::holds_alternative<PixelSize>(place);
 }
 
-// Of one number, or of each component.
+// Returns how many numbers a field has: one, or one for each component.
 int numbersOf(const FieldPlace& place) {
   if (std::holds_alternative<PixelSize>(place)) return 2;
   return std::holds_alternative<glm::dvec3*>(place) || std::holds_alternative<std::optional<glm::dvec3>*>(place) ? 3
                                                                                                                  : 1;
 }
 
-// Sets one of a field's numbers, in its unit in memory, to what may be no valid one.
+// Sets one of a field's numbers, in its unit in memory, to a value that may be invalid.
 void setNumber(const FieldPlace& place, int component, double number) {
   std::visit(
       Overload{[&](double* value) { *value = number; }, [&](const Angle& angle) { *angle.radians = number; },
@@ -123,7 +123,7 @@ void setNumber(const FieldPlace& place, int component, double number) {
       place);
 }
 
-// Numbers at and about the ends of a range, in the unit in memory.
+// Numbers at and near the ends of a range, in the unit in memory.
 struct Ends {
   std::vector<double> refused, accepted;
 };
@@ -196,7 +196,7 @@ TEST_CASE("A scene with every field changed parses back to an equal one", "[scen
   }
 }
 
-// Two rows with the place of one member would show here, and a row that the reader or the writer leaves out.
+// This test would show two rows with the place of one member, and a row that the reader or the writer leaves out.
 TEST_CASE("A field that is changed alone changes no other, and is read from a text with nothing else", "[scene]") {
   for (const SceneField& field : sceneFields()) {
     CAPTURE(field.path);
@@ -221,7 +221,7 @@ TEST_CASE("Every name of a choice is read, printed and kept apart from the other
   for (const SceneField& field : sceneFields()) {
     CAPTURE(field.path);
     Scene scene = sceneOf(field);
-    scene.lights = {{LightFrame::view, ConeLight{{0, 0, 1}, 0.1, glm::dvec3(1)}}};  // which a model needs
+    scene.lights = {{LightFrame::view, ConeLight{{0, 0, 1}, 0.1, glm::dvec3(1)}}};  // a model needs a light
     const FieldPlace place = field.place(scene);
     const Choice* choice = std::get_if<Choice>(&place);
     if (choice == nullptr) continue;
@@ -249,7 +249,7 @@ TEST_CASE("Numbers just outside their range are refused by the name of their fie
       setNumber(field.place(scene), component, number);
       const std::string complaint = std::string(field.path) + ": is ", range = "must be " + rangeText(field);
       CHECK_THROWS_WITH(validateScene(scene), StartsWith(complaint) && EndsWith(range));
-      // In a text that has such a number, likewise, behind the place.
+      // A text with such a number is refused in the same words, after the place in the text.
       if (!std::isfinite(number)) continue;
       CHECK_THROWS_WITH(parse(printScene(scene)),
                         StartsWith("s.json:") && Contains(": " + complaint) && EndsWith(range));
@@ -257,7 +257,7 @@ TEST_CASE("Numbers just outside their range are refused by the name of their fie
   });
 }
 
-TEST_CASE("Numbers at the ends of their range are accepted, next to them where the ends are excluded", "[scene]") {
+TEST_CASE("Numbers at the ends of their range are accepted, or next to ends that are excluded", "[scene]") {
   forEachNumber([](const SceneField& field, int component) {
     Scene scene = sceneOf(field);
     for (const double number : endsOf(field.place(scene), field.range).accepted) {
@@ -275,7 +275,7 @@ TEST_CASE("The help of a field tells its default", "[scene]") {
     Scene scene = sceneOf(field);
     const std::string text = defaultText(field);
     CHECK_THAT(helpText(field), StartsWith(std::string(field.help)));
-    // A field that a scene has only sometimes, as an eye, has no default but what its row says.
+    // A field that scenes have only sometimes, for example an eye, has no default except what its row says.
     Scene usual;
     const bool always = !std::holds_alternative<std::monostate>(field.place(usual));
     const std::string shown = (always ? text : std::string()) + std::string(field.otherwise);
@@ -295,7 +295,7 @@ TEST_CASE("The help of a field tells its default", "[scene]") {
                  [&](const Angle& angle) { CHECK(number() * kRadians == Approx(*angle.radians).epsilon(1e-15)); },
                  [&](int* value) { CHECK(number() == *value); },
                  [&](std::uint64_t* value) { CHECK(number() == static_cast<double>(*value)); },
-                 // Its option turns it, so that there is nothing to say.
+                 // The option of a boolean only turns it to the opposite, so that no default is told.
                  [&](bool*) { CHECK(helpText(field) == field.help); },
                  [&](const Choice& choice) { CHECK(text == choice.get()); },
                  [&](glm::dvec3* value) { CHECK(vector() == *value); },

@@ -21,7 +21,7 @@ namespace {
 
 Scene parse(const std::string& text) { return parseScene(text, "s.json"); }
 
-// A valid scene in which every field differs from its default.
+// Returns a valid scene in which every field differs from its default.
 Scene randomScene(std::mt19937& random) {
   std::mt19937_64 wide(random());
   const auto number = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(wide); };
@@ -276,7 +276,7 @@ TEST_CASE("Segments are the fewest that are short enough, as long as there are n
   for (const double slab : {0.01, 0.625, 0.7, 1.25, 1.3, 4.9, 5.0})
     for (const double voxel : {0.3, 1.0, 2.5}) {
       CAPTURE(slab, voxel);
-      const int segments = segmentsOf(slab * voxel / voxel);  // off by a rounding
+      const int segments = segmentsOf(slab * voxel / voxel);  // differs from slab by a rounding
       CHECK(slab / segments <= kSegmentVoxels * (1 + 1e-9));
       if (segments > 1) CHECK(slab / (segments - 1) > kSegmentVoxels);
     }
@@ -292,8 +292,8 @@ TEST_CASE("The bundled scenes are valid", "[scene]") {
   CHECK(head.transfer == loadTransferFunction("ct-head"));
 }
 
-// Pictures of earlier versions have it in their headers.
-TEST_CASE("The size of a table that there is no more is read and means nothing", "[scene]") {
+// Pictures of earlier versions have this size in their headers.
+TEST_CASE("The size of a table that no longer exists is read and has no effect", "[scene]") {
   const Scene scene = parseScene(R"({"sampling": {"spacing": 0.25, "tableSize": 512}})", "old.json");
   CHECK(scene.sampling.spacing == 0.25);
   CHECK(printScene(scene).find("tableSize") == std::string::npos);

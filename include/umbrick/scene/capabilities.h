@@ -1,4 +1,4 @@
-// What follows from a model and a method, as tables: code asks these and compares no names.
+// Tables of what follows from a model and a method, so that code asks these and compares no names.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace umbrick {
 
-/// What a model is.
+/// What is true of the light of a model.
 struct ModelTraits {
   Model model;
   std::string_view meaning;  // for help: "whole sphere"
@@ -33,10 +33,10 @@ struct MethodTraits {
 };
 const MethodTraits& traitsOf(Method method);
 
-/// Returns the method that computes a scene's occlusion; none where its model has no occlusion.
+/// Returns the method that computes a scene's occlusion; none where the scene's model has no occlusion.
 std::optional<Method> occlusionMethod(const SceneSettings& scene);
 
-/// Can the method compute the light of the model?
+/// Tells whether the method can compute the light of the model.
 bool supports(Method method, Model model);
 
 }  // namespace umbrick

@@ -9,20 +9,21 @@
 
 namespace umbrick {
 
-/// How much a radiance counts when lights share directions, and in V: the mean of R, G and B.
+/// Returns how much a radiance counts when lights share directions, and in V: the mean of R, G and B.
 inline double powerOf(const glm::dvec3& radiance) { return (radiance.r + radiance.g + radiance.b) / 3; }
 
-/// One source, in the world.
+/// One source of light, with its directions in the world.
 class Light {
  public:
   virtual ~Light() = default;
-  /// Of what a point of albedo 1 scatters when nothing is in the way.
+  /// Returns the mean of R, G and B that a point of albedo 1 scatters when nothing is in the way.
   double power() const { return power_; }
-  /// sr that the light comes from; 0 where directions() is the same for any count.
+  /// Returns the solid angle that the light comes from, sr; 0 where directions() is the same for any count.
   double solidAngle() const { return solidAngle_; }
-  /// About `count` directions whose radiances sum to the light.
+  /// Returns about `count` directions whose radiances sum to the light.
   virtual std::vector<LightDirection> directions(int count, double rotation) const = 0;
-  /// A direction by power, with radiances whose mean over (u, v) in [0, 1)^2 is the light. Not for one of no power.
+  /// Returns a direction that is chosen by power; the mean of its radiance over (u, v) in [0, 1)^2 is the light.
+  /// @pre the light has power
   virtual LightDirection sample(double u, double v) const = 0;
 
  protected:
@@ -42,12 +43,12 @@ class LightSet {
  public:
   /// @throw InvalidArgument  as lightDirections
   explicit LightSet(const ResolvedScene& scene);
-  /// Of these directions and no others.
+  /// Takes these directions and no others.
   explicit LightSet(std::vector<LightDirection> directions);
 
   std::vector<LightDirection> directions(int count, double rotation) const;
   std::vector<LightDirection> samples(std::uint64_t first, int count, std::uint64_t seed) const;
-  /// One direction of one source, chosen by power: radiances whose mean over [0, 1)^3 is the light.
+  /// Returns one direction of one source, chosen by power; the mean of its radiance over [0, 1)^3 is the light.
   LightDirection sample(double source, double u, double v) const;
 
   std::size_t size() const { return lights_.size(); }

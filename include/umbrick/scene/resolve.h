@@ -26,30 +26,30 @@ struct ResolvedScene : SceneSettings {
 /// Writes out everything that depends on the volume: an orbit becomes a camera, a spacing in voxels (shortest edge)
 /// becomes world units.
 /// @param worldBounds  of the volume, see orbitCamera
-/// @throw InvalidArgument  no transfer function, an empty volume that an orbit should look at, or as validateScene
+/// @throw InvalidArgument  there is no transfer function, an orbit should look at an empty volume, or as validateScene
 ResolvedScene resolveScene(const Scene& scene, const Box& worldBounds, const glm::dmat4& indexToWorld);
 
 /// Returns the scene that resolves to this one, whatever the volume.
 Scene unresolved(const ResolvedScene& scene);
 
-/// @throw InvalidArgument  as validateScene(unresolved(scene))
+/// Checks every field against its range. @throw InvalidArgument  as validateScene(unresolved(scene))
 void validateScene(const ResolvedScene& scene);
 
-/// As printScene(unresolved(scene)).
+/// Returns the same as printScene(unresolved(scene)).
 std::string printScene(const ResolvedScene& scene);
 
-/// Half-spaces that keep the inside of a box, world units.
-/// @param toWorld  of the box's coordinates; affine
+/// Returns half-spaces that keep the inside of a box, world units.
+/// @param toWorld  converts the box's coordinates to the world; affine
 std::vector<ClipPlane> boxPlanes(const Box& box, const glm::dmat4& toWorld = glm::dmat4(1));
 
-/// Length of a voxel's shortest edge, world units.
+/// Returns the length of a voxel's shortest edge, world units.
 double shortestVoxelEdge(const glm::dmat4& indexToWorld);
 
-/// The box, in index coordinates, that holds the medium: where the background is visible, the medium ends at its faces;
-/// where it is not, nothing lies beyond it anyway. Renderers and reference use the same one.
+/// Returns the box, in index coordinates, that holds the medium. Where the background is visible, the medium ends at
+/// the faces of the box; where it is not, nothing lies beyond them anyway. Renderers and reference use the same box.
 /// @param domain  active voxels, and others that differ from the background, grown by one voxel: where interpolated
-///                values may differ from the background. Gradient magnitudes may differ from 0 one voxel farther out,
-///                so the box of a 2D function is larger by that.
+///   values may differ from the background. Gradient magnitudes may differ from 0 one voxel farther out, so the box of
+///   a 2D function is larger by that.
 IndexBox mediumBox(const TransferFunction& transfer, const IndexBox& domain);
 
 }  // namespace umbrick

@@ -1,4 +1,4 @@
-// Everything that a picture depends on. The same scene drives every renderer.
+// A scene holds everything that a picture depends on. The same scene drives every renderer.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -17,10 +17,11 @@
 
 namespace umbrick {
 
-/// What light is scattered at a point: `emission` all of the ambient radiance; the others the share V of it that the
-/// medium lets in, as the mean over directions of a cone around the slice normal (`cone`) or around the ray to the eye
-/// (`coneRay`, Eq. 6 of Schott et al. to the letter), of the whole sphere (`ambient`, their Fig. 2a), or what the
-/// medium lets in of the scene's light sources (`lights`). What follows from a model is in capabilities.h.
+/// Which light is scattered at a point. `emission` scatters all of the ambient radiance. The others scatter the
+/// share V of it that the medium lets in, as the mean over directions: of a cone around the slice normal (`cone`) or
+/// around the ray to the eye (`coneRay`, Eq. 6 of Schott et al. to the letter), or of the whole sphere (`ambient`,
+/// their Fig. 2a). `lights` scatters what the medium lets in of the scene's light sources. What follows from a model
+/// is in capabilities.h.
 enum class Model { emission, cone, coneRay, ambient, lights };
 inline constexpr Name<Model> kModels[]{{"emission", Model::emission},
                                        {"cone", Model::cone},
@@ -29,9 +30,9 @@ inline constexpr Name<Model> kModels[]{{"emission", Model::emission},
                                        {"lights", Model::lights}};
 inline std::string modelName(Model model) { return std::string(nameOf(kModels, model)); }
 
-/// How the share V is computed. dos: directional occlusion shading, Schott et al. 2009,
-/// doi:10.1111/j.1467-8659.2009.01464.x. ordinates: a set of directions, each with a transmittance of its own that is
-/// carried along its paths.
+/// How the share V is computed. `dos` is directional occlusion shading, Schott et al. 2009,
+/// doi:10.1111/j.1467-8659.2009.01464.x. `ordinates` is a set of directions, each with a transmittance of its own that
+/// is carried along its paths.
 enum class Method { dos, ordinates };
 inline constexpr Name<Method> kMethods[]{{"dos", Method::dos}, {"ordinates", Method::ordinates}};
 inline std::string methodName(Method method) { return std::string(nameOf(kMethods, method)); }
@@ -44,51 +45,52 @@ enum class Quadrature {
 inline constexpr Name<Quadrature> kQuadratures[]{{"preintegrated", Quadrature::preintegrated},
                                                  {"midpoint", Quadrature::midpoint}};
 
-/// What `dos` needs.
+/// Options of the method `dos`.
 struct DosOptions {
-  int footprint = 3;                  // n: n x n samples over the cone's footprint on the previous slice
-  int passes = 1;                     // Algorithm 1 of the paper: 2, two passes a slice; 1, multiple render targets
-  int algorithm = 3;                  // 2: exact distance per sample; 3: slice distance for every sample
+  int footprint = 3;  // n: n x n samples over the cone's footprint on the previous slice
+  int passes = 1;     // 2: two passes a slice as in Algorithm 1 of the paper; 1: multiple render targets
+  int algorithm = 3;  // of the paper; 2: exact distance per sample; 3: slice distance for all
   bool perspectiveCorrection = true;  // Eqs. 12-15 of the paper
   bool operator==(const DosOptions&) const = default;
 };
 
-/// What `ordinates` needs.
+/// Options of the method `ordinates`.
 struct OrdinatesOptions {
-  int directions = 16;  // K: about so many over the cone or the lights
-  double scale = 0;  // window texels per voxel edge; 0: as large as the larger of slab and voxel, or as 1/2048 of the
-                     // volume's diagonal where that is larger
+  int directions = 16;  // K: about so many over the cone or over the lights
+  /// Window texels per voxel edge. 0 stands for texels as large as the larger of slab and voxel, or as 1/2048 of the
+  /// volume's diagonal where that is larger.
+  double scale = 0;
   bool operator==(const OrdinatesOptions&) const = default;
 };
 
 /// How light is occluded.
 struct OcclusionOptions {
   double aperture = 1.0471975511965976;  // theta: half-angle of the cone, rad, in [0, pi/2)
-  int bits = 32;                         // of dos's occlusion buffer or ordinates' windows, see SamplingOptions
+  int bits = 32;                         // of dos's occlusion buffer or ordinates' light windows, see SamplingOptions
   DosOptions dos;
   OrdinatesOptions ordinates;
   bool operator==(const OcclusionOptions&) const = default;
 };
 
-/// Where along a view ray the medium is looked at.
+/// Where along a view ray the medium is sampled.
 struct SamplingOptions {
-  double spacing = 0.5;  // d: distance of slices along the view direction, in the scene's spacingUnit; in a
-                         // ResolvedScene in world units
+  /// The distance d of slices along the view direction, in the scene's spacingUnit; in a ResolvedScene in world units.
+  double spacing = 0.5;
   Quadrature quadrature = Quadrature::preintegrated;
-  int segments = 1;  // of equal length, in which a slab is integrated along the ray
-  /// Of the eye buffer: 32 (float) or 16 (fixed point). A slice rounds 16 bits to steps of 2^-16 and is off by up to
-  /// one and a half of them: N slices by at most N 2.3e-5, mostly by much less (an occlusion buffer of 16 bits as much
-  /// again). But a pixel of opacity A gains nothing by slabs of opacity below 2^-17 / (1 - A), which is what thin fog
-  /// in many slices is made of: use 32 bits there.
+  int segments = 1;  // parts of equal length in which a slab is integrated along the ray
+  /// Bits of the eye buffer: 32 (float) or 16 (fixed point). A slice rounds 16 bits to steps of 2^-16 and is off by up
+  /// to one and a half of them: N slices by at most N 2.3e-5, mostly by much less (an occlusion buffer of 16 bits as
+  /// much again). But a pixel of opacity A gains nothing from slabs of opacity below 2^-17 / (1 - A), which is what
+  /// thin fog in many slices is made of: such scenes need 32 bits.
   int bits = 32;
-  double saturation = 1e-3;  // pixels with less transmittance than this are shaded no more; 0: never
+  double saturation = 1e-3;  // transmittance below which a pixel is shaded no more; 0: never
   bool operator==(const SamplingOptions&) const = default;
 };
 
-/// Segments of slabs are no longer than this where they are chosen, voxels (shortest edge).
+/// Where segments are chosen automatically, they are no longer than so many voxels (shortest edge).
 inline constexpr double kSegmentVoxels = 0.625;
 inline constexpr int kMostSegments = 8;
-/// Returns how many segments of that length a slab needs, at most kMostSegments.
+/// Returns how many segments of at most kSegmentVoxels a slab needs, at most kMostSegments.
 /// @param slabVoxels  the thickness of a slab
 int segmentsOf(double slabVoxels);
 
@@ -106,12 +108,12 @@ struct BrickSettings {
   bool bricked = true;             // false: the whole volume as one texture
   int interior = 0;                // owned voxels along a brick's edge: 8 to 256, a multiple of 8; 0: see brickInterior
   bool culling = true;             // skip bricks that the transfer function makes invisible
-  std::string format = "auto";     // texel: auto (smallest exact one), unorm8, unorm16, half, float32
+  std::string format = "auto";     // of texels: auto (smallest exact one), unorm8, unorm16, half, float32
   std::uint64_t budgetMiB = 2048;  // of textures that hold voxels; larger volumes stream through a pool of this size
   bool operator==(const BrickSettings&) const = default;
 };
 
-/// Keeps the half-space dot(xyz, point) + w >= 0, world units.
+/// A clip plane keeps the half-space dot(xyz, point) + w >= 0, world units.
 using ClipPlane = glm::dvec4;
 
 struct VolumeReference {
@@ -126,33 +128,33 @@ struct Orbit {
   bool operator==(const Orbit&) const = default;
 };
 
-/// What a scene has whether or not its volume is known. Units, ranges and help of each field: scene_fields.h.
+/// What a scene has whether or not its volume is known. scene_fields.h has the unit, range and help of each field.
 struct SceneSettings {
   VolumeReference volume;
   Camera camera;
   Model model = Model::emission;
   Method method = Method::ordinates;
   glm::dvec3 ambient{1};                 // L_a, radiance from every direction
-  std::optional<glm::dvec3> background;  // L_b; when set the picture is opaque (alpha 1)
-  std::vector<LightSource> lights;       // for the model `lights`, which needs one or more
+  std::optional<glm::dvec3> background;  // L_b; when it is set the picture is opaque (alpha 1)
+  std::vector<LightSource> lights;       // for the model `lights`, which needs at least one
   SamplingOptions sampling;
   OcclusionOptions occlusion;
   std::vector<ClipPlane> clipPlanes;
-  std::optional<Box> clipBox;  // world
+  std::optional<Box> clipBox;  // world units
   BrickSettings bricks;
   bool operator==(const SceneSettings&) const = default;
 };
 
 /// A scene as a user writes it. resolveScene() makes a ResolvedScene of it, which is what pictures are made from.
 struct Scene : SceneSettings {
-  std::optional<TransferFunction> transfer;      // windowed and scaled already
+  std::optional<TransferFunction> transfer;      // window and scale are applied already
   std::optional<Orbit> orbit = Orbit{};          // when set, eye, lookAt, up and viewHeight follow from the volume
   SpacingUnit spacingUnit = SpacingUnit::voxel;  // of sampling.spacing
   bool operator==(const Scene&) const = default;
 };
 
-/// Reads a scene; what it leaves out keeps its default, what it does not know is an error. File names are relative to
-/// the scene's folder. Fields, all optional, angles in degrees:
+/// Reads a scene. A field that the text leaves out keeps its default; an unknown field is an error. File names are
+/// relative to the scene's folder. All fields are optional, and angles are in degrees:
 ///   volume     file, grid
 ///   camera     projection ("perspective", "orthographic"), size [width, height], fov, near, and either azimuth and
 ///              elevation around the volume, or eye, lookAt, up and viewHeight
@@ -174,19 +176,19 @@ struct Scene : SceneSettings {
 /// @param source  what messages call the text, usually its file name
 /// @throw IoError  malformed JSON, or a field of the wrong kind or out of range: names source, line, column and field
 Scene parseScene(std::string_view text, const std::string& source, const std::filesystem::path& folder = {});
-/// @throw IoError
+/// Reads a scene from a file. @throw IoError  as parseScene; the file cannot be read
 Scene readScene(const std::filesystem::path& path);
-/// JSON that parses back to an equal scene, to the last bit, as long as the files that it names are there. With an
-/// orbit, what follows from the volume (eye, lookAt, up and viewHeight) is left out.
-/// @throw InvalidArgument  a number that is not finite, a name that is not UTF-8, an environment map of no file
+/// Returns JSON that parses back to an equal scene, to the last bit, as long as the files that it names are there. With
+/// an orbit, what follows from the volume (eye, lookAt, up and viewHeight) is left out.
+/// @throw InvalidArgument  a number is not finite, a name is not UTF-8, or an environment map comes from no file
 std::string printScene(const Scene& scene);
 
-/// What ordinates spend on a picture.
+/// How much work ordinates spend on a picture.
 enum class Quality { draft, normal, high };
 inline constexpr Name<Quality> kQualities[]{
     {"draft", Quality::draft}, {"normal", Quality::normal}, {"high", Quality::high}};
-/// Sets method, spacing, segments, directions and the scale of windows to what goes together. The error of each is in
-/// tools/benchmark/README.md.
+/// Sets method, spacing, segments, directions and the scale of light windows to values that go together. The error of
+/// each quality is in tools/benchmark/README.md.
 void applyQuality(Quality quality, Scene& scene);
 
 /// Checks every field against its range, however the scene was made.

@@ -1,7 +1,7 @@
 // The fields of a scene: one table that reader, writer, check, help texts and command line follow.
 //
-// A new field is two edits: a member in scene.h and a row in src/scene/scene_fields.cpp. What is no single value
-// (transfer function, light sources, clip planes) is read and written by functions of its own.
+// A new field is two edits: a member in scene.h and a row in src/scene/scene_fields.cpp. Fields that are more than one
+// value (transfer function, light sources, clip planes) are read and written by functions of their own.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -17,17 +17,17 @@
 
 namespace umbrick {
 
-/// An angle: radians in memory, degrees for users.
+/// An angle, which is in radians in memory and in degrees for users.
 struct Angle {
   double* radians;
 };
 
-/// Width and height of the picture.
+/// A picture's size, as two numbers in pixels.
 struct PixelSize {
   int *width, *height;
 };
 
-/// One of a few names.
+/// A value that is one of a few names.
 class Choice {
  public:
   template <class T, std::size_t N>
@@ -42,7 +42,7 @@ class Choice {
         assign_([](const void* list, std::size_t i, void* value) {
           *static_cast<T*>(value) = static_cast<const Name<T>*>(list)[i].second;
         }) {}
-  /// Of a string that holds a name itself.
+  /// Makes a choice of a string that holds a name itself.
   template <std::size_t N>
   Choice(std::string& target, const std::string_view (&names)[N])
       : target_(&target),
@@ -57,9 +57,9 @@ class Choice {
         }) {}
 
   std::vector<std::string> names() const;
-  /// Returns the name of the present value; empty where it has none.
+  /// Returns the name of the present value; empty where the value has none.
   std::string_view get() const;
-  /// @return false  for a name that is none of them
+  /// Sets the value by its name. @return false  there is no such name
   bool set(std::string_view name) const;
 
  private:
@@ -71,46 +71,47 @@ class Choice {
   void (*assign_)(const void*, std::size_t, void*);
 };
 
-/// The place of a field's value in a scene; monostate where the scene has no such field, as an azimuth where the
-/// camera is placed by its eye.
+/// The place of a field's value in a scene; monostate where the scene has no such field, for example the azimuth where
+/// the camera is placed by its eye.
 using FieldPlace = std::variant<std::monostate, double*, Angle, int*, std::uint64_t*, bool*, Choice, glm::dvec3*,
                                 std::optional<glm::dvec3>*, PixelSize>;
 
-/// What a number may be; of vectors each component. Numbers are always finite.
+/// The range of a number, or of each component of a vector. Numbers are always finite.
 struct FieldRange {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
-  bool lowOpen = false, highOpen = false;  // the ends themselves are excluded
+  bool lowOpen = false, highOpen = false;  // whether the ends themselves are excluded
   int multipleOf = 1;
-  std::optional<double> orElse = {};  // a value outside that has a meaning of its own
-  bool endsOnly = false;              // low or high and nothing between
+  std::optional<double> orElse = {};  // a value outside the range that has a meaning of its own
+  bool endsOnly = false;              // whether only low and high are allowed and nothing between
 };
 
 struct SceneField {
-  std::string_view path;    // in the JSON: "occlusion.footprint"
-  std::string_view option;  // a name that is unique among all fields, for command lines: "footprint"; empty: none. That
-                            // of a boolean turns it to the opposite of its default: "no-culling"
-  std::string_view group;   // under which help lists it: "Light"
-  std::string_view help;    // what it is, with its unit: "n: n x n samples over the cone's footprint"
+  std::string_view path;  // in the JSON: "occlusion.footprint"
+  /// A name that is unique among all fields, for command lines: "footprint"; empty: none. The option of a boolean turns
+  /// it to the opposite of its default: "no-culling".
+  std::string_view option;
+  std::string_view group;  // heading under which help lists the field: "Light"
+  std::string_view help;   // what the field is, with its unit: "n: n x n samples over the cone's footprint"
   FieldPlace (*place)(Scene&);
   FieldRange range = {};
-  std::optional<Method> onlyOf = {};  // the method of occlusion that looks at it, where the other does not
-  std::string_view otherwise = {};    // what help says behind the default: ": chosen by itself"
+  std::optional<Method> onlyOf = {};  // the only method of occlusion that looks at the field; none: all
+  std::string_view otherwise = {};    // what help says instead of a default: ": chosen by itself"
 
-  /// "occlusion", "footprint"; the section of a field of the scene itself is empty.
+  /// Returns the section, such as "occlusion" for "occlusion.footprint"; empty for a field of the scene itself.
   std::string_view section() const;
   std::string_view key() const;
 };
 
-/// All fields, in the order in which scenes are printed and checked.
+/// Returns all fields, in the order in which scenes are printed and checked.
 std::span<const SceneField> sceneFields();
 /// Returns the field of an option or of a path; null for none.
 const SceneField* findSceneField(std::string_view optionOrPath);
 
-/// "1 to 16", "in [0, 90)", "above 0", "16 or 32"; empty where there is nothing to say.
+/// Returns "1 to 16", "in [0, 90)", "above 0", "16 or 32"; empty where there is nothing to say.
 std::string rangeText(const SceneField& field);
-/// The text of the default, as in the JSON.
+/// Returns the text of the default, as in the JSON.
 std::string defaultText(const SceneField& field);
-/// "n: n x n samples over the cone's footprint, 1 to 16 [3]"
+/// Returns a line of help: "n: n x n samples over the cone's footprint, 1 to 16 [3]"
 std::string helpText(const SceneField& field);
 
 }  // namespace umbrick
