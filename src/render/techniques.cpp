@@ -14,7 +14,7 @@ std::unique_ptr<Renderer> make(ResidentVolume& volume, const ResolvedScene& scen
   return std::make_unique<Kind>(volume, scene, options);
 }
 
-// A new technique is a row here.
+// A new technique is a new row of this table.
 constexpr Technique kTechniques[]{
     {"slices", "proxy slices across the view, nearest first", make<SliceRenderer>},
 };

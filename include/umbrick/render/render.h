@@ -5,7 +5,7 @@
 //   scene.transfer = umbrick::loadTransferFunction("ct-bone");
 //   umbrick::writePng("head.png", umbrick::renderScene(scene).colour);
 //
-// Who draws a volume more than once keeps the parts: a Volume (volume.h), its Bricks, a ResidentVolume
+// A program that draws a volume more than once keeps the parts: a Volume (volume.h), its Bricks, a ResidentVolume
 // (atlas/resident_volume.h) and a Renderer (techniques.h), whose scene is changed by setters.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -24,7 +24,7 @@ namespace umbrick {
 Picture renderScene(const Scene& scene, const RenderOptions& options = {}, const GlContext* context = nullptr,
                     std::string_view technique = {});
 
-/// The parts that a volume is looked at with, in one object: bricks, their textures and a renderer.
+/// The parts that are needed to look at a volume, in one object: bricks, their textures and a renderer.
 class VolumeView {
  public:
   /// Cuts the volume for the scene and makes it resident.
@@ -35,7 +35,7 @@ class VolumeView {
 
   const Bricks& bricks() const { return *bricks_; }
   ResidentVolume& resident() { return resident_; }
-  /// Its scene is changed by setters, see Renderer.
+  /// Returns the renderer. Its scene is changed by setters, see Renderer.
   Renderer& renderer() { return *renderer_; }
   Picture render(const RenderSample& sample = {}) { return renderer_->render(sample); }
 

@@ -18,16 +18,17 @@ class Volume {
  public:
   /// Reads a grid of a .vdb or .nvdb file.
   /// @throw IoError          as readScalarGrid
-  /// @throw InvalidArgument  as readScalarGrid; a grid without an active voxel
+  /// @throw InvalidArgument  as readScalarGrid; the grid has no active voxel
   explicit Volume(const VolumeReference& file);
-  /// @param name  is what messages call it
-  /// @throw InvalidArgument  a transform that is not affine; a grid without an active voxel
+  /// Takes a grid.
+  /// @param name  what messages call it
+  /// @throw InvalidArgument  the transform is not affine; the grid has no active voxel
   Volume(ScalarGrid grid, std::string name);
 
   const std::string& name() const { return name_; }
   const ScalarGrid& grid() const { return grid_; }
   const glm::dmat4& indexToWorld() const { return indexToWorld_; }
-  /// Of the active voxels' centres.
+  /// Returns the box around the active voxels' centres.
   const Box& worldBounds() const { return worldBounds_; }
   double loadMs() const { return loadMs_; }  // 0 where it was not read from a file
 
@@ -37,7 +38,8 @@ class Volume {
 
   /// Cuts the bricks that a scene needs, see requiredBricks(). @throw InvalidArgument, IoError  as brickGrid
   std::unique_ptr<Bricks> cut(const ResolvedScene& scene) const;
-  /// The same for a picture that is refined: with the apron of coarserScene() where bricks are large enough for it.
+  /// Cuts the bricks for a picture that is refined: with the apron of coarserScene() where bricks are large
+  /// enough for it.
   std::unique_ptr<Bricks> cutForRefinement(const ResolvedScene& scene) const;
 
  private:
@@ -48,8 +50,9 @@ class Volume {
   double loadMs_ = 0;
 };
 
-/// A transfer function for a volume of which nothing is known: grey, denser the farther a value is from the background,
-/// on both sides of it, and transparent near it. The densest voxels let light through for a twentieth of the diagonal.
+/// Returns a transfer function for a volume of which nothing is known: grey, denser the farther a value is from the
+/// background, on both sides of it, and transparent near it. The densest voxels let light through for a twentieth
+/// of the diagonal.
 TransferFunction greyRamp(const Volume& volume);
 
 }  // namespace umbrick
