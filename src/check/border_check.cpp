@@ -21,7 +21,7 @@ using openvdb::Coord;
 using openvdb::CoordBBox;
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-// The leaf in the middle of those through which something is seen, or nothing.
+// Returns the leaf in the middle of those through which something is seen; null where there is none.
 const Leaf* visibleLeaf(const openvdb::FloatGrid& grid, const TransferFunction& transfer) {
   std::vector<const Leaf*> leaves;
   grid.tree().getNodes(leaves);
@@ -34,7 +34,7 @@ const Leaf* visibleLeaf(const openvdb::FloatGrid& grid, const TransferFunction& 
   return leaves.empty() ? nullptr : leaves[leaves.size() / 2];
 }
 
-// The voxels of a box by themselves, with room around them where it is asked for.
+// Returns the voxels of a box alone, with empty space around them if asked for.
 ScalarGrid piece(const ScalarGrid& grid, const CoordBBox& box, bool roomAround) {
   const auto copy = openvdb::FloatGrid::create(grid.grid->background());
   copy->setTransform(grid.grid->transform().copy());
@@ -79,7 +79,8 @@ void checkBorder(const GlContext& context, const ScalarGrid& grid, const Resolve
     turned.camera = Camera{};
     turned.camera.width = turned.camera.height = 64;
     turned.camera.projection = residue % 2 == 0 ? Projection::orthographic : Projection::perspective;
-    // Around the piece, each time from somewhere else, so that each of its faces is in front or behind some time.
+    // The camera looks at the piece from another place each time, so that each of its faces is in front or
+    // behind some time.
     turned.orbit = Orbit{0.8 * residue, 0.9 - 0.25 * residue};
     const std::string spacing = std::to_string(turned.sampling.spacing);
     const ResolvedScene wide = resolveScene(turned, alone.worldBounds(), alone.indexToWorld());
@@ -95,7 +96,7 @@ void checkBorder(const GlContext& context, const ScalarGrid& grid, const Resolve
     double largest = 0;
     for (std::size_t i = 0; i < found.pixels.size(); ++i)
       largest = std::max(largest, std::abs(static_cast<double>(found.pixels[i]) - whole.pixels[i]));
-    // The same samples, at other places of a texture.
+    // The samples are the same, at other places of a texture.
     constexpr double kRounding = 1e-4;
     addMeasurement(result, largest, kRounding, found.pixels.size() / 4,
                    "voxels " + std::to_string(first.x()) + ", " + std::to_string(first.y()) + ", " +

@@ -15,10 +15,10 @@
 namespace umbrick {
 namespace {
 
-// Voxels read by one check: a few seconds.
+// One check reads about so many voxels, which takes a few seconds.
 constexpr std::size_t kVoxelsRead = std::size_t{1} << 30;
 
-// The bricks to look at, in order: all, or `most` of them.
+// Returns the bricks to look at, in order: all, or `most` of them.
 std::vector<std::size_t> chooseBricks(std::size_t count, std::size_t most, unsigned seed) {
   std::vector<std::size_t> all(count), chosen;
   std::iota(all.begin(), all.end(), std::size_t{0});
@@ -52,7 +52,7 @@ void forEachVoxel(const BrickLayout& layout, const glm::ivec3& low, const glm::i
       }
 }
 
-// Voxels of the apron towards one neighbour that differ from the neighbour's own.
+// Returns how many voxels of the apron towards one neighbour differ from the neighbour's own.
 std::size_t countDifferences(const BrickLayout& layout, const Voxels& brick, const Voxels& neighbour,
                              const glm::ivec3& direction, std::size_t& compared) {
   glm::ivec3 low, high;

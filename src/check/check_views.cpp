@@ -9,10 +9,10 @@
 namespace umbrick {
 namespace {
 
-// Directions of the grid: `forward` straight at its faces of constant y, `up` along z as far as that allows.
+// Directions along the grid: `forward` straight at its faces of constant y, `up` along z as far as that allows.
 struct GridFrame {
   glm::dvec3 right, up, forward;
-  glm::dvec3 thickness;  // of a voxel along each, world units
+  glm::dvec3 thickness;  // extent of a voxel along each direction, world units
 };
 
 GridFrame gridFrame(const glm::dmat4& indexToWorld) {
@@ -27,18 +27,19 @@ GridFrame gridFrame(const glm::dmat4& indexToWorld) {
 }
 
 Camera lookingAlong(const Camera& base, const Box& bounds, const glm::dvec3& forward, const glm::dvec3& up) {
-  Camera camera = orbitCamera(bounds, 0, 0, base);  // for the distance
+  Camera camera = orbitCamera(bounds, 0, 0, base);  // only its distance matters
   camera.eye = camera.lookAt - forward * glm::length(camera.lookAt - camera.eye);
   camera.up = up;
   return camera;
 }
 
-// A parallel view along the grid's y: pixel centres on faces of x and, where the grid's axes are perpendicular and its
-// voxels cubes, of z, a slice at every half voxel, so that slices lie on faces and on voxel centres.
+// Returns a parallel view along the grid's y. Pixel centres lie on faces of x and, where the grid's axes are
+// perpendicular and its voxels cubes, of z. A slice lies at every half voxel, so that slices lie on faces and
+// on voxel centres.
 CheckView alignedView(const Camera& base, const ScalarGrid& grid, const Box& bounds, const GridFrame& frame) {
   CheckView view{"parallel, slices and pixels on faces", lookingAlong(base, bounds, frame.forward, frame.up), 0};
   Camera& camera = view.camera;
-  // Pixels of 2^k voxels: about as large as the fitting view's, but every one hits the same places of a voxel.
+  // Pixels are 2^k voxels wide: about as large as the fitting view's, but each hits the same places of a voxel.
   const double voxel = frame.thickness.x;
   const double pixel = voxel * std::exp2(std::round(std::log2(camera.viewHeight / camera.height / voxel)));
   const double step = pixel / voxel;
@@ -47,7 +48,7 @@ CheckView alignedView(const Camera& base, const ScalarGrid& grid, const Box& bou
   const glm::dmat4 toWorld = grid.indexToWorld();
   const IndexBox box = grid.activeBox();
   const glm::dvec3 middle = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
-  // Half a pixel beside a face; a quarter of a voxel before one.
+  // The eye is half a pixel beside a face, or on it for an odd number of pixels, and a quarter of a voxel from one.
   const double face = 64 * std::round(middle.x / 64) - 0.5, row = 64 * std::round(middle.z / 64) - 0.5;
   const double back = std::ceil(glm::length(camera.lookAt - camera.eye) / frame.thickness.z);
   const auto odd = [](int pixels) { return pixels % 2 != 0; };
@@ -74,7 +75,7 @@ std::vector<CheckView> checkViews(const ScalarGrid& grid, const ResolvedScene& r
   views.push_back({"face-on", lookingAlong(perspective, bounds, frame.forward, frame.up), 0});
   views.push_back({"diagonal", lookingAlong(perspective, bounds, diagonal, frame.up), 0});
   Camera inside = perspective;
-  inside.fov = 1.4;  // rad: nearly as far to the side as ahead
+  inside.fov = 1.4;  // rad; it shows nearly as much to the side as ahead
   inside.eye = bounds.centre() - 0.1 * bounds.extent();
   inside.lookAt = inside.eye + glm::normalize(2.0 * frame.forward + frame.right + 0.5 * frame.up) *
                                    std::max(glm::length(bounds.extent()), frame.thickness.z);

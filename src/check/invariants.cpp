@@ -21,7 +21,7 @@
 namespace umbrick {
 namespace {
 
-// Cells of the domain that may all be drawn: a full lattice of more would take too long.
+// A full lattice is drawn only for domains of at most so many cells; more would take too long.
 constexpr std::size_t kCompleteCells = 1u << 15;
 
 InvariantResult makeResult(int invariant, std::string name, std::string measured, std::string limitFrom) {
@@ -38,7 +38,7 @@ std::string mebibytes(std::uint64_t bytes) {
   return text.substr(0, text.find('.') + 2) + " MiB";
 }
 
-// The rows of one model.
+// The results of one model.
 struct ModelResults {
   InvariantResult edges, pool, textures, culling, saturated, seam, skipped, jumps, order;
 
@@ -71,7 +71,7 @@ class Checker {
         resident_(context, scene.bricks.budgetMiB << 20),
         emission_(Model::emission, scene.method),
         cone_(Model::cone, scene.method) {
-    scene_.background.reset();  // the same light behind both pictures
+    scene_.background.reset();  // the same light must be behind both pictures
     scene_.bricks.interior = brickInterior(scene_, toWorld_, grid.worldBounds());
     views_ = options.views;
     if (views_.empty()) {
@@ -82,7 +82,7 @@ class Checker {
 
   std::vector<InvariantResult> run() {
     cutAll();
-    // Views x (edges in slices, two models of about 13 pictures) and the bricks themselves.
+    // The steps are views x (edges in slices, two models of about 13 pictures), and the bricks themselves.
     steps_ = static_cast<double>(bricks_.size() + 2 + views_.size() * (bricks_.size() + 28));
     checkBricks();
     precision_ = samplerPrecision(context_, *bricks_.begin()->second, scene_.bricks.format);
@@ -122,7 +122,7 @@ class Checker {
     return options_.cut ? options_.cut(grid_, options) : brickGrid(grid_, options);
   }
 
-  // One apron for all views, so that a volume is cut once per edge.
+  // Cuts the volume once per edge, with one apron that is wide enough for all views.
   void cutAll() {
     for (const CheckView& view : views_) {
       ResolvedScene scene = sceneOf(view, Model::emission);
@@ -139,7 +139,7 @@ class Checker {
     if (bricks_.begin()->second->bricks.empty())
       throw InvalidArgument("check: the volume holds nothing but background");
     sceneEdge_ = bricks_.contains(scene_.bricks.interior) ? scene_.bricks.interior : bricks_.rbegin()->first;
-    // A pool and several textures mean something only with some bricks.
+    // A pool and several textures make a difference only where there are some bricks.
     pooledEdge_ = bricks_.at(sceneEdge_)->bricks.size() >= 27 ? sceneEdge_ : bricks_.begin()->first;
   }
 
@@ -180,7 +180,7 @@ class Checker {
     return options;
   }
 
-  // From bricks that stay resident from one picture to the next.
+  // Draws from bricks that stay resident from one picture to the next.
   Drawn draw(const Bricks& bricks, const ResolvedScene& scene, bool reverseBricks = false) {
     step(drawing_);
     RenderOptions options = layers();
@@ -190,7 +190,7 @@ class Checker {
     return drawnBy(renderer);
   }
 
-  // With an atlas of its own, within other limits.
+  // Draws from an atlas of its own, with other limits.
   Drawn draw(const Bricks& bricks, const ResolvedScene& scene, const AtlasLimits& limits) {
     step(drawing_);
     SliceRenderer renderer(context_, bricks, scene, layers(), limits);
@@ -205,7 +205,7 @@ class Checker {
     return drawn;
   }
 
-  // The whole volume as one texture or, when that is too large, the largest bricks of which one fits.
+  // Chooses the whole volume as one texture or, when that is too large, the largest bricks of which one fits.
   void chooseReference() {
     ResolvedScene scene = sceneOf(views_.front(), Model::emission);
     scene.bricks.culling = false;
@@ -234,7 +234,7 @@ class Checker {
     throw InvalidArgument("check: nothing to compare with: " + why);
   }
 
-  // How far rounding may move samples, voxels.
+  // Returns how far rounding may move samples, voxels.
   double displacement(const ResolvedScene& scene, double farthest, int textureEdge) const {
     const IndexView view = indexView(scene.camera, toWorld_);
     const double scale = scene.camera.projection == Projection::perspective ? farthest : 1;
@@ -250,7 +250,7 @@ class Checker {
   // A picture without bricks, and how much it changes when all samples move a little.
   struct Reference {
     Drawn drawn;
-    PictureDifference perVoxel;  // of displacement along each axis
+    PictureDifference perVoxel;  // for a displacement along each axis
   };
 
   Reference drawReference(const ResolvedScene& scene) {
@@ -295,7 +295,7 @@ class Checker {
     scene.bricks.culling = false;
     const Reference reference = drawReference(scene);
 
-    Drawn whole;  // the scene's bricks, all of them
+    Drawn whole;  // all of the scene's bricks
     for (const auto& [edge, bricks] : bricks_) {
       Drawn drawn = draw(*bricks, scene);
       const std::string where = view.name + ", bricks of " + std::to_string(edge);
@@ -324,13 +324,13 @@ class Checker {
                    culled.picture.visibility.pixels.size(), where);
   }
 
-  // A pool that must recycle its slots, and bricks spread over several textures.
+  // Draws with a pool that must recycle its slots, and with bricks spread over several textures.
   void checkAtlas(const Drawn& whole, const Reference& reference, const ResolvedScene& scene, const CheckView& view,
                   ModelResults& results) {
     const Bricks& bricks = *bricks_.at(pooledEdge_);
     const RenderStats& stats = whole.picture.stats;
     const std::string where = view.name + ", bricks of " + std::to_string(pooledEdge_);
-    // The smallest pool that holds what one slice needs, by a few trials.
+    // A few trials find the smallest pool that holds what one slice needs.
     for (double share = 1.0 / 8; share < 1; share *= 1.7) {
       AtlasLimits options;
       options.budgetBytes = static_cast<std::uint64_t>(share * static_cast<double>(stats.textureBytes));
@@ -343,7 +343,7 @@ class Checker {
                 results.pool, nullptr);
         break;
       } catch (const InvalidArgument&) {
-        // A slice needs more than this.
+        // This pool is too small for one slice.
       }
     }
     if (stats.brickSlots < 4) return;
@@ -355,7 +355,7 @@ class Checker {
     AtlasLimits bytes, edge;
     bytes.maxTextureBytes = stats.textureBytes / 3;
     compareTextures(bytes);
-    // Half as many bricks along an edge as one texture of all would have.
+    // The limit is half as many bricks along an edge as one texture of all bricks would have.
     const int brickEdge = bricks.layout.edge().x;
     const int along = static_cast<int>(std::cbrt(static_cast<double>(stats.brickSlots)) / 2);
     edge.maxTextureEdge = brickEdge * std::max(1, along);
@@ -372,7 +372,7 @@ class Checker {
     std::size_t pairs = 0;
     const double excess = seamExcess(drawn.picture, reference.drawn.picture, scene, bricks, pairs);
     const PictureLimit limit = limitFor(reference, scene, drawn.picture);
-    // Both ends of a step may be off.
+    // Both ends of a step may be wrong.
     if (pairs > 0) addMeasurement(result, excess, 2 * (limit.rounding.visibility + limit.light), pairs, where);
   }
 

@@ -12,12 +12,12 @@
 namespace umbrick {
 namespace {
 
-// A difference that is no number is the largest of all.
+// Raises the largest difference to a value. A difference that is not a number counts as the largest of all.
 void raise(double& largest, double value) {
   if (!(value <= largest)) largest = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
 }
 
-// Unit in the last place of a buffer whose values are below 1: one rounding is off by half of it.
+// Returns the unit in the last place of a buffer whose values are below 1: one rounding is off by half of it.
 double lastPlace(int bits) { return bits == 16 ? 0x1p-11 : 0x1p-24; }
 
 }  // namespace
@@ -37,16 +37,17 @@ PictureDifference difference(const Picture& a, const Picture& b, const ResolvedS
 }
 
 PictureLimit pictureLimit(const PictureDifference& shifted, const ResolvedScene& scene, std::int64_t slices) {
-  // Each slab adds a product and rounds twice, in each of two pictures; the occlusion buffer or the windows do the
-  // same.
+  // Each slab adds a product and rounds twice, in each of two pictures. The occlusion buffer or the light windows
+  // do the same.
   const auto n = static_cast<double>(slices);
   double sums = 2 * n * lastPlace(scene.sampling.bits);
   if (occlusionMethod(scene)) sums += 2 * n * lastPlace(scene.occlusion.bits);
   PictureLimit limit;
-  // All samples were displaced by the most that rounding can do, and all one way; in the other picture it may be the
-  // other.
+  // All samples were displaced by the most that rounding can do, and all in one direction; in the other picture it may
+  // be the opposite one.
   limit.rounding = {2 * shifted.colour + sums, 2 * shifted.visibility + sums, 2 * shifted.depth + 2 * sums};
-  // Beyond four deviations of a random walk lies 3.2e-5 of the light, on each of four sides. Ordinates leave none out.
+  // Beyond four deviations of a random walk lies 3.2e-5 of the light, on each of four sides. Ordinates leave
+  // no light out.
   if (occlusionMethod(scene) == Method::dos) limit.light = 4 * 3.2e-5;
   return limit;
 }

@@ -1,4 +1,4 @@
-// How measurements of several views become one result.
+// Combines measurements of several views into one result.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <limits>
@@ -8,14 +8,14 @@
 
 namespace umbrick {
 
-/// How much of its limit a value takes; anything that is no number takes more than all of it.
+/// Returns how much of its limit a value takes; a value that is not a number takes more than all of it.
 inline double shareOfLimit(double value, double limit) {
   if (value == 0) return 0;
   if (!(value <= limit)) return limit > 0 && value > limit ? value / limit : std::numeric_limits<double>::infinity();
   return value / limit;
 }
 
-/// Adds a measurement: the result keeps the one that is nearest to its limit, or beyond it by most.
+/// Adds a measurement. The result keeps the one that is nearest to its limit, or farthest beyond it.
 inline void addMeasurement(InvariantResult& result, double value, double limit, std::size_t samples,
                            const std::string& detail) {
   const bool first = result.samples == 0;

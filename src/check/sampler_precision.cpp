@@ -30,7 +30,7 @@ class Stripes final : public Bricks {
   }
 };
 
-// Values of Stripes at a continuous index: voxel i has place i + 1 in the array.
+// Returns the value of Stripes at a continuous index: voxel i has place i + 1 in the array.
 double stripesAt(double x) {
   const double place = x + 1, share = place - std::floor(place);
   const bool odd = static_cast<int>(std::floor(place)) % 2 != 0;

@@ -21,7 +21,7 @@
 namespace umbrick {
 namespace {
 
-// The cells of the lattice that are drawn.
+// Tells which cells of the lattice are drawn.
 class DrawnCells {
  public:
   explicit DrawnCells(const Bricks& bricks, bool complete) : interior_(bricks.layout.interior) {
@@ -52,7 +52,7 @@ class DrawnCells {
 struct Counts {
   std::size_t pixels = 0, excluded = 0, gaps = 0, doubleHits = 0;
   std::size_t values = 0;
-  double displacement = 0;  // of a sample, the largest, voxels
+  double displacement = 0;  // largest displacement of a sample, voxels
   double limit = 0;         // of the displacement
   glm::ivec2 worstPixel{-1}, gapPixel{-1};
 
@@ -92,7 +92,7 @@ class SliceExpectation {
         stats_(stats),
         centre_(view_.eyeIndex + depth * view_.toIndex[2]) {}
 
-  // Rows [first, last) of a probed image. @param stride  of the pixels whose values are compared
+  // Compares rows [first, last) of a probed image. @param stride  of the pixels whose values are compared
   Counts compare(const Image& probe, int first, int last, int stride) const {
     Counts counts;
     const auto accessor = grid_.grid->getConstUnsafeAccessor();
@@ -113,7 +113,8 @@ class SliceExpectation {
 
   void compareHits(const glm::dvec3& index, int hits, const glm::ivec2& pixel, Counts& counts) const {
     ++counts.pixels;
-    // The rasteriser snaps vertices to 1/256 pixel, after rounding them to 24 bits: an outer edge may be so far off.
+    // The rasteriser snaps vertices to 1/256 pixel, after rounding them to 24 bits: an outer edge may be wrong
+    // by so much.
     const double pixels = 1.0 / kSubpixels + 0x1p-23 * std::max(camera_.width, camera_.height);
     glm::dvec3 perPixel, slack;
     for (int axis = 0; axis < 3; ++axis) {
@@ -143,7 +144,7 @@ class SliceExpectation {
     counts.doubleHits += hits > (any ? 1 : 0);
   }
 
-  // The displacement that explains how far a value is off, by the steepest slope of the cells around.
+  // Measures the displacement that explains how far a value is off, by the steepest slope of the cells around.
   void compareValue(const Accessor& accessor, const glm::dvec2& p, double value, const glm::ivec2& pixel,
                     Counts& counts) const {
     const bool perspective = camera_.projection == Projection::perspective;
@@ -152,14 +153,14 @@ class SliceExpectation {
     const openvdb::Vec3d index = grid_.grid->worldToIndex(openvdb::Vec3d(world.x, world.y, world.z));
     float expected = 0;
     openvdb::tools::BoxSampler::sample(accessor, index, expected);
-    if (!std::isfinite(expected)) return;  // voxels that are no numbers count as background
+    if (!std::isfinite(expected)) return;  // voxels that are not finite count as background
     ++counts.values;
     const glm::dvec3 at(index.x(), index.y(), index.z());
     double sideways = 0;
     for (int axis = 0; axis < 3; ++axis) sideways = std::max(sideways, std::abs(at[axis] - centre_[axis]));
     const double limit = coordinateError(stats_.textureEdge, sideways) + options_.samplerPrecision;
     counts.limit = std::max(counts.limit, limit);
-    // Rounding of the interpolation: three steps, each of numbers of the size of the largest voxel.
+    // Interpolation rounds in three steps, each of numbers as large as the largest voxel.
     const double largest = std::max(std::abs(bricks_.value.min), std::abs(bricks_.value.max));
     const double off = std::abs(value - expected) - stats_.formatError - 0x1p-21 * largest;
     if (!(off > 0)) return;
@@ -171,7 +172,8 @@ class SliceExpectation {
     }
   }
 
-  // Largest change of the interpolated value for a step of one voxel along all three axes, in the cells around.
+  // Returns the largest change of the interpolated value for a step of one voxel along all three axes, in
+  // the cells around.
   static double steepest(const Accessor& accessor, const glm::dvec3& index) {
     const glm::ivec3 low = glm::ivec3(glm::floor(index)) - 1;
     Range range;
@@ -184,7 +186,7 @@ class SliceExpectation {
   const ScalarGrid& grid_;
   const Bricks& bricks_;
   const DrawnCells& cells_;
-  const IndexBox box_;  // of the medium
+  const IndexBox box_;  // the box of the medium
   const Camera& camera_;
   CameraFrame frame_;
   ScreenPlane screen_;
@@ -192,10 +194,10 @@ class SliceExpectation {
   double depth_, spacing_, scale_;
   const SliceCheckOptions& options_;
   const RenderStats& stats_;
-  glm::dvec3 centre_;  // of the slice, index coordinates
+  glm::dvec3 centre_;  // centre of the slice, index coordinates
 };
 
-// A medium that is nowhere seen, or everywhere: then the background's cells are drawn, too.
+// Returns a medium that is nowhere seen, or everywhere: then the background's cells are drawn, too.
 TransferFunction constantMedium(double sigma_t, bool is2d) {
   const Medium medium{glm::dvec3(1), sigma_t};
   return is2d ? TransferFunction({0}, {0}, {medium}) : TransferFunction({{0, medium}});
@@ -226,7 +228,7 @@ void checkSlices(ResidentVolume& resident, const ScalarGrid& grid, const Resolve
   const std::int64_t probes = std::min<std::int64_t>(options.slices, count);
   const int stride = std::max(1, drawn.camera.width * drawn.camera.height / 8192) | 1;
   for (std::int64_t i = 0; i < probes; ++i) {
-    // The first, the last and others between them.
+    // The first slice is probed, the last one, and others between them.
     const std::int64_t slice = probes > 1 ? i * (count - 1) / (probes - 1) : 0;
     const Image probe = renderer.probe(slice);
     const SliceExpectation expected(grid, bricks, cells, mediumBox(drawn.transfer, bricks.domain), drawn.camera,

@@ -16,7 +16,7 @@ using namespace umbrick;
 
 namespace {
 
-// Transparent up to 0.3, then denser and of another colour; a few voxels saturate a pixel.
+// Returns a medium that is transparent up to 0.3, then denser and of another colour; a few voxels saturate a pixel.
 TransferFunction softMedium() {
   return TransferFunction({{0.3, {{0.9, 0.5, 0.2}, 0}}, {0.7, {{0.2, 0.6, 0.9}, 0.2}}, {1.5, {{1, 1, 1}, 0.6}}});
 }
@@ -44,7 +44,8 @@ void checkAllHold(const GlContext& context, const ScalarGrid& grid, const Resolv
   INFO(print(results));
   for (const InvariantResult& result : results) {
     CHECK(result.passed);
-    // What looks at nothing always passes: each must have been measured, but for borders that a background hides.
+    // A check that looks at nothing always passes, so each must have measured something, except for borders that
+    // a background hides.
     const float background = brickGrid(grid)->background;
     if (result.invariant != 7 || scene.transfer.isTransparent({background, background})) CHECK(result.samples > 0);
   }
@@ -74,7 +75,8 @@ class FaultyBricks final : public Bricks {
 
 using BricksFault = std::function<void(FaultyBricks&)>;
 
-// The results for one dense volume in bricks of 8, `fault` applied to them and `pieceFault` to those of its pieces.
+// Returns the results for one dense volume in bricks of 8, with `fault` applied to them and `pieceFault` to those
+// of its pieces.
 std::vector<InvariantResult> checkFaulty(const GlContext& context, const BricksFault& fault,
                                          const BricksFault& pieceFault = {}) {
   const ScalarGrid grid = makeDense({30, 30, 30}, {3, -7, 1});
@@ -92,7 +94,7 @@ std::vector<InvariantResult> checkFaulty(const GlContext& context, const BricksF
   return checkInvariants(context, grid, scene, options);
 }
 
-// A brick in the middle of the volume.
+// Returns a brick in the middle of the volume.
 std::size_t middleBrick(const Bricks& bricks) {
   std::size_t middle = 0;
   for (std::size_t i = 0; i < bricks.bricks.size(); ++i)
@@ -154,7 +156,7 @@ TEST_CASE("All invariants hold where the background is visible", "[check]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeSphereLevelSet(12, 1, {3, 40, -5});
-  // Thin fog outside of the ball (background 3), denser inside.
+  // The fog is thin outside of the ball (background 3), and denser inside.
   const TransferFunction fog({{-3, {{1, 0.8, 0.6}, 0.3}}, {0, {{1, 1, 1}, 0.1}}, {3, {{0.5, 0.7, 1}, 0.02}}});
   CheckOptions options;
   options.edges = {8, 16};
@@ -162,8 +164,8 @@ TEST_CASE("All invariants hold where the background is visible", "[check]") {
   checkAllHold(*context, grid, sceneFor(grid, fog), options);
 }
 
-// Slices only multiply what is on the lattice of the light, which hangs on the view and not on bricks: the limits have
-// no room for light that is left out.
+// Slices only multiply what is on the lattice of the light, which depends on the view and not on bricks: the limits
+// have no room for light that is left out.
 TEST_CASE("All invariants hold for light by ordinates", "[check]") {
   const auto context = testContext();
   if (!context) return;
@@ -190,8 +192,8 @@ TEST_CASE("All invariants hold for light by ordinates", "[check]") {
   }
 }
 
-// A slab from 1 to 1 gets the mean of both sides of a step at 1, so that it can be seen, though the function is 0
-// there.
+// A slab from 1 to 1 gets the mean of both sides of a step at 1, so that it can be seen, though the function
+// is 0 there.
 TEST_CASE("Culling keeps bricks whose lowest value is at a falling step", "[check]") {
   const auto context = testContext();
   if (!context) return;
@@ -247,7 +249,7 @@ TEST_CASE("A layer of wrong apron voxels is found in samples and pictures", "[ch
   CHECK_FALSE(find(results, "bricked equals unbricked, cone").passed);
 }
 
-TEST_CASE("A brick that is missing is found, by its shadow of ordinates as well", "[check]") {
+TEST_CASE("A brick that is missing is found, also by its shadow of ordinates", "[check]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({30, 30, 30}, {3, -7, 1});
@@ -259,7 +261,7 @@ TEST_CASE("A brick that is missing is found, by its shadow of ordinates as well"
   options.views = {checkViews(grid, scene)[1]};
   options.cut = [&](const ScalarGrid& volume, const BrickOptions& how) {
     auto bricks = std::make_unique<FaultyBricks>(brickGrid(volume, how));
-    if (volume.grid == grid.grid)  // not of its pieces
+    if (volume.grid == grid.grid)  // not the grids of its pieces
       bricks->bricks.erase(bricks->bricks.begin() + static_cast<std::ptrdiff_t>(middleBrick(*bricks)));
     return bricks;
   };
@@ -294,7 +296,7 @@ TEST_CASE("A brick that is drawn twice is found", "[check]") {
   CHECK_FALSE(find(results, "bricked equals unbricked, emission").passed);
 }
 
-TEST_CASE("A brick beside its place is found", "[check]") {
+TEST_CASE("A brick that is not in its place is found", "[check]") {
   const auto context = testContext();
   if (!context) return;
   const auto results = checkFaulty(
@@ -304,7 +306,7 @@ TEST_CASE("A brick beside its place is found", "[check]") {
   CHECK_FALSE(find(results, "no pixel of a slice is shaded twice").passed);
 }
 
-// Bricks that overlap and do not agree: then the order shows.
+// Where bricks overlap and do not agree, the order shows.
 TEST_CASE("Bricks whose order matters are found", "[check]") {
   const auto context = testContext();
   if (!context) return;
@@ -335,7 +337,7 @@ TEST_CASE("A range by which a visible brick is culled is found", "[check]") {
   CHECK(find(results, "bricked equals unbricked, emission").passed);
 }
 
-// Bricks beyond the domain hold nothing, but slabs reach into it from there.
+// Bricks beyond the domain hold nothing, but slabs reach into the domain from there.
 TEST_CASE("Bricks that are missing around a volume are found", "[check]") {
   const auto context = testContext();
   if (!context) return;
@@ -354,7 +356,7 @@ TEST_CASE("Bricks that are missing around a volume are found", "[check]") {
   CHECK_FALSE(border.passed);
 }
 
-TEST_CASE("What cannot be checked is said", "[check]") {
+TEST_CASE("What cannot be checked is reported with the reason", "[check]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({10, 10, 10});

@@ -25,41 +25,41 @@ namespace umbrick {
 struct InvariantResult {
   int invariant = 0;
   std::string name;       // what must hold, and for which model or bricks
-  std::string measured;   // what `value` is, with its unit
-  double value = 0;       // where several views were measured: in the one that is nearest to its limit
-  double limit = 0;       // passed: value <= limit
+  std::string measured;   // what `value` measures, with its unit
+  double value = 0;       // in the view that is nearest to its limit, where several views were measured
+  double limit = 0;       // the result has passed where value <= limit
   std::string limitFrom;  // where the limit comes from
   std::size_t samples = 0, excluded = 0;
   bool passed = false;
   std::string detail;  // where it was worst, what was left out and why
 };
 
-/// A camera to check with. World units.
+/// A camera to check with, in world units.
 struct CheckView {
   std::string name;
   Camera camera;
-  double spacing = 0;  // of slices; 0: the scene's
+  double spacing = 0;  // distance of slices; 0: the scene's
 };
 
-/// Face-on, diagonal and from inside under perspective; face-on and diagonal in parallel view; and a parallel view in
-/// which slices lie exactly on voxel planes and brick faces, and pixel centres on brick faces. Image size from the
-/// scene's camera. @throw InvalidArgument  the grid has no active voxel
+/// Returns views of a volume: face-on, diagonal and from inside under perspective; face-on and diagonal in parallel
+/// view; and a parallel view in which slices lie exactly on voxel planes and brick faces, and pixel centres on brick
+/// faces. The image size is that of the scene's camera. @throw InvalidArgument  the grid has no active voxel
 std::vector<CheckView> checkViews(const ScalarGrid& grid, const ResolvedScene& resolved);
 
 struct CheckOptions {
   std::vector<int> edges{8, 16, 32, 64};  // interiors to compare; those narrower than the apron are left out
   std::vector<CheckView> views;           // empty: checkViews() and the scene's own camera
   int probedSlices = 24;                  // of each view, spread over the sweep
-  std::size_t comparedBricks = 4000;      // whose aprons and ranges are read, at most
-  unsigned seed = 1;                      // of what is chosen at random: bricks
+  std::size_t comparedBricks = 4000;      // most bricks whose aprons and ranges are read
+  unsigned seed = 1;                      // for what is chosen at random: bricks
   /// Called before each step. @param done  share of the steps so far, in [0, 1]
   std::function<void(const std::string& step, double done)> progress;
   /// Cuts the bricks that are checked; empty: brickGrid.
   std::function<std::unique_ptr<Bricks>(const ScalarGrid&, const BrickOptions&)> cut;
 };
 
-/// Measures all invariants. The scene gives medium, sampling, occlusion, clipping, brick edge, texel format and budget;
-/// emission and cone are rendered, cone by its method, without background radiance.
+/// Measures all invariants. The scene gives medium, sampling, occlusion, clipping, brick edge, texel format and budget.
+/// Emission and cone are rendered, the cone by the scene's method, without background radiance.
 /// @param resolved  see resolveScene
 /// @throw InvalidArgument  as SliceRenderer, checkViews and brickGrid
 /// @throw GlError, IoError
