@@ -21,7 +21,7 @@ void refuse(const std::string& what, const std::string& difference, const std::s
     throw InvalidArgument(source + ": cannot be compared with, it is a study " + what + ": " + difference);
 }
 
-// What decides on the pictures of all cases: neither the file's name nor what cases set themselves.
+// Returns what decides on the pictures of all cases: neither the file's name nor what cases set themselves.
 Json sceneOfAll(Json scene) {
   for (const char* field : {"model", "method", "occlusion"}) scene.erase(field);
   if (const auto volume = scene.find("volume"); volume != scene.end() && volume->is_object()) {
@@ -30,7 +30,7 @@ Json sceneOfAll(Json scene) {
   }
   if (scene.contains("sampling") && scene["sampling"].is_object())
     for (const char* field : {"segments", "bits"}) scene["sampling"].erase(field);
-  // Of the size only the shape: that of a case is its own.
+  // Only the shape of the size counts, since each case has a size of its own.
   if (scene.contains("camera") && scene["camera"].is_object()) {
     Json& size = scene["camera"]["size"];
     if (size.is_array() && size.size() == 2 && size[0].is_number() && size[1].is_number())
@@ -41,8 +41,8 @@ Json sceneOfAll(Json scene) {
 
 void checkComparable(const JsonValue& root, const Json& stored, const std::string& source, const StudyRecord& record) {
   const Json here = Json::parse(printRecord(record));
-  // Not by the checksum: OpenVDB writes a new identifier into every file, so a volume that is converted again has
-  // another.
+  // The checksum is not compared: OpenVDB writes a new identifier into every file, so that a volume which is converted
+  // again has another one.
   refuse("of another volume", firstDifference("volume.bytes", stored.at("volume").at("bytes"), here["volume"]["bytes"]),
          source);
   refuse("of another scene", firstDifference("", sceneOfAll(stored.at("scene")), sceneOfAll(here["scene"])), source);
@@ -62,7 +62,7 @@ EarlierCase readCase(const JsonValue& value) {
   one.id = value.at("id").string();
   one.method = value.at("method").string();
   one.size = value.at("size").integer();
-  // Only cases of the cone have one.
+  // Only cases of the cone have a theta.
   if (const auto theta = value.find("theta")) {
     one.model = Model::cone;
     one.theta = theta->degrees();

@@ -1,4 +1,4 @@
-// Where two JSON values differ, for messages.
+// Finds where two JSON values differ, for messages.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json_fwd.hpp>
@@ -6,7 +6,7 @@
 
 namespace umbrick {
 
-/// "camera.fov is 27 there and 30 here": the first difference, in the order of `here`; empty: equal.
+/// Returns the first difference, in the order of `here`: "camera.fov is 27 there and 30 here"; empty: equal.
 /// @param path  of the values; empty at the root
 std::string firstDifference(const std::string& path, const nlohmann::ordered_json& there,
                             const nlohmann::ordered_json& here);

@@ -46,7 +46,8 @@ std::vector<std::size_t> paretoFront(std::span<const CostAndError> points) {
   });
   std::vector<std::size_t> front;
   for (const std::size_t i : order)
-    // All that is cheaper, or as cheap and better, is in front of it: only the last of the front can dominate it.
+    // Every point that is cheaper, or as cheap and better, comes before this one: only the last of the front
+    // can dominate it.
     if (front.empty() || !dominates(points[front.back()], points[i])) front.push_back(i);
   return front;
 }

@@ -26,7 +26,7 @@ StudyOutcome runStudy(const GlContext& context, const ScalarGrid& grid, const Re
   record.machine = describeMachine(context);
   record.machine.plotter = options.plotter;
   record.geometry.extent = visibleExtent(context, grid, record.scene);
-  // Again, now that it is known how few slices can be drawn.
+  // The study is planned again, now that it is known how few slices can be drawn.
   const int least = leastSlices(grid, record.scene, record.geometry.extent);
   record.plan = planStudy(settings, scene.occlusion.aperture, least);
   if (!options.earlier.empty())

@@ -1,4 +1,4 @@
-// Where a study keeps what.
+// Knows where a study keeps its files.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
@@ -17,11 +17,11 @@ class StudyFolder {
   std::filesystem::path scene() const { return root_ / "scene.json"; }
   std::filesystem::path reference(const std::string& id) const { return root_ / "references" / (id + ".exr"); }
 
-  /// Takes over what an earlier run measured. Writes nothing.
+  /// Takes over what an earlier run measured, and writes nothing.
   /// @throw InvalidArgument  the folder holds another study or anything else; see restoreRecord
   /// @throw IoError
   void restore(StudyRecord& record) const;
-  /// Makes the folder and those in it, and writes the record and the scene. @throw IoError
+  /// Makes the folder and the folders in it, and writes the record and the scene. @throw IoError
   void create(const StudyRecord& first) const;
 
  private:

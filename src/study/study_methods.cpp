@@ -35,7 +35,7 @@ void applyOrdinates(int directions, ResolvedScene& scene) {
 }  // namespace
 
 const std::vector<StudyMethod>& studyMethods() {
-  // Many slices are what emission and dos need; ordinates does with few, of several segments each.
+  // Emission and dos need many slices; ordinates needs only few, of several segments each.
   static const std::vector<int> kMany{64, 128, 256, 512, 1024}, kManyQuick{64, 128, 256, 512};
   static const std::vector<int> kFew{16, 32, 64, 128, 256, 512}, kFewQuick{16, 64, 128};
   static const std::vector<StudyMethod> methods{

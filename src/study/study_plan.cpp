@@ -18,7 +18,7 @@ std::string printed(double theta) { return jsonDegrees(theta); }
 std::string printed(const std::string& name) { return name; }
 std::string printed(const BufferBits& bits) { return std::to_string(bits.eye) + "/" + std::to_string(bits.occlusion); }
 
-// From the smallest to the largest; bits of the eye count first.
+// Orders bits from the smallest to the largest; those of the eye count first.
 bool less(const BufferBits& a, const BufferBits& b) {
   return a.eye != b.eye ? a.eye < b.eye : a.occlusion < b.occlusion;
 }
@@ -53,7 +53,7 @@ std::vector<std::string> completeMethods(std::vector<std::string> names) {
   std::vector<std::string> sorted = names;
   sortList("methods", sorted);
   for (const std::string& name : names) studyMethod(name);
-  // In the order of the registry, so that the order in which they are given does not matter.
+  // The methods are in the order of the registry, so that the order in which they are given makes no difference.
   std::vector<std::string> complete;
   for (const StudyMethod& method : studyMethods())
     if (std::find(names.begin(), names.end(), method.name) != names.end()) complete.push_back(method.name);
@@ -96,7 +96,7 @@ std::vector<double> completeScales(const StudySettings& settings) {
   return scales;
 }
 
-// Of angles that were read from degrees in different ways.
+// Tells whether two angles are the same that were read from degrees in different ways.
 bool sameAngle(double a, double b) { return std::abs(a - b) < 1e-9; }
 
 StudySettings completed(StudySettings settings, double aperture) {
@@ -161,7 +161,7 @@ StudyCase baseOf(const StudyPlan& plan, const StudyMethod& method) {
   return base;
 }
 
-// Everything that a method is swept over, each value once.
+// Collects the cases of a method, each of them once.
 class CaseList {
  public:
   CaseList(const StudyCase& base, std::vector<StudyCase>& cases) : base_(base), cases_(cases) {}
@@ -181,7 +181,7 @@ class CaseList {
       add(one);
     }
   }
-  // With all slices for each value.
+  // Adds all slices for each value.
   template <class T>
   void sweep(T StudyCase::*field, const std::vector<T>& values, const std::vector<int>& slices) {
     for (const T& value : values)
@@ -275,7 +275,7 @@ StudyPlan planStudy(const StudySettings& settings, double aperture, int leastSli
     appendCases(plan, method);
   }
   for (const StudyCase& one : plan.cases) appendReference(plan, plan.referenceOf(one));
-  // The model error: the cone beside the whole sphere, at the base size.
+  // The model error compares the cone with the whole sphere, at the base size.
   const bool occlusion = std::any_of(plan.references.begin(), plan.references.end(),
                                      [](const StudyReference& r) { return traitsOf(r.model).cone; });
   if (occlusion) appendReference(plan, {Model::ambient, plan.baseSize, 0});

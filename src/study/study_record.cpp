@@ -21,9 +21,9 @@ constexpr int kFormat = 2;  // of study.json
 
 // --- what is written ---
 
-// Degrees as a person writes them: 60, not 59.99999999999999.
+// Returns degrees as a person writes them: 60, not 59.99999999999999.
 Json degrees(double radians) { return Json::parse(jsonDegrees(radians)); }
-// An error can be infinite, for which JSON has no number.
+// Returns null for an infinite error, for which JSON has no number.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
 
@@ -116,7 +116,7 @@ Json toJson(const Machine& machine) {
           {"gnuplot", machine.plotter}};
 }
 
-// Times of two machines are no ratio.
+// Returns what two machines must have in common, so that times of one may be divided by times of the other.
 Json timingIdentity(const Machine& machine) {
   return {{"cpu", machine.cpu}, {"cores", machine.cores}, {"renderer", machine.renderer}, {"version", machine.version}};
 }
@@ -195,7 +195,7 @@ Machine readMachine(const JsonValue& value) {
 
 // --- is it the same study? ---
 
-// The scene without the name of the volume's file, which may move.
+// Returns the scene without the name of the volume's file, which may move.
 Json withoutFile(Json scene) {
   if (const auto volume = scene.find("volume"); volume != scene.end() && volume->is_object()) {
     volume->erase("file");
@@ -214,7 +214,7 @@ void checkSame(const StudyRecord& record, const Json& stored, const std::string&
   for (const char* key : {"bytes", "crc32"})
     refuseOther("of another volume",
                 firstDifference("volume." + std::string(key), stored.at("volume").at(key), volume.at(key)), source);
-  // First, since the scene has the base size.
+  // The settings come first, since the scene has the base size.
   refuseOther("with other settings", firstDifference("", stored.at("settings"), settingsOf(record.plan)), source);
   refuseOther("of another scene",
               firstDifference("", withoutFile(stored.at("scene")), withoutFile(Json::parse(printScene(record.scene)))),

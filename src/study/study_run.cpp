@@ -33,11 +33,11 @@ std::unique_ptr<Bricks> cut(const ScalarGrid& grid, const ResolvedScene& scene) 
 
 RenderOptions quietly() {
   RenderOptions options;
-  options.countFragments = false;  // a study pays for pictures only
+  options.countFragments = false;  // only pictures are to be timed
   return options;
 }
 
-// Seconds on two cores with a software rasteriser: only the ratio of steps matters.
+// Returns seconds on two cores with a software rasteriser: only the ratio of steps matters.
 double estimatedWork(const StudyReference& what, const StudySettings& settings) {
   if (!traitsOf(what.model).occlusion) return 1;
   const double whole = traitsOf(what.model).sphere ? 2 : 1;
@@ -49,7 +49,8 @@ double estimatedWork(const StudyCase& what, const StudySettings& settings) {
   return (settings.repeats + 3) * (pixels * what.slices * cost / 4e7 + 1e-4 * what.slices + baseline);
 }
 
-// Two references with the same key are the same picture: of one volume and scene, integrated with the same care.
+// Returns a key. Two references with the same key are the same picture: of one volume and scene, integrated with
+// the same care.
 std::string referenceKey(const StudyRecord& record, const StudyReference& what) {
   const ReferenceOptions options = referenceOptions(record.plan.settings);
   return "volume " + std::to_string(record.volume.crc32) + ", directions " + std::to_string(options.directions) +
@@ -62,7 +63,7 @@ double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Res
   StudyCase probe;
   probe.method = "emission";
   probe.slices = 1;
-  probe.size = 64;  // pixels: enough to know what lies in the picture
+  probe.size = 64;  // so many pixels are enough to know what lies in the picture
   const double voxelEdge = shortestVoxelEdge(grid.indexToWorld()), spacing = 0.5 * voxelEdge;
   const ResolvedScene fine = caseScene(scene, probe, {spacing, voxelEdge});
   const std::unique_ptr<Bricks> bricks = cut(grid, fine);
@@ -76,7 +77,7 @@ double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Res
 
 int leastSlices(const ScalarGrid& grid, const ResolvedScene& scene, double extent) {
   if (scene.sampling.quadrature != Quadrature::preintegrated) return 1;
-  // See requiredApron: a slab reaches at most to the other side of a brick.
+  // A slab reaches at most to the other side of a brick, see requiredApron.
   const glm::dvec3 reach = slabReach(indexView(scene.camera, grid.indexToWorld()), extent);
   const int interior = scene.bricks.interior > 0 ? scene.bricks.interior : kMostInterior;
   return std::max(1, static_cast<int>(std::ceil(std::max({reach.x, reach.y, reach.z}) / (interior - 0.5) - 1e-9)));
@@ -102,7 +103,7 @@ struct StudyRun::Baseline {
   int size;
   std::shared_ptr<ResidentVolume> volume;
   SliceRenderer renderer;
-  // Frames that a reference's time is divided by.
+  // Returns the median time of so many frames, which a reference's time is divided by.
   double medianMs(int frames) {
     renderer.render();
     std::vector<double> times;
@@ -128,7 +129,7 @@ StudyRun::~StudyRun() = default;
 
 void StudyRun::measure() {
   const StudyPlan& plan = record_.plan;
-  // What somebody has cleared away is made again, as long as something is compared with it.
+  // A reference that somebody has deleted is made again, as long as something is compared with it.
   if (!record_.complete())
     std::erase_if(record_.references, [&](const ReferenceResult& result) {
       return !std::filesystem::exists(folder_.reference(result.what.id()));
@@ -193,7 +194,7 @@ StudyRun::Baseline& StudyRun::baselineOf(int size) {
 
 bool StudyRun::integrate(const StudyReference& what, bool coarser, Image& image, double& milliseconds) {
   ReferenceOptions options = referenceOptions(record_.plan.settings, coarser);
-  // The coarser one has half of the directions: a third of the work of both.
+  // The coarser reference has half of the directions: it is a third of the work of both.
   const double work = estimatedWork(what, record_.plan.settings);
   const std::string step = "reference " + what.id() + (coarser ? ", its own error" : "");
   options.progress = [&](double share) { return report(step, work * (coarser ? (2 + share) / 3 : 2 * share / 3)); };
@@ -256,7 +257,7 @@ RenderStats StudyRun::countedPicture(const ResolvedScene& scene) {
   options.timePasses = true;
   const auto volume = residentFor(scene);
   SliceRenderer renderer(*volume, scene, options);
-  renderer.render();  // uploads and compiles
+  renderer.render();  // uploads bricks and compiles shaders
   return renderer.render().stats;
 }
 

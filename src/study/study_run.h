@@ -1,4 +1,4 @@
-// The measuring part of a study.
+// Measures what a study asks for.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
@@ -14,26 +14,26 @@
 
 namespace umbrick {
 
-/// Depth between the nearest and the farthest visible brick in the picture of a scene, world units.
+/// Returns the depth between the nearest and the farthest visible brick in the picture of a scene, world units.
 /// @throw InvalidArgument  nothing is visible
 double visibleExtent(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene);
 
-/// With fewer slices bricks are too narrow for the slabs. @param extent  of visibleExtent
+/// Returns the least number of slices: with fewer, bricks are too narrow for the slabs. @param extent  of visibleExtent
 int leastSlices(const ScalarGrid& grid, const ResolvedScene& scene, double extent);
 
-/// Could all cases be drawn? @throw InvalidArgument  says which value of the plan is the reason
+/// Checks that all cases can be drawn. @throw InvalidArgument  names the value of the plan that is the reason
 void checkCases(const GlContext& context, const ScalarGrid& grid, const StudyRecord& record);
 
 class StudyRun {
  public:
-  /// @param record  what is there already; grows, and is written to the folder after each step
+  /// @param record  what is measured already; grows, and is written to the folder after each step
   StudyRun(const GlContext& context, const ScalarGrid& grid, StudyRecord& record, const StudyFolder& folder,
            const StudyOptions& options);
   ~StudyRun();
 
   /// Measures what is missing, until the caller asks to stop.
   void measure();
-  /// Of the volume; 0 when nothing was left to measure.
+  /// Returns the number for the volume; 0 when nothing was left to measure.
   std::uint64_t nonFiniteVoxels() const;
 
  private:
@@ -47,7 +47,7 @@ class StudyRun {
   bool measureReference(const StudyReference& what);
   void measureModelError(const StudyReference& cone);
   void measureCase(const StudyCase& what);
-  /// Of a picture that counts its fragments and times its passes, which makes it slower.
+  /// Returns the statistics of a picture that counts its fragments and times its passes, which makes it slower.
   RenderStats countedPicture(const ResolvedScene& scene);
   /// Hands a picture to the caller. @param truth  null: nothing is compared
   void show(const std::string& id, Model model, const Image& image, const Image* truth) const;
@@ -59,10 +59,10 @@ class StudyRun {
   const StudyFolder& folder_;
   const StudyOptions& options_;
   std::map<std::pair<int, int>, std::unique_ptr<Bricks>> bricks_;  // by interior and apron
-  ResidentVolumes resident_;                                       // made of those
-  std::unique_ptr<Baseline> baseline_;                             // of the last size
+  ResidentVolumes resident_;                                       // made of those bricks
+  std::unique_ptr<Baseline> baseline_;                             // baseline of the last size
   std::map<std::string, Image> references_;                        // by id
-  double work_ = 0, done_ = 0;                                     // seconds that steps may take, only for their ratio
+  double work_ = 0, done_ = 0;                                     // estimated seconds of steps, for their ratio
 };
 
 }  // namespace umbrick

@@ -37,7 +37,7 @@ TEST_CASE("The fronts of an earlier study are those that it found itself", "[rep
   }
 }
 
-TEST_CASE("An earlier study may be of other settings, an older format and methods that are gone", "[report]") {
+TEST_CASE("An earlier study may have other settings, an older format and methods that no longer exist", "[report]") {
   const StudyRecord record = inventedStudy();
   Json old = Json::parse(printRecord(record));
   old["umbrick_study"] = 1;

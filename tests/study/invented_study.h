@@ -1,4 +1,4 @@
-// A study whose numbers are invented: for what is made of numbers.
+// A study whose numbers are invented, for tests of what is made of numbers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace umbrick {
 
-/// A scene of no volume in particular.
+/// Returns a scene of no particular volume.
 inline ResolvedScene smokeScene() {
   Scene scene;
   scene.transfer = loadTransferFunction("smoke");
@@ -18,7 +18,7 @@ inline ResolvedScene smokeScene() {
   return resolvedAnywhere(scene);
 }
 
-/// Complete; errors fall with the slices as d^1 and times grow with slices and detail.
+/// Returns a complete study; errors fall with the slices as d^1, and times grow with slices and detail.
 inline StudyRecord inventedStudy(const std::vector<int>& slices = {8, 16, 32}) {
   StudySettings settings;
   settings.methods = {"emission", "dos", "ordinates"};

@@ -15,7 +15,7 @@ bool isWith(const CaseResult& result) { return studyMethod(result.what.method).w
 
 }  // namespace
 
-TEST_CASE("The fastest case with windows of no larger error is found for every error that was reached without",
+TEST_CASE("The fastest case with windows of no larger error is found for every error reached without windows",
           "[report]") {
   const StudyRecord record = inventedStudy();
   std::size_t found = 0;
@@ -25,7 +25,7 @@ TEST_CASE("The fastest case with windows of no larger error is found for every e
     for (const Comparison& one : all) {
       REQUIRE(one.without);
       CHECK(!isWith(*one.without));
-      // By the definition, over all pairs.
+      // The expected case follows from the definition, over all pairs.
       const CaseResult* best = nullptr;
       for (const CaseResult* other : group.all) {
         if (!isWith(*other)) {
@@ -40,7 +40,7 @@ TEST_CASE("The fastest case with windows of no larger error is found for every e
       CHECK(one.with == best);
       if (best) ++found;
     }
-    // Cases off the front are no better than one on it.
+    // Cases off the front are no better than a case on it.
     if (all.empty()) continue;
     for (const CaseResult* other : group.all)
       if (!isWith(*other))
@@ -52,7 +52,7 @@ TEST_CASE("The fastest case with windows of no larger error is found for every e
   CHECK(found > 0);
 }
 
-TEST_CASE("An error that no case with windows reaches is not reached", "[report]") {
+TEST_CASE("An error that no case with windows reaches has no fastest case", "[report]") {
   StudyRecord record = inventedStudy();
   for (CaseResult& result : record.cases)
     if (isWith(result)) result.error.rmse = 1;

@@ -86,11 +86,11 @@ TEST_CASE("A stopped study goes on where it was, and measures nothing twice", "[
   const auto run = [&] {
     return runStudy(*context, study.grid, study.resolved(), study.settings, study.report(), {.progress = progress});
   };
-  // In the first reference.
+  // The first run stops in the first reference.
   CHECK(!run().study.complete());
   CHECK(study.record()["cases"].empty());
   CHECK(study.record()["references"].empty());
-  // After two cases.
+  // The second run stops after two cases.
   stopAfter = 2;
   const StudyOutcome stopped = run();
   CHECK(!stopped.study.complete());
@@ -98,7 +98,7 @@ TEST_CASE("A stopped study goes on where it was, and measures nothing twice", "[
   const Json first = study.record();
   REQUIRE(first["cases"].size() == 2);
   CHECK(first["complete"] == false);
-  // To the end.
+  // The third run goes to the end.
   stopAfter = 1000;
   steps.clear();
   const StudyOutcome finished = run();
@@ -106,14 +106,14 @@ TEST_CASE("A stopped study goes on where it was, and measures nothing twice", "[
   const Json second = study.record();
   CHECK(second["complete"] == true);
   REQUIRE(second["cases"].size() == finished.study.plan.cases.size());
-  // Times and all: what was measured is what it was.
+  // What was measured before is unchanged, times included.
   for (std::size_t i = 0; i < 2; ++i) CHECK(second["cases"][i] == first["cases"][i]);
   CHECK(second["references"] == first["references"]);
   for (const std::string& step : steps) {
     CHECK_THAT(step, !Contains("reference"));
     for (const Json& done : first["cases"]) CHECK(step != done["id"]);
   }
-  // The same cases as in one go.
+  // The cases are the same as in a study without a stop.
   SmallStudy whole;
   whole.scene.volume.file = study.scene.volume.file;
   runStudy(*context, whole.grid, whole.resolved(), whole.settings, whole.report());
@@ -140,7 +140,7 @@ TEST_CASE("A reference that was made otherwise is refused and left as it is", "[
   ExrOptions options;
   options.pixel = ExrPixel::float32;
   options.metadata = stored.metadata;
-  // Versions before had the command that makes the picture here.
+  // Earlier versions had the command that makes the picture here.
   options.metadata["umbrick.study.reference"] = "umbrick reference scene.json --model cone";
   writeExr(file, {{"", stored.layers.front().image}}, options);
   const std::string before = readBytes(file);
@@ -187,11 +187,11 @@ TEST_CASE("Every picture is handed on with what its error is measured against", 
   for (const ModelError& error : record.modelErrors) CHECK(rmse.at(error.cone.id()) == error.error.rmse);
 }
 
-TEST_CASE("Errors fall with the slices, and the model's error is apart from the method's", "[report]") {
+TEST_CASE("Errors fall with the number of slices, and the model's error is told apart from the method's", "[report]") {
   const auto context = testContext();
   if (!context) return;
   SmallStudy study;
-  study.settings.directions = 24;  // references, and coarser ones of half as many, are close to each other
+  study.settings.directions = 24;  // so many that half of them make nearly the same reference
   study.settings.slices = {4, 64};
   runStudy(*context, study.grid, study.resolved(), study.settings, study.report());
   const Json record = study.record();
@@ -200,7 +200,7 @@ TEST_CASE("Errors fall with the slices, and the model's error is apart from the 
   CHECK(rmse.at("emission-N64-k1-e32-s16") < 0.25 * rmse.at("emission-N4-k1-e32-s16"));
   CHECK(rmse.at("emission-N64-k1-e32-s16") > 0);
   REQUIRE(record["model_errors"].size() == 1);
-  // Light from the side and from behind is missing: far more than the reference's own error.
+  // Light from the side and from behind is missing, which is far more than the reference's own error.
   CHECK(record["model_errors"][0]["error"]["rmse"] > 0.01);
   for (const Json& reference : record["references"]) {
     CHECK(reference["time_ratio"] > 0);

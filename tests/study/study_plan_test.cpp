@@ -74,7 +74,7 @@ TEST_CASE("Slabs of ordinates have automatic segments at the base, and its windo
   for (const StudyCase& one : planStudy(settings, 60 * kDegree).cases) CHECK(one.scale == 0);
 }
 
-TEST_CASE("Every method has slices of its own, but for those too few to draw", "[report]") {
+TEST_CASE("Every method has slices of its own, except numbers too small to draw", "[report]") {
   StudySettings settings = small();
   settings.slices.clear();
   settings.methods = {"dos", "ordinates"};
@@ -89,7 +89,7 @@ TEST_CASE("Every method has slices of its own, but for those too few to draw", "
     CHECK(fewer.slices.at(name) == left);
   }
   CHECK(all.slices.at("ordinates").front() < all.slices.at("dos").front());
-  // What the user says is not touched: it is refused when it cannot be drawn.
+  // The slices that the user gives are not changed: they are refused when they cannot be drawn.
   settings.slices = {8, 16};
   CHECK(planStudy(settings, 1, 100).slices.at("dos") == settings.slices);
   settings.slices.clear();

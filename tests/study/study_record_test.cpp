@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-// The same study, nothing measured.
+// Returns the same study with nothing measured.
 StudyRecord unmeasured() {
   StudyRecord record = inventedStudy();
   record.references.clear();

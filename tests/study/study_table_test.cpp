@@ -23,7 +23,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 }  // namespace
 
-TEST_CASE("The table has a row per case, of as many columns as the head, that read back", "[report]") {
+TEST_CASE("The table has a row per case with as many columns as the head, and its numbers read back", "[report]") {
   const StudyRecord record = inventedStudy();
   const std::vector<std::string> lines = split(printTable(record), '\n');
   REQUIRE(lines.size() == 1 + record.cases.size());
@@ -41,7 +41,7 @@ TEST_CASE("The table has a row per case, of as many columns as the head, that re
     CHECK(std::stod(cells[column("time_ratio")]) == record.cases[i].timeRatio.median);
     CHECK(std::stod(cells[column("reference_error_rmse")]) == 0.001);
   }
-  // Only ordinates has windows; the shares of the passes are those of its picture.
+  // Only ordinates has windows; the shares of the passes are those of the case's picture.
   for (const std::string& line : std::vector<std::string>(lines.begin() + 1, lines.end())) {
     const std::vector<std::string> cells = split(line, ',');
     const bool windows = cells[column("method")] == "ordinates";
@@ -49,7 +49,7 @@ TEST_CASE("The table has a row per case, of as many columns as the head, that re
     CHECK(cells[column("windows_share")] == (windows ? "0.375" : "0"));
     CHECK(cells[column("eye_share")] == (windows ? "0.5" : "1"));
   }
-  // Milliseconds say something of hardware only.
+  // Milliseconds tell something only of hardware.
   CHECK(std::find(head.begin(), head.end(), "case_ms") == head.end());
   StudyRecord hardware = record;
   hardware.machine.software = false;

@@ -1,4 +1,4 @@
-// How far a picture of a study is from its reference.
+// Measures how far a picture of a study is from its reference.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
@@ -15,10 +15,10 @@ struct ErrorMeasures {
   bool operator==(const ErrorMeasures&) const = default;
 };
 
-/// @throw InvalidArgument  sizes that differ
+/// Measures the error of a picture. @throw InvalidArgument  the sizes differ
 ErrorMeasures measureError(const Image& test, const Image& reference);
 
-/// The picture without its alpha: three channels.
+/// Returns the picture without its alpha: three channels.
 Image colourOf(const Image& picture);
 
 }  // namespace umbrick

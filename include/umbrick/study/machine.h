@@ -1,4 +1,4 @@
-// The machine that a study runs on.
+// Describes the machine that a study runs on.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -18,9 +18,9 @@ struct Machine {
   bool operator==(const Machine&) const = default;
 };
 
-/// This machine, without a plotter.
+/// Returns a description of this machine, without a plotter.
 Machine describeMachine(const GlContext& context);
-/// 1-minute load average; 0 where the system does not tell.
+/// Returns the 1-minute load average; 0 where the system does not tell.
 double loadAverage();
 
 }  // namespace umbrick

@@ -1,5 +1,5 @@
-// What follows from the measurements of a study: which cases are on the Pareto front, the orders of convergence.
-// All findings point into the record that they were made from, and are valid as long as it stays as it is.
+// Finds what follows from the measurements of a study: which cases are on the Pareto front, and the orders of
+// convergence. All findings point into the record that they were made from, and are valid as long as it stays as it is.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace umbrick {
 
-/// The cases that are comparable in time and error: of one model, size and theta.
+/// The cases of one model, size and theta, which are comparable in time and error.
 struct ComparableCases {
   Model model = Model::emission;
   int size = 0;      // height of the picture, pixels
@@ -20,13 +20,13 @@ struct ComparableCases {
   std::vector<const CaseResult*> front;  // Pareto front of time ratio and RMSE, cheapest first
 };
 
-/// Groups in the order of the plan, of the cases that are measured.
+/// Returns the measured cases in groups, in the order of the plan.
 std::vector<ComparableCases> comparableCases(const StudyRecord& record);
 
-/// All cases that are on the front of their group; a case that is alone in its group is not one of them.
+/// Returns all cases that are on the front of their group, except cases that are alone in their group.
 std::set<const CaseResult*> frontCases(const std::vector<ComparableCases>& groups);
 
-/// The group of a model at the base size (and theta); null when nothing of it is measured.
+/// Returns the group of a model at the base size (and theta); null when none of its cases is measured.
 const ComparableCases* baseGroup(const std::vector<ComparableCases>& groups, const StudyPlan& plan, Model model);
 
 /// Cases of one method and detail that differ in their slices alone, coarsest first.
@@ -35,34 +35,34 @@ struct SliceSeries {
   const StudyMethod* method = nullptr;
   int detail = 0;  // 0 when the method has none
   std::vector<const CaseResult*> cases;
-  /// p of RMSE = c d^p by least squares, over the cases whose error is above twice that of the reference.
+  /// The order p of RMSE = c d^p by least squares, over the cases whose error is more than twice that of the reference.
   std::optional<double> order;
 };
 
-/// The series of all methods of a model, at the base of everything but slices and detail.
+/// Returns the series of all methods of a model, at the base of everything except slices and detail.
 std::vector<SliceSeries> sliceSeries(const StudyRecord& record, Model model);
 
-/// A case with windows beside one without, of the same model, size and theta.
+/// A case of a method with light windows beside one without, of the same model, size and theta.
 struct Comparison {
   const CaseResult* without = nullptr;
   const CaseResult* with = nullptr;  // null: none
 
-  /// How many times as fast the one with windows is.
+  /// Returns how many times as fast the case with windows is.
   double speedup() const { return without->timeRatio.median / with->timeRatio.median; }
-  /// Its error as a multiple of the other's.
+  /// Returns its error as a multiple of the other's.
   double errorRatio() const { return with->error.rmse / without->error.rmse; }
 };
 
-/// Per case of the Pareto front of the methods without windows, cheapest first, the fastest case with windows whose
-/// error is no larger. Empty when a group lacks one of the two kinds.
+/// Returns a comparison for each case of the Pareto front of the methods without windows, cheapest first: with the
+/// fastest case with windows whose error is no larger. Empty when a group lacks one of the two kinds.
 std::vector<Comparison> fastestOfNoLargerError(const ComparableCases& group);
 
-/// Few directions and slices beside many slices, at the base of everything else: K = 8 in 64 to 128 slices beside all
-/// details of the methods without windows in 1024.
+/// Returns comparisons of few directions and slices with many slices, at the base of everything else: K = 8 in 64 to
+/// 128 slices beside all details of the methods without windows in 1024.
 std::vector<Comparison> fewBesideMany(const StudyRecord& record);
 inline constexpr int kFewDirections = 8, kFewSlices[2]{64, 128}, kManySlices = 1024;
 
-/// RMSE between the reference and its coarser self; 0: not measured.
+/// Returns the RMSE between the reference and its coarser self; 0: not measured.
 double referenceError(const StudyRecord& record, const StudyReference& reference);
 
 }  // namespace umbrick

@@ -1,4 +1,4 @@
-// What a study measures: the methods, the values that are swept, and the list of cases that follows.
+// Plans what a study measures: the methods, the values that are swept, and the list of cases that follows.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
@@ -11,12 +11,12 @@
 
 namespace umbrick {
 
-/// A way to compute a picture. One entry of studyMethods() is all that a study needs to know of it.
+/// A way to compute a picture. Its entry in studyMethods() is all that a study needs to know of it.
 struct StudyMethod {
-  std::string name;   // in settings and records: "dos"
+  std::string name;   // name in settings and records: "dos"
   std::string title;  // for readers: "dos, Algorithm 3"
-  Model model;        // that it approximates: emission or cone; the reference of this model is the truth
-  /// What makes it finer beside the slices; empty: nothing does.
+  Model model;        // emission or cone, which the method approximates; the reference of this model is the truth
+  /// What makes the method finer besides the number of slices; without a name nothing does.
   struct Detail {
     std::string name;     // "footprint": field and column name
     std::string plural;   // "footprints": what messages call the list
@@ -26,25 +26,26 @@ struct StudyMethod {
     std::vector<int> full, quick;  // values that are swept unless the user says others
   } detail;
   void (*apply)(int detail, ResolvedScene& scene);  // makes a scene of the model one of this method
-  double (*work)(int detail);                       // of a slice, about so many times that of emission
-  std::vector<int> slices, quickSlices;             // where it is worth using; swept unless the user says others
-  bool usual = true;                                // part of a study unless the user says otherwise
-  bool quick = false;                               // and of a quick one
-  bool fineSegments = false;  // at the base slabs are cut into kAutomaticSegments, else into the fewest that are swept
-  bool windows = false;       // carries light in windows, whose scale is swept
+  double (*work)(int detail);                       // work of a slice, as a multiple of that of emission
+  std::vector<int> slices, quickSlices;             // worth using; swept unless the user gives others
+  bool usual = true;                                // whether it is part of a study unless the user says otherwise
+  bool quick = false;                               // whether it is also part of a quick study
+  bool fineSegments = false;  // at the base: kAutomaticSegments per slab, else the fewest that are swept
+  bool windows = false;       // whether it carries light in light windows, whose scale is swept
 };
 
-/// As many segments as segmentsOf() says.
+/// Stands for as many segments as segmentsOf() says.
 inline constexpr int kAutomaticSegments = 0;
 
-/// emission       slices, pixels that are opaque are shaded no more (as the scene says)
-/// emission-full  the same without that shortcut, the reference point of convergence
-/// dos            directional occlusion shading, Algorithm 3 of Schott et al. 2009
-/// dos-2          the same, Algorithm 2
-/// dos-two-pass   Algorithm 3 in two passes per slice
-/// ordinates      a set of directions, each with a transmittance of its own, in slabs of several segments
+/// Returns the methods:
+///   emission       slices; pixels that are opaque are shaded no more (as the scene says)
+///   emission-full  the same without that shortcut, the reference point of convergence
+///   dos            directional occlusion shading, Algorithm 3 of Schott et al. 2009
+///   dos-2          the same, Algorithm 2
+///   dos-two-pass   Algorithm 3 in two passes per slice
+///   ordinates      a set of directions, each with a transmittance of its own, in slabs of several segments
 const std::vector<StudyMethod>& studyMethods();
-/// @throw InvalidArgument  another name; lists those there are
+/// Returns the method of a name. @throw InvalidArgument  there is no such method; the message lists those there are
 const StudyMethod& studyMethod(std::string_view name);
 
 /// Bits of the eye buffer and of the occlusion buffer, 16 or 32 each.
@@ -53,11 +54,11 @@ struct BufferBits {
   bool operator==(const BufferBits&) const = default;
 };
 
-/// The values that are swept. The order within a list does not matter.
+/// The values that are swept. The order within a list makes no difference.
 struct StudySettings {
   std::vector<std::string> methods;  // empty: the usual ones
   std::vector<int> slices;  // through the visible extent of the volume along the view axis; empty: as each method says
-  std::map<std::string, std::vector<int>> details;  // by name of the detail; one left out: as the method says
+  std::map<std::string, std::vector<int>> details;  // by name of the detail; left out: as the method says
   std::vector<BufferBits> bits{{32, 32}, {32, 16}, {16, 32}, {16, 16}};
   std::vector<int> segments{1, 2, 4};         // of a slab along the ray
   std::optional<std::vector<double>> scales;  // window texels per voxel edge, of methods that have windows; empty: none
@@ -71,10 +72,10 @@ struct StudySettings {
   bool operator==(const StudySettings&) const = default;
 };
 
-/// Scales that are swept unless the user says others.
+/// These scales are swept unless the user gives others.
 inline const std::vector<double> kUsualScales{0.25, 0.5, 1, 2};
 
-/// A small study, of minutes.
+/// Returns the settings of a small study, of minutes.
 StudySettings quickStudySettings();
 
 /// One picture that is timed and compared.
@@ -86,17 +87,17 @@ struct StudyCase {
   int size = 0;
   double theta = 0;  // rad; 0 for emission
   double scale = 0;  // window texels per voxel edge; 0: automatic, or no windows
-  /// "dos-n3-N256-k1-e32o32-s256-t60", "ordinates-K16-N64-ka-e32o32-s256-t60-w0.5"; also the name of its files.
+  /// Returns "dos-n3-N256-k1-e32o32-s256-t60", "ordinates-K16-N64-ka-e32o32-s256-t60-w0.5"; also the name of its files.
   std::string id() const;
   bool operator==(const StudyCase&) const = default;
 };
 
-/// A picture of the reference.
+/// A picture that the reference integrates.
 struct StudyReference {
   Model model = Model::emission;
   int size = 0;
   double theta = 0;  // rad; 0 for emission and ambient
-  /// "cone-s256-t60"; also the name of its file.
+  /// Returns "cone-s256-t60"; also the name of its file.
   std::string id() const;
   bool operator==(const StudyReference&) const = default;
 };
@@ -114,15 +115,15 @@ struct StudyPlan {
   StudyReference referenceOf(const StudyCase& one) const;
 };
 
-/// The cases of a study: not all combinations, which would be thousands, but around a base point
+/// Plans the cases of a study: not all combinations, which would be thousands, but around a base point
 ///   slices x detail, slices x theta     at the base of everything else
 ///   bits, segments, sizes, scales       each alone, at the base of everything else
 /// for every method. The base is the middle of the slices and of the detail (the upper one of two), the most bits, the
 /// fewest segments or automatic ones, the largest size, automatic windows, and the scene's theta if it is swept, else
 /// the smallest.
 /// @param aperture     theta of the scene, rad
-/// @param leastSlices  fewer cannot be drawn: the methods' own lists begin there
-/// @throw InvalidArgument  an unknown method, an empty list, a value out of range or given twice
+/// @param leastSlices  fewer slices cannot be drawn: the methods' own lists begin there
+/// @throw InvalidArgument  a method is unknown, a list empty, a value out of range or given twice
 StudyPlan planStudy(const StudySettings& settings, double aperture, int leastSlices = 1);
 
 }  // namespace umbrick

@@ -1,4 +1,5 @@
-// All that is known of a study: what it is of, where it ran, and what was measured so far. Kept as study.json.
+// A record holds all that is known of a study: what it is of, where it ran, and what was measured so far. It is
+// kept as study.json.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -23,67 +24,67 @@ namespace umbrick {
 /// What was measured of one case.
 struct CaseResult {
   StudyCase what;
-  double spacing = 0;                 // of slices, world units
-  int segments = 1;                   // of a slab
-  std::int64_t slicesDrawn = 0;       // between the nearest and the farthest visible brick
+  double spacing = 0;                 // distance of slices, world units
+  int segments = 1;                   // segments of a slab
+  std::int64_t slicesDrawn = 0;       // slices between the nearest and the farthest visible brick
   ErrorMeasures error;                // against the reference of its model
-  Spread timeRatio;                   // over the baseline
+  Spread timeRatio;                   // time over the baseline
   double caseMs = 0, baselineMs = 0;  // medians
-  int pairs = 0;                      // of which these are
+  int pairs = 0;                      // timed pairs that the medians are of
   std::uint64_t bufferBytes = 0, textureBytes = 0;
-  std::uint64_t fragments = 0;                       // of bricks that passed the depth test, all passes
-  PassTimes passes;                                  // of one picture that waits for every pass and is not timed else
+  std::uint64_t fragments = 0;                       // of bricks that passed the depth test, in all passes
+  PassTimes passes;                                  // of one picture that waits for each pass
   double windowTexel = 0;                            // edge of a texel of the light windows, world units; 0: no windows
-  std::uint64_t windowBytes = 0, windowUpdates = 0;  // bytes; texels that slices were taken through
-  int directions = 0;                                // of the light
-  double load = 0;                                   // 1-minute load average when it was timed
+  std::uint64_t windowBytes = 0, windowUpdates = 0;  // bytes; texels that light was taken through slices in
+  int directions = 0;                                // directions of the light
+  double load = 0;                                   // 1-minute load average when the case was timed
 };
 
-/// Shares of extinction, windows and eye in the time of a picture; they sum up to 1.
+/// Returns the shares of extinction, windows and eye in the time of a picture; they add up to 1.
 std::array<double, 3> passShares(const PassTimes& passes);
 
 /// What was measured of one reference; its picture is a file of the study's folder.
 struct ReferenceResult {
   StudyReference what;
   double integrateMs = 0;
-  double timeRatio = 0;   // over the baseline of its size
-  ErrorMeasures coarser;  // its difference to half of the directions and four times the tolerance
+  double timeRatio = 0;   // time over the baseline of its size
+  ErrorMeasures coarser;  // its difference to a reference with half of the directions and four times the tolerance
   bool operator==(const ReferenceResult&) const = default;
 };
 
-/// Reference `cone` against reference `ambient`.
+/// The difference of reference `cone` to reference `ambient`.
 struct ModelError {
   StudyReference cone;
   ErrorMeasures error;
 };
 
 struct StudyRecord {
-  StudyPlan plan = {};  // what is to be measured; the rest says where, and what is measured already
-  ResolvedScene scene;  // what the plan sweeps has a fixed value
+  StudyPlan plan = {};  // what is to be measured; the other members say where, and what is measured already
+  ResolvedScene scene;  // has a fixed value where the plan sweeps
   VolumeIdentity volume = {};
   Machine machine = {};
   StudyGeometry geometry = {};
   std::vector<ReferenceResult> references = {};
   std::vector<ModelError> modelErrors = {};
   std::vector<CaseResult> cases = {};
-  std::optional<EarlierStudy> earlier = {};  // shown beside, no part of the study
+  std::optional<EarlierStudy> earlier = {};  // shown beside the study, and no part of it
 
-  /// Is every case and every reference of the plan measured?
+  /// Tells whether every case and every reference of the plan is measured.
   bool complete() const;
-  /// Null when it is not measured.
+  /// Returns the result of a case; null when it is not measured.
   const CaseResult* find(const StudyCase& what) const;
   const ReferenceResult* find(const StudyReference& what) const;
   const ModelError* findModelError(const StudyReference& cone) const;
 };
 
-/// JSON, the text of study.json; restoreRecord reads back the same.
+/// Returns JSON, the text of study.json, which restoreRecord reads back.
 std::string printRecord(const StudyRecord& record);
 /// Takes over what was measured from the text of a study.json.
 /// @param record  what is to be studied
 /// @param source  what messages call the text
-/// @throw IoError          not a study.json, or damaged
-/// @throw InvalidArgument  of another study: names the first setting that differs, there and here; or unfinished and
-///                         of another machine
+/// @throw IoError          the text is not a study.json, or damaged
+/// @throw InvalidArgument  the text is of another study (the message names the first setting that differs, there and
+///   here), or unfinished and of another machine
 void restoreRecord(StudyRecord& record, std::string_view text, const std::string& source);
 
 }  // namespace umbrick

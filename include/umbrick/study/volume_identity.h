@@ -1,4 +1,4 @@
-// Which volume a study is of.
+// Tells which volume a study is of.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
