@@ -1,4 +1,4 @@
-// umbrick check: do bricks change anything? The invariants of the renderer, measured on a volume.
+// umbrick check tells whether bricks change anything: it measures the invariants of the renderer on a volume.
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
@@ -28,7 +28,7 @@ struct CheckCommand {
   bool json = false;
 };
 
-// Three digits are enough to compare a value with its limit.
+// Prints three digits, which are enough to compare a value with its limit.
 std::string printNumber(double number) {
   char text[32];
   std::snprintf(text, sizeof text, number == std::floor(number) && number < 1e9 ? "%.0f" : "%.2e", number);
@@ -119,7 +119,8 @@ Command addCheck(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("check", "Measure on a volume that bricks and culling change nothing.");
   command->scene = addSceneOptions(*sub);
   addBackendOption(*sub, command->backend);
-  // What is compared is no option: emission and cone, with and without bricks and culling.
+  // The check decides what is compared: emission and cone, with and without bricks and culling. So these
+  // are no options.
   for (const char* option : {"--model", "--unbricked", "--no-culling"}) sub->remove_option(sub->get_option(option));
   sub->get_option("--size")->description("of the pictures, pixels [256x256]");
   sub->get_option("--tf")->description("transfer function: a preset or a JSON file [a grey ramp over the values]");

@@ -1,4 +1,4 @@
-// A sub-command of the umbrick program: declares its options, then runs.
+// A sub-command of the umbrick program declares its options, then runs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <CLI/CLI.hpp>
@@ -8,18 +8,18 @@
 
 namespace umbrick::tools {
 
-/// What a sub-command does once its options are parsed; the exit status.
+/// Does the work of a sub-command once its options are parsed; returns the exit status.
 using Run = std::function<int()>;
 
 /// A sub-command and what it does.
 using Command = std::pair<CLI::App*, Run>;
 
-/// Wrong usage that CLI11 cannot see, such as options that exclude each other: exit status 2.
+/// An error of usage that CLI11 cannot see, such as options that exclude each other. The exit status is 2.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Each in the file of its name. Adds a sub-command with its options to `app`.
+// Each of these is in the file of its name. It adds a sub-command with its options to `app`.
 Command addCheck(CLI::App& app);
 Command addCompare(CLI::App& app);
 Command addConvert(CLI::App& app);

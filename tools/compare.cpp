@@ -1,4 +1,4 @@
-// umbrick compare: how far a picture is from its reference.
+// umbrick compare tells how far a picture is from its reference.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ void checkOutput(const fs::path& path) {
 
 // --- the layers to compare ---
 
-// The main layer goes by its channels.
+// Returns the name of a layer; the main layer is named by its channels.
 std::string nameOf(const ImageLayer& layer) {
   if (!layer.name.empty()) return layer.name;
   return layer.image.channels == 1 ? "Y"
@@ -78,7 +78,7 @@ const ImageLayer& pick(const std::vector<ImageLayer>& layers, const std::string&
   throw InvalidArgument(path.string() + ": no layer \"" + name + "\": the file has " + namesOf(layers));
 }
 
-// Both files hold the same layers, or --layer says which ones matter.
+// Checks that both files hold the same layers, or that --layer says which ones matter.
 void checkSameLayers(const CompareCommand& command, const std::vector<ImageLayer>& tests,
                      const std::vector<ImageLayer>& references) {
   std::string common;
@@ -124,8 +124,8 @@ std::vector<Pair> readPairs(const CompareCommand& command) {
 
 // --- pictures of the difference ---
 
-// |difference| * gain as what a byte of the PNG says, so before the sRGB curve is undone. One channel becomes grey;
-// what is finite in one picture only is at its brightest.
+// Returns |difference| * gain as the number that a byte of the PNG shows, so before the sRGB curve is undone. One
+// channel becomes grey. A value that is finite in one picture only gets the greatest brightness.
 Image shownDifference(const Image& difference, double gain) {
   Image shown(difference.width, difference.height, 4);
   for (int y = 0; y < shown.height; ++y)

@@ -41,7 +41,7 @@ bool isKept(const Measure& measure, double value, double limit) {
 
 std::string pixels(std::uint64_t count) { return std::to_string(count) + (count == 1 ? " pixel" : " pixels"); }
 
-// The pixel of the largest error as viewers count: from the top left.
+// Returns the pixel of the largest error as viewers count it: from the top left.
 glm::ivec2 fromTopLeft(const LayerDifference& layer, const Comparison& comparison) {
   const glm::ivec2 pixel = layer.difference.maxPixel;
   return {pixel.x, comparison.size.y - 1 - pixel.y};

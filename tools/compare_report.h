@@ -17,11 +17,11 @@ struct LayerDifference {
   ImageDifference difference;
 };
 
-/// One number of a comparison.
+/// One number that a comparison gives.
 struct Measure {
   const char* key;     // in JSON
   const char* title;   // in the table and in messages
-  const char* option;  // that limits it
+  const char* option;  // name of the option that limits it
   const char* help;
   bool higherIsBetter;
   std::optional<double> (*of)(const ImageDifference&);
@@ -31,16 +31,16 @@ extern const std::array<Measure, 7> kMeasures;
 /// The limit of each measure, in the order of kMeasures.
 using Limits = std::array<std::optional<double>, kMeasures.size()>;
 
-/// A measure of a layer that has a limit.
+/// The result for a measure of a layer that has a limit.
 struct Verdict {
   std::string layer;
   const Measure* measure;
   double value, limit;
-  bool passed;  // never where a value is finite in one picture only
+  bool passed;  // false wherever a value is finite in one picture only
 };
 
-/// Each limit holds for each layer that has the measure.
-/// @throw InvalidArgument  no layer has it
+/// Compares each layer with the limit of each measure that it has.
+/// @throw InvalidArgument  no layer has the measure of a limit
 std::vector<Verdict> judge(const std::vector<LayerDifference>& layers, const Limits& limits);
 
 struct Comparison {
@@ -53,8 +53,8 @@ struct Comparison {
 
 void printTable(const Comparison& comparison);
 void printJson(const Comparison& comparison);
-/// One line to stderr for each limit that is not kept, and for each layer that fails for values which are finite in one
-/// picture only.
+/// Prints one line to stderr for each limit that is not kept, and for each layer that fails since it has values which
+/// are finite in one picture only.
 void complain(const Comparison& comparison);
 
 }  // namespace umbrick::tools

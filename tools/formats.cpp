@@ -44,7 +44,7 @@ void printJson() {
 }  // namespace
 
 void addListFormats(CLI::App& command) {
-  // Acts as it is parsed, like --help, so that it needs no input.
+  // The option acts as it is parsed, like --help, so that it needs no input.
   command
       .add_flag_function(
           "--list-formats{1},--list-formats-json{2}",

@@ -1,4 +1,4 @@
-// umbrick info: what is in a .vdb or .nvdb file.
+// umbrick info tells what is in a .vdb or .nvdb file.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -63,7 +63,7 @@ nlohmann::json toJson(const GridSummary& grid) {
       for (int column = 0; column < 4; ++column) entries.push_back((*grid.indexToWorld)[column][row]);
       rows.push_back(entries);
     }
-    out["index_to_world"] = rows;  // of column vectors
+    out["index_to_world"] = rows;  // for column vectors
   }
   if (grid.values)
     out["values"] = {{"of", grid.values->magnitude ? "magnitude" : "value"},
@@ -108,7 +108,7 @@ void printHistogram(const ValueSummary& values) {
   }
 }
 
-// What the volume that the grid was made of said about itself, a line for each metadata of this list that there is.
+// Prints what the source of the grid said about itself: a line for each metadata of this list that the grid has.
 void printSource(const std::map<std::string, std::string>& metadata) {
   for (const char* key : {"source_format", "source_file", "modality", "series_description", "space", "length_unit",
                           "rescale", "value_unit"}) {

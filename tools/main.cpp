@@ -1,4 +1,4 @@
-// The umbrick program: one sub-command per file beside this one.
+// The umbrick program. Each sub-command has a file of its own beside this one.
 // SPDX-License-Identifier: Apache-2.0
 #include <exception>
 #include <iostream>
@@ -10,12 +10,12 @@
 namespace {
 using namespace umbrick::tools;
 
-// Exit status: 0 success, 1 a failed job or comparison, 2 wrong usage.
+// Returns the exit status: 0 success, 1 a failed job or comparison, 2 wrong usage.
 int runProgram(int argc, char** argv) {
   CLI::App app{"Sparse volumes: convert, inspect, render, compare, check.", "umbrick"};
   app.set_version_flag("--version", "umbrick " UMBRICK_VERSION);
   app.require_subcommand(1);
-  // One line, like every other error.
+  // A message is one line, like every other error.
   app.failure_message(
       [](const CLI::App*, const CLI::Error& error) { return std::string("umbrick: ") + error.what() + "\n"; });
   const std::vector<Command> commands{

@@ -12,7 +12,7 @@ namespace umbrick::tools {
 namespace {
 bool isExr(const std::filesystem::path& path) { return path.extension() == ".exr"; }
 
-// Says how many colours a file of half-floats cuts off.
+// Prints how many colours a file of half-floats cuts off.
 void tellClipped(const std::filesystem::path& path, const std::vector<ImageLayer>& layers) {
   constexpr float kMost = 65504;
   if (layers.empty()) return;

@@ -1,4 +1,4 @@
-// Where a picture goes and as what, shared by the sub-commands that make one.
+// Decides where a picture goes and in which form, for the sub-commands that make one.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <CLI/CLI.hpp>
@@ -20,14 +20,16 @@ struct PictureOutput {
   bool layers = false;
 };
 
-/// Adds the options to a sub-command. @param exrPixel  default of --exr-pixel  @param layers  what --layers adds
+/// Adds the options to a sub-command.
+/// @param exrPixel  default of --exr-pixel
+/// @param layers  what --layers adds
 std::shared_ptr<PictureOutput> addPictureOutput(CLI::App& command, const std::string& exrPixel,
                                                 const std::string& layers);
 
-/// No two files are one, be it by another path; empty ones do not count. @throw UsageError
+/// Checks that no two of the files are the same, even by another path; empty ones do not count. @throw UsageError
 void checkApart(const std::vector<std::filesystem::path>& files);
 
-/// A picture can take long: what cannot be written is said before it is made. @throw UsageError, IoError
+/// Checks that the files can be written, before the picture is made, which can take long. @throw UsageError, IoError
 void checkOutputs(const PictureOutput& output);
 
 /// Writes the picture.

@@ -11,9 +11,9 @@
 namespace umbrick::tools {
 namespace {
 
-// A signal handler can reach nothing but a static.
+// A signal handler can only reach a static variable.
 volatile std::sig_atomic_t stopRequested = 0;
-// The second time the program ends as it would have the first time.
+// Asks the job to stop, and lets the next signal end the program as the first one would have ended it.
 void requestStop(int number) {
   stopRequested = 1;
   std::signal(number, SIG_DFL);

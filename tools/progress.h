@@ -1,4 +1,4 @@
-// How far a long job is, on a terminal, and whether the user wants it to stop.
+// Shows on a terminal how far a long job is, and finds out whether the user wants it to stop.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace umbrick::tools {
 
-/// While one lives, the first Ctrl-C (or SIGTERM) asks the job to stop instead of ending the program.
+/// While an object of this class lives, the first Ctrl-C (or SIGTERM) asks the job to stop instead of
+/// ending the program.
 class StopRequest {
  public:
   StopRequest();
@@ -17,17 +18,17 @@ class StopRequest {
   bool requested() const;
 };
 
-/// A bar with the time left on stderr; nothing when stderr is no terminal.
+/// Shows a bar with the time left on stderr, or nothing when stderr is no terminal.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string label);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
-  /// Another pass of the job begins: its share, its rate and the time left count from here.
-  /// @param bytes  that it reads in all, unpacked; 0: no rate is shown
+  /// Begins another part of the job: its share, its rate and the time left count from here.
+  /// @param bytes  that the part reads in all, unpacked; 0: no rate is shown
   void begin(std::string label, double bytes = 0);
-  /// @param share  of the pass that is done, in [0, 1]
+  /// @param share  of the part that is done, in [0, 1]
   void show(double share);
   /// Takes the bar away, so that something can be printed.
   void clear();

@@ -1,4 +1,4 @@
-// umbrick reference: the picture that a renderer should make, integrated on the CPU.
+// umbrick reference makes the picture that a renderer should make, integrated on the CPU.
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/reference/reference.h"
 
@@ -77,7 +77,7 @@ int runReference(ReferenceCommand& command) {
   ReferenceOptions& options = command.reference;
   options.integrator = parseName(kIntegrators, command.integrator, "--integrator");
   options.skipEmpty = !command.noSkipping;
-  // Without a number of paths a standard error is reached however many it takes.
+  // If no number of paths is given, as many are traced as the standard error needs.
   if (options.standardError > 0 && command.samples == 0) options.samples = 1'000'000'000;
   if (command.samples > 0) options.samples = command.samples;
   ReferencePicture picture;
@@ -124,7 +124,7 @@ Command addReference(CLI::App& app) {
       addPictureOutput(*sub, "float", "V (visibility weighted by opacity) and Z (mean depth, world units)");
   ReferenceOptions& o = command->reference;
   const std::string group = "Integration";
-  // A reference has directions of its own, not the few that a scene gives the slices.
+  // A reference has directions of its own, not the few that a scene gives to the slices.
   sub->remove_option(sub->get_option("--directions"));
   sub->add_option("--directions", o.directions, "quadrature, K: about so many over the cone, the sphere or the lights")
       ->check(CLI::Range(1, 1000000))

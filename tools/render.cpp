@@ -1,4 +1,4 @@
-// umbrick render: a picture of a volume.
+// umbrick render makes a picture of a volume.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -34,12 +34,12 @@ struct RenderCommand {
   std::string backend = "auto";
   int frames = 1;
   bool timePasses = false;
-  std::optional<int> passes;  // of a progressive picture
+  std::optional<int> passes;  // of a progressive picture: most samples
   std::optional<double> maxSeconds, targetError;
   std::uint64_t seed = 1;
 };
 
-// The volume of a scene, cut for it.
+// The volume of a scene, cut into bricks for it.
 struct LoadedScene {
   ResolvedScene scene;
   double loadMs = 0, brickMs = 0;
@@ -130,7 +130,8 @@ std::string describe(const ProgressivePicture& picture) {
          ", systematic error " + rounded(picture.error.systematic) + ", together " + rounded(picture.error.total());
 }
 
-// Passes until enough of them, of time or of accuracy; the picture on disk gets better meanwhile.
+// Renders samples until there are enough, or time is over, or the picture is accurate enough. The file
+// gets better meanwhile.
 ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& volume, const ResolvedScene& scene,
                                 const RenderOptions& options, std::vector<double>& framesMs) {
   constexpr double kWriteEveryMs = 1000;
@@ -162,7 +163,7 @@ ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& vo
         return !stop.requested();
       });
   if (last.passes != told) std::cerr << describe(last) << '\n';
-  // Errors follow an order only where there are slabs to refine.
+  // Errors follow an order only where there are enough slabs to refine.
   constexpr std::int64_t kFewSlabs = 12;
   if (last.picture.stats.slices > 0 && last.picture.stats.slices < kFewSlabs)
     std::cerr << "the volume is only " << last.picture.stats.slices
@@ -203,7 +204,7 @@ int render(const RenderCommand& command) {
       framesMs.push_back(frame.elapsedMs());
     }
   }
-  // What is asked for by name may round voxels; the automatic choice does not.
+  // A format that is asked for by name may round voxels; the automatic choice does not.
   if (loaded.scene.bricks.format != "auto" && picture.stats.formatError > 0)
     std::cerr << "texels of " << loaded.scene.bricks.format << " are off by up to " << picture.stats.formatError
               << ", in units of the grid\n";

@@ -17,7 +17,7 @@ constexpr double kRadians = std::numbers::pi / 180;
 
 glm::dvec3 toVector(const std::vector<double>& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
-// "1024x768"
+// Parses a size such as "1024x768".
 glm::ivec2 parseSize(const std::string& text) {
   glm::ivec2 size(0);
   int used = 0;
@@ -28,7 +28,7 @@ glm::ivec2 parseSize(const std::string& text) {
 
 // --- the table of fields as options ---
 
-// Of the field's kind, in a scene that has it.
+// Returns a place of the field's kind, in a scene that has it.
 FieldPlace examplePlace(const SceneField& field, Scene& orbited, Scene& placed) {
   placed.orbit.reset();
   const FieldPlace place = field.place(orbited);
@@ -90,7 +90,7 @@ class FieldOption {
   }
 
  private:
-  // Remembers what the option says until the scene is there.
+  // Remembers what the option says until the scene is read.
   template <class Assign>
   std::function<void()> setter(Assign assign) const {
     return [this_ = *this, assign] {
@@ -137,7 +137,7 @@ void validate(const SceneOptions& options, const Scene& scene) {
 
 // --- parts of a scene that are no single field ---
 
-// An eye replaces the angles around the volume; angles replace an eye.
+// Places the camera. An eye replaces the angles around the volume, and angles replace an eye.
 void placeCamera(const SceneOptions& options, Scene& scene) {
   Camera& camera = scene.camera;
   if (options.orthographic) camera.projection = Projection::orthographic;
@@ -162,8 +162,8 @@ void applyTransfer(const SceneOptions& options, const DefaultTransfer& defaultTr
   if (options.sigmaScale) scene.transfer = scene.transfer->scaled(*options.sigmaScale);
 }
 
-// Model, method and then the quality, before what it stands for is given one by one. A volume alone says nothing of its
-// slices: then `normal` does.
+// Applies model and method, and then the quality, before the fields that it sets are given one by one. A scene without
+// a file has no slices of its own, so that `normal` applies.
 void applyQuality(const SceneOptions& options, bool fromScene, Scene& scene) {
   for (const char* option : {"model", "method"})
     if (options.has(option)) options.fields.find(option)->second(scene);
@@ -176,7 +176,7 @@ void applyQuality(const SceneOptions& options, bool fromScene, Scene& scene) {
     umbrick::applyQuality(Quality::normal, scene);
   else
     return;
-  // Other slabs have segments as long as these, unless told.
+  // Slabs of another spacing have segments as long as these, unless the user gives their number.
   if (!options.has("spacing")) return;
   Scene spaced = scene;
   for (const char* option : {"spacing", "spacing-unit"})
@@ -184,7 +184,7 @@ void applyQuality(const SceneOptions& options, bool fromScene, Scene& scene) {
   if (spaced.spacingUnit == SpacingUnit::voxel) scene.sampling.segments = segmentsOf(spaced.sampling.spacing);
 }
 
-// What only the other method would look at says that the user expects that one.
+// Refuses an option that only the other method looks at, since it shows that the user expects that method.
 void checkMethodOptions(const SceneOptions& options, Method method) {
   for (const SceneField& field : sceneFields())
     if (field.onlyOf && *field.onlyOf != method && options.has(field.option))

@@ -1,4 +1,4 @@
-// umbrick study: what accuracy costs on a scene, as a table, plots and a page.
+// umbrick study tells what accuracy costs on a scene, as a table, plots and a page.
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/study/study.h"
 
@@ -35,12 +35,12 @@ struct StudyCommand {
   std::vector<std::string> methods, bits;
   std::vector<int> slices, segments, sizes;
   std::vector<double> thetas, scales;
-  std::map<std::string, std::vector<int>> details;  // by name
+  std::map<std::string, std::vector<int>> details;  // by name of the detail
   std::optional<int> repeats, directions;
   std::optional<double> tolerance;
 };
 
-// "32", or "32/16": eye buffer, occlusion buffer.
+// Parses "32", or "32/16": eye buffer, occlusion buffer.
 BufferBits parseBits(const std::string& text) {
   BufferBits bits;
   int used = 0;
@@ -58,7 +58,7 @@ void apply(const std::vector<T>& option, std::vector<T>& field) {
 
 StudySettings makeSettings(const StudyCommand& command) {
   StudySettings settings = command.quick ? quickStudySettings() : StudySettings{};
-  // The values of a quick study go with its methods.
+  // The values of a quick study belong to its own methods.
   if (!command.methods.empty()) {
     settings.methods = command.methods;
     std::erase_if(settings.details, [&](const auto& detail) {
@@ -89,7 +89,7 @@ StudySettings makeSettings(const StudyCommand& command) {
 int study(const StudyCommand& command) {
   const StudySettings settings = makeSettings(command);
   const Scene scene = makeScene(*command.scene);
-  planStudy(settings, scene.occlusion.aperture);  // before a volume is loaded that may take long
+  planStudy(settings, scene.occlusion.aperture);  // refuses wrong settings before a volume is loaded
   const Volume volume(scene.volume);
   const ResolvedScene resolved = volume.resolve(scene);
   const auto context = createContext(command.backend);
@@ -97,7 +97,7 @@ int study(const StudyCommand& command) {
   const StopRequest stop;
   StudyOptions options;
   options.earlier = command.earlier;
-  options.plotter = gnuplotVersion();  // before anything is measured that could not be plotted then
+  options.plotter = gnuplotVersion();  // fails before anything is measured that could not be plotted later
   options.picture = [&](const StudyPicture& p) { writePictures(folder, p, resolved.ambient); };
   const StudyOutcome outcome = [&] {
     ProgressBar bar("study");
@@ -134,7 +134,8 @@ std::string printedList(const std::vector<int>& values) {
   return text;
 }
 
-// "64 128 (emission, dos), 16 32 (ordinates)": of the methods that are in a study, or a quick one, by themselves.
+// Returns the slices of the methods that are in a study by default, or in a quick one: "64 128 (emission, dos),
+// 16 32 (ordinates)".
 std::string slicesOfMethods(bool quick) {
   std::vector<std::pair<std::string, std::string>> lists;  // slices, methods
   for (const StudyMethod& method : studyMethods()) {
@@ -163,7 +164,7 @@ void addSweeps(CLI::App& sub, StudyCommand& c) {
          "--slices", c.slices,
          "through the visible extent along the view axis" + defaults(slicesOfMethods(false), slicesOfMethods(true)))
       ->group(group);
-  // One option per name; several methods may share it.
+  // There is one option per name, which several methods may share.
   for (const StudyMethod& method : studyMethods()) {
     const StudyMethod::Detail& detail = method.detail;
     if (detail.name.empty() || c.details.contains(detail.name)) continue;
@@ -223,7 +224,7 @@ Command addStudy(CLI::App& app) {
       "folder gets index.html, study.csv and study.json. A stopped study goes on when it is started again.");
   command->scene = addSceneOptions(*sub);
   addBackendOption(*sub, command->backend);
-  // What is swept is no option of the scene; and errors are measured without background radiance.
+  // What the study sweeps is no option of the scene, and errors are measured without background radiance.
   for (const char* option : {"--model", "--method", "--quality", "--theta", "--footprint", "--directions",
                              "--occlusion-scale", "--algorithm", "--passes", "--occlusion-bits", "--eye-bits",
                              "--spacing", "--spacing-unit", "--segments", "--background"})

@@ -1,4 +1,4 @@
-// Checks of option values: finite numbers, with messages that say what was expected.
+// Checks values of options: finite numbers, with messages that say what was expected.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <CLI/CLI.hpp>
@@ -7,7 +7,7 @@
 
 namespace umbrick::tools {
 
-/// A number that is finite, which CLI11's own ranges do not ask for, and that `accept` agrees to.
+/// Accepts a number that is finite, which CLI11's own ranges do not ask for, and that `accept` agrees to.
 /// @param expected  completes "expected ..., found -1"; also shown in the help
 template <typename Accept>
 CLI::Validator finiteNumber(Accept accept, const std::string& expected) {
@@ -28,7 +28,7 @@ inline CLI::Validator nonNegativeNumber() {
 inline CLI::Validator positiveNumber() {
   return finiteNumber([](double value) { return value > 0; }, "a number > 0");
 }
-/// @param range  as messages say it, e.g. "0 to 1"
+/// Accepts a number between two ends. @param range  as messages print it, for example "0 to 1"
 inline CLI::Validator numberIn(double low, double high, const std::string& range) {
   return finiteNumber([low, high](double value) { return value >= low && value <= high; }, "a number from " + range);
 }

@@ -13,7 +13,7 @@
 
 namespace umbrick {
 
-/// ball.vdb and ball.json, a transfer function for it.
+/// Holds ball.vdb and ball.json, a transfer function for it.
 struct BallWorkplace {
   TemporaryFolder folder;
   BallWorkplace() {
@@ -27,7 +27,7 @@ struct BallWorkplace {
   ProgramResult run(const std::string& arguments) const { return runProgram(folder, arguments); }
   ExrFile exr(const std::string& name) const { return readExr(folder.path() / name); }
   nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(readBytes(folder.path() / name)); }
-  /// What the header of a picture made so says.
+  /// Returns the scene in the header of a picture that is made with these arguments.
   nlohmann::json sceneOf(const std::string& arguments) const {
     const ProgramResult result = run(arguments + " -o scene.exr");
     INFO(arguments << ": " << result.err);

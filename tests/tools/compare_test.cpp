@@ -31,7 +31,7 @@ void write(const TemporaryFolder& folder, const std::string& name, const std::ve
   writeExr(folder.path() / name, layers, options);
 }
 
-// a.exr beside b.exr: RGB differs by 0.0625 everywhere, alpha not.
+// Two pictures, a.exr and b.exr: RGB differs by 0.0625 everywhere, alpha not.
 struct Offset {
   TemporaryFolder folder;
   Offset() {
@@ -88,9 +88,9 @@ TEST_CASE("Each limit holds on one side of the value and fails on the other", "[
     CHECK_THAT(failed.err, Contains("umbrick: RGBA: " + std::string(limit.title) + " is ") &&
                                Contains(", " + std::string(limit.option) + " is "));
     CHECK(std::count(failed.err.begin(), failed.err.end(), '\n') == 1);
-    CHECK(failed.out == kept.out);  // what was measured is printed all the same
+    CHECK(failed.out == kept.out);  // what was measured is printed in both cases
   }
-  CHECK(files.run("a.exr b.exr --max-error 0.0625").status == 0);  // the limit itself is allowed
+  CHECK(files.run("a.exr b.exr --max-error 0.0625").status == 0);  // a value equal to the limit is allowed
   const ProgramResult two = files.run("a.exr b.exr --max-rmse 0.01 --min-ssim 1 --max-error 1");
   CHECK(two.status == 1);
   CHECK_THAT(two.err, Contains("RMSE is 0.0541265877, --max-rmse is 0.01\n") && Contains("SSIM is"));
@@ -124,7 +124,7 @@ TEST_CASE("The JSON holds what the library measures", "[tools]") {
   CHECK(layer.at("rmse") == expected.rmse);
   CHECK(layer.at("rmse_rgb") == *expected.rmseRgb);
   CHECK(layer.at("max_error") == expected.maxError);
-  CHECK(layer.at("max_error_pixel") == json{50, 7});  // from the top left: 48 - 1 - 40
+  CHECK(layer.at("max_error_pixel") == json{50, 7});  // counted from the top left: 48 - 1 - 40
   CHECK(layer.at("p999") == expected.p999);
   CHECK(layer.at("rel_mse") == expected.relMse);
   CHECK(layer.at("ssim") == *expected.ssim);
@@ -135,13 +135,13 @@ TEST_CASE("The JSON holds what the library measures", "[tools]") {
   CHECK(single.at("rmse") == 0);
   for (const char* key : {"rmse_rgb", "ssim", "flip"}) CHECK(single.at(key).is_null());
   const json& limits = report.at("limits");
-  REQUIRE(limits.size() == 2);  // of both layers
+  REQUIRE(limits.size() == 2);  // one for each of both layers
   CHECK(limits.at(0) ==
         json{{"layer", "RGBA"}, {"measure", "rmse"}, {"value", expected.rmse}, {"limit", 0.001}, {"passed", false}});
   CHECK(limits.at(1).at("passed") == true);
 }
 
-TEST_CASE("Layers must be the same, or be named", "[tools]") {
+TEST_CASE("Both files must hold the same layers, unless the layers to compare are named", "[tools]") {
   const TemporaryFolder folder;
   const Image colour = solid(12, 12, 0.5f, 0.5f, 0.5f), other = solid(12, 12, 0.25f, 0.25f, 0.25f), single(12, 12, 1);
   write(folder, "a.exr", {{"", colour}, {"V", single}, {"Z", single}});
@@ -172,9 +172,9 @@ TEST_CASE("Layers must be the same, or be named", "[tools]") {
   CHECK(layers("a.exr b.exr --layer V --layer RGBA") == std::vector<std::string>{"V", "RGBA"});
   CHECK(layers("a.exr z.exr --layer Z") == std::vector<std::string>{"Z"});
   CHECK(layers("rgb.exr rgb.exr") == std::vector<std::string>{"RGB"});
-  // Half a byte where the sRGB curve has the slope 1.52.
+  // The error is half a byte where the sRGB curve has the slope 1.52.
   CHECK(layers("a.png a.exr --layer RGBA --max-error 0.003") == std::vector<std::string>{"RGBA"});
-  // A limit that a layer cannot be asked for is of the others.
+  // A limit does not apply to layers that do not have its measure.
   CHECK(layers("a.exr a.exr --min-ssim 0.9") == std::vector<std::string>{"RGBA", "V", "Z"});
   checkFails(folder, "a.exr a.exr --layer V --min-ssim 0.9", 1, "--min-ssim: no layer that is compared has SSIM");
   checkFails(folder, "a.exr a.exr --layer V --flip-map f.png", 1, "--flip-map: no layer that is compared has FLIP");
@@ -198,7 +198,7 @@ TEST_CASE("A value that is finite in one picture only fails every limit", "[tool
     CHECK_THAT(result.err, Contains("umbrick: RGBA: 1 pixel with NaN or infinity in one picture only"));
   }
   const ProgramResult result = runProgram(folder, "compare a.exr b.exr --json --layer Z");
-  CHECK(result.status == 0);  // nothing was asked for
+  CHECK(result.status == 0);  // no limit was asked for
   const json layer = json::parse(result.out).at("layers").at(0);
   CHECK(layer.at("rmse") == "inf");
   CHECK(layer.at("max_error") == "inf");
@@ -273,7 +273,7 @@ TEST_CASE("Pictures that cannot be compared are an error that names them and lea
   checkFails(folder, "a.exr a.exr --flip-map none/f.png", 1, "none/f.png: cannot write");
 }
 
-TEST_CASE("Wrong usage of compare exits 2", "[tools]") {
+TEST_CASE("Wrong usage of compare ends with exit status 2", "[tools]") {
   const Offset files;
   checkFails(files.folder, "a.exr", 2, "reference is required");
   checkFails(files.folder, "a.exr b.exr b.exr", 2, "b.exr");

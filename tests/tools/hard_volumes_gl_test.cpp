@@ -1,4 +1,5 @@
-// What the programs say of volumes with voxels that are no numbers, without voxels, and too large to be one texture.
+// Tests what the programs say of volumes with voxels that are not finite, without voxels, and too large
+// for one texture.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -35,7 +36,7 @@ long lines(const std::string& text) { return std::count(text.begin(), text.end()
 
 }  // namespace
 
-TEST_CASE("NaN and infinite voxels cost one line that counts them, and render as background", "[tools]") {
+TEST_CASE("NaN and infinite voxels are counted in one line and render as background", "[tools]") {
   if (!testContext()) return;
   const TemporaryFolder folder;
   writeBytes(folder.path() / "tf.json", kTransfer);
@@ -48,7 +49,7 @@ TEST_CASE("NaN and infinite voxels cost one line that counts them, and render as
       clean->tree().setValue(at, 0.0f);
       dirty->tree().setValue(at, value);
     }
-  // Some of the 48 may be the same voxel.
+  // Some of the 48 places may be the same voxel.
   std::uint64_t count = 0;
   for (auto voxel = dirty->cbeginValueOn(); voxel; ++voxel) count += !std::isfinite(*voxel);
   REQUIRE(count > 30);
@@ -87,7 +88,7 @@ TEST_CASE("Volumes without voxels are refused in one line", "[tools]") {
   }
 }
 
-// Two voxels that 2e12 others lie between.
+// Between the two voxels lie 2e12 others.
 TEST_CASE("A volume too large for one texture is rendered in bricks and refused as one", "[tools]") {
   if (!testContext()) return;
   const TemporaryFolder folder;
@@ -97,7 +98,7 @@ TEST_CASE("A volume too large for one texture is rendered in bricks and refused 
   const std::string view =
       "far.vdb --tf tf.json --orthographic --eye 0 -9 0 --look-at 0 0 0 --view-height 4 --size 9x9 ";
   CHECK(runProgram(folder, "render " + view + "-o a.exr --exr-pixel float").status == 0);
-  // The middle of a voxel's tent: 1 - exp(-0.3).
+  // The ray goes through the middle of a voxel's tent: 1 - exp(-0.3).
   CHECK(pictureOf(folder, "a.exr").at(4, 4)[3] == Approx(0.25918).epsilon(1e-3));
   const ProgramResult result = runProgram(folder, "render " + view + "-o b.exr --unbricked");
   CHECK(result.status == 1);

@@ -1,4 +1,4 @@
-// What the program says of the grids of a file.
+// Reads what the program says of the grids of a file.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json.hpp>

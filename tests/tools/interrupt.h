@@ -16,8 +16,8 @@
 
 namespace umbrick {
 
-/// Is a process the program, and does it handle SIGINT by itself? Until it does, an interrupt ends it as any other. The
-/// shell that it was before handles SIGINT too.
+/// Tells whether a process is the program, and handles SIGINT by itself. Until it does, an interrupt ends it as any
+/// other process. The shell that it was before handles SIGINT too.
 inline bool catchesInterrupt(pid_t pid) {
   const std::filesystem::path process = "/proc/" + std::to_string(pid);
   std::error_code gone;
@@ -29,7 +29,7 @@ inline bool catchesInterrupt(pid_t pid) {
 }
 
 /// Runs the program and interrupts it once it is prepared for that and `ready` holds. However slow the machine is, the
-/// interrupt comes neither before nor after the work if there is enough of that.
+/// interrupt comes neither before nor after the work if there is enough work.
 /// @param shell  what runs the file .run, which becomes the program, in `folder`
 inline ProgramResult interruptProgram(
     const TemporaryFolder& folder, const std::string& arguments,

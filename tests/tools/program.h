@@ -12,7 +12,7 @@
 
 namespace umbrick {
 
-/// The bundled volumes, as arguments.
+/// A bundled volume, as an argument.
 inline const std::string kSmoke = "'" UMBRICK_ASSETS "/densityAndHeat.vdb' ";
 inline const std::string kHead =
     "'" UMBRICK_ASSETS "/headsq_256x256x94_uint16le.raw.gz' --dims 256 256 94 --type u16 --bits-stored 15 ";
@@ -24,7 +24,7 @@ struct ProgramResult {
 
 inline int exitStatus(int waited) { return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited); }
 
-/// What is in the files .out and .err of a run that is over, which go.
+/// Reads the files .out and .err of a run that is over, and removes them.
 inline ProgramResult takeResult(const TemporaryFolder& folder, int waited) {
   ProgramResult result{exitStatus(waited), readBytes(folder.path() / ".out"), readBytes(folder.path() / ".err")};
   std::filesystem::remove(folder.path() / ".out");
@@ -32,7 +32,7 @@ inline ProgramResult takeResult(const TemporaryFolder& folder, int waited) {
   return result;
 }
 
-/// @param arguments  as typed into a shell, in `folder`
+/// Runs the program. @param arguments  as typed into a shell, in `folder`
 inline ProgramResult runProgram(const TemporaryFolder& folder, const std::string& arguments) {
   const std::string at = folder.path().string();
   const int raw = std::system(("cd '" + at + "' && '" UMBRICK_PROGRAM "' " + arguments + " >.out 2>.err").c_str());

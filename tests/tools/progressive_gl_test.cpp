@@ -1,4 +1,4 @@
-// umbrick render, pass by pass and by quality, as a user would run it.
+// Runs umbrick render sample by sample and by quality, as a user would.
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ namespace {
 const std::string kRenderBall = "render ball.vdb --tf ball.json --size 24x20 ";
 const std::string kCone = kRenderBall + "--model cone --directions 4 ";
 
-// Spacing, its unit, segments, directions, scale and method.
+// Returns spacing, its unit, segments, directions, scale and method.
 Json sampling(const Json& scene) {
   const Json &s = scene.at("sampling"), &o = scene.at("occlusion");
   return {s.at("spacing"), s.at("unit"), s.at("segments"), o.at("directions"), o.at("scale"), scene.at("method")};
@@ -25,7 +25,7 @@ Json sampling(const Json& scene) {
 
 }  // namespace
 
-TEST_CASE("Passes are averaged, and the estimate is told and kept with the statistics", "[tools]") {
+TEST_CASE("Samples are averaged, and the estimate is printed and kept with the statistics", "[tools]") {
   if (!testContext()) return;
   const BallWorkplace at;
   const ProgramResult made =
@@ -45,11 +45,11 @@ TEST_CASE("Passes are averaged, and the estimate is told and kept with the stati
   CHECK(passes["seconds"] > 0);
   const double statistical = passes["standard_error"], systematic = passes["systematic_error"];
   CHECK(statistical > 0);
-  CHECK(systematic >= 0);  // 0 where chance alone could be the difference
+  CHECK(systematic >= 0);  // 0 where the difference may only be chance
   CHECK(passes["error"].get<double>() == Approx(std::hypot(statistical, systematic)));
   CHECK(stats["frames_ms"].size() == 6);
 
-  // By its seed the picture is made again from its header; another seed makes another one.
+  // With its seed the picture can be made again from its header; another seed makes another picture.
   writeBytes(at.folder.path() / "again.json", a.metadata.at("umbrick.scene"));
   const std::string again = "render again.json --layers --exr-pixel float --progressive 6 ";
   REQUIRE(at.run(again + "--seed 7 -o b.exr").status == 0);
@@ -58,11 +58,11 @@ TEST_CASE("Passes are averaged, and the estimate is told and kept with the stati
   for (std::size_t i = 0; i < a.layers.size(); ++i) CHECK((a.layers[i].image.pixels == b.layers[i].image.pixels));
   CHECK((a.layers[0].image.pixels != c.layers[0].image.pixels));
 
-  // Errors that are not known yet are no numbers.
+  // Errors that are not known yet have no number in JSON.
   const ProgramResult few = at.run(kCone + "--progressive 2 -o d.exr --stats d.stats.json");
   CHECK(few.status == 0);
   CHECK(at.json("d.stats.json")["progressive"]["error"].is_null());
-  // A single picture has no such thing.
+  // A single picture has no estimate.
   REQUIRE(at.run(kCone + "-o e.exr --stats e.stats.json").status == 0);
   CHECK_FALSE(at.json("e.stats.json").contains("progressive"));
 }
@@ -78,7 +78,7 @@ TEST_CASE("A target is reached by finer slabs, or the picture is kept and the st
   CHECK(stats["progressive"]["reached_target"] == true);
   CHECK(stats["progressive"]["error"] <= 0.02);
   CHECK(stats["progressive"]["passes"] < 400);
-  // Header and statistics tell of the slabs that the picture has.
+  // Header and statistics name the slabs that the picture has.
   const Json scene = Json::parse(at.exr("a.exr").metadata.at("umbrick.scene"));
   CHECK(scene["sampling"]["spacing"] == stats["scene"]["sampling"]["spacing"]);
   CHECK(stats["spacing_world"] == stats["scene"]["sampling"]["spacing"]);
@@ -95,7 +95,7 @@ TEST_CASE("A target is reached by finer slabs, or the picture is kept and the st
   CHECK(at.json("c.stats.json")["progressive"]["passes"] == 1);
 }
 
-TEST_CASE("Passes over what has no directions are one line and leave no file", "[tools]") {
+TEST_CASE("Samples of a scene without directions are refused in one line and leave no file", "[tools]") {
   if (!testContext()) return;
   const BallWorkplace at;
   const std::size_t before = filesIn(at.folder);
@@ -127,16 +127,16 @@ TEST_CASE("Passes over what has no directions are one line and leave no file", "
   check("--model cone --target-error nan", 1, "target error are 0.000000 and nan, must be 0 or more");
   check("--model cone --progressive 4 --seed -1", 2, "--seed");
   check("--model cone --quality best", 2, "--quality");
-  // What belongs to the other method.
+  // These options belong to the other method.
   for (const std::string option : {"--footprint 5", "--algorithm 2", "--passes 2", "--no-perspective-correction"})
     check("--model cone " + option, 2, option.substr(0, option.find(' ')) + ": is for --method dos, found ordinates");
   check("--model cone --method dos --occlusion-scale 1", 2, "--occlusion-scale: is for --method ordinates, found dos");
 }
 
-TEST_CASE("A quality sets what goes together, and single options win over it", "[tools]") {
+TEST_CASE("A quality sets what goes together, and single options overrule it", "[tools]") {
   if (!testContext()) return;
   const BallWorkplace at;
-  // Spacing is in world units in a header: the voxels are of unit size.
+  // Spacing is in world units in a header; here this makes no difference, since voxels are of unit size.
   const Json draft{5.0, "world", 4, 6, 0.0, "ordinates"}, normal{2.5, "world", 4, 16, 0.0, "ordinates"},
       high{1.25, "world", 2, 32, 0.0, "ordinates"};
   const std::string cone = kRenderBall + "--model cone ";
@@ -154,7 +154,7 @@ TEST_CASE("A quality sets what goes together, and single options win over it", "
   CHECK(sampling(at.sceneOf(cone + "--method dos"))[0] == 0.5);
   CHECK(sampling(at.sceneOf(kRenderBall))[0] == 0.5);
 
-  // A scene file is taken at its word, which a quality may overrule.
+  // A scene file counts as it is written, unless a quality overrules it.
   writeBytes(at.folder.path() / "scene.json",
              R"({"volume": {"file": "ball.vdb"}, "transfer": "ball.json", "camera": {"size": [24, 20]},
                  "model": "cone", "sampling": {"spacing": 1.5}, "occlusion": {"directions": 7, "scale": 0.8}})");

@@ -1,4 +1,4 @@
-// umbrick reference, run as a user would.
+// Runs umbrick reference as a user would.
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -55,7 +55,7 @@ TEST_CASE("Monte Carlo writes its standard error as a layer and repeats by its s
   REQUIRE(a.layers.size() == 2);
   CHECK(a.layers[1].name == "standardError");
   CHECK(a.layers[1].image.channels == 4);
-  // No more than that of a coin tossed 64 times.
+  // The error is at most that of a coin tossed 64 times.
   CHECK(largest(a.layers[1].image) > 0.01);
   CHECK(largest(a.layers[1].image) <= 0.5 / std::sqrt(63.0) * 1.001);
   CHECK(a.layers[0].image.pixels == b.layers[0].image.pixels);
@@ -110,7 +110,7 @@ TEST_CASE("A standard error is reached, or the pixels that do not reach it are c
 TEST_CASE("An interrupted reference writes what is done, says so and fails", "[tools]") {
   const BallWorkplace at;
   const std::size_t before = filesIn(at.folder);
-  // Hours of work.
+  // This would take hours.
   const std::string hours = "reference " + kBall + "--integrator monte-carlo ";
   const ProgramResult result =
       interruptProgram(at.folder, hours + "--model cone --samples 100000 --size 512x512 -o a.exr --stats s.json");
@@ -122,11 +122,11 @@ TEST_CASE("An interrupted reference writes what is done, says so and fails", "[t
   CHECK(stats["complete"] == false);
   CHECK(stats["share_done"].get<double>() < 1);
   CHECK(filesIn(at.folder) == before + 2);
-  // Also within a pixel.
+  // The interrupt also works within a pixel.
   CHECK(interruptProgram(at.folder, hours + "--samples 1000000000 --size 2x2 -o b.exr").status == 1);
 }
 
-TEST_CASE("What the reference cannot do is one line and leaves no file", "[tools]") {
+TEST_CASE("What the reference cannot do is refused in one line and leaves no file", "[tools]") {
   const BallWorkplace at;
   const std::size_t before = filesIn(at.folder);
   const auto complaint = [&](const std::string& arguments, int status) {

@@ -1,4 +1,4 @@
-// What the program does with a command that it does not carry out.
+// Tests what the program does with a command that it does not carry out.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace umbrick {
 
-/// Runs it and expects a complaint of one line that holds `message`, and no file that was not there before.
+/// Runs the program and expects a complaint of one line that holds `message`, and no file that was not there before.
 inline ProgramResult expectRefusal(const TemporaryFolder& folder, const std::string& arguments, int status,
                                    const std::string& message) {
   CAPTURE(arguments);

@@ -25,7 +25,7 @@ const std::string kTiny =
     "--quick --slices 16 32 --footprints 1 2 --directions 2 4 --scales 0.5 --sizes 16 32 --thetas 30 60 --repeats 1 "
     "--reference-directions 8 --reference-tolerance 0.05 -o report";
 
-// The commands of a case in the page, as a shell takes them.
+// Returns the commands of a case in the page, as a shell takes them.
 std::string commandsOf(const std::string& page, const std::string& id) {
   const std::size_t begin = page.find("<pre>", page.find("id=\"c-" + id + "\"")) + 5;
   return page.substr(begin, page.find("</pre>", begin) - begin);
@@ -57,7 +57,7 @@ TEST_CASE("A study of a bundled volume is written whole, and its commands make i
     for (const char* ending : {".svg", ".gp", ".dat"})
       CHECK(fs::exists(report / "plots" / (std::string(plot) + ending)));
 
-  // One of each method: render and compare as the page says.
+  // One case of each method is rendered and compared as the page says.
   for (const char* method : {"emission", "dos", "ordinates"}) {
     const Json& one = *std::find_if(cases.begin(), cases.end(), [&](const Json& c) { return c["method"] == method; });
     const std::string commands = commandsOf(page, one["id"]);
@@ -72,7 +72,7 @@ TEST_CASE("A study of a bundled volume is written whole, and its commands make i
     const ProgramResult compared =
         runProgram(folder, "--version >" + there + commands.substr(line + 1 + prefix.size()) + " --json)");
     REQUIRE(compared.status == 0);
-    // The same program, the same numbers.
+    // The same program must give the same numbers.
     const Json layer = Json::parse(compared.out)["layers"][0];
     CHECK(layer["rmse_rgb"] == one["error"]["rmse"]);
     CHECK(layer["flip"] == one["error"]["flip"]);
@@ -112,7 +112,7 @@ TEST_CASE("Without gnuplot a study does not begin", "[tools]") {
   CHECK(!fs::exists(folder.path() / "report"));
 }
 
-TEST_CASE("Studies that cannot be say so in one line and leave nothing behind", "[tools]") {
+TEST_CASE("Studies that cannot be made say so in one line and leave nothing behind", "[tools]") {
   if (!testContext()) return;
   const TemporaryFolder folder;
   const auto check = [&](const std::string& arguments, int status, const std::string& message) {

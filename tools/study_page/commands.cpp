@@ -11,7 +11,7 @@ std::string sizeOption(const ResolvedScene& scene) {
   return " --size " + std::to_string(scene.camera.width) + "x" + std::to_string(scene.camera.height);
 }
 
-// What a method sets in the scene of the study, as options.
+// Returns what a method sets in the scene of the study, as options.
 std::string methodOptions(const ResolvedScene& scene, const ResolvedScene& ofCase) {
   std::string text;
   if (ofCase.sampling.saturation != scene.sampling.saturation)

@@ -1,4 +1,4 @@
-// The commands of a shell that make the pictures of a study again, and their errors.
+// Writes the shell commands that make the pictures of a study again, and their errors.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace umbrick::tools {
 
-// They are run in the folder of the study, where scene.json is. Its file names need no quotes.
+// The commands are run in the folder of the study, where scene.json is. Names of files there need no quotes.
 
 /// @param scene  of studyScene, which is what scene.json holds
 std::string renderCommand(const StudyCase& what, const ResolvedScene& scene, const StudyGeometry& geometry);

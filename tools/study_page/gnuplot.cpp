@@ -19,12 +19,12 @@ namespace umbrick::tools {
 namespace {
 
 struct Outcome {
-  int status = -1;     // of wait; -1: it could not be started
-  int error = 0;       // errno then
+  int status = -1;     // of wait; -1: the program could not be started
+  int error = 0;       // errno in that case
   std::string output;  // stdout and stderr
 };
 
-// Without a shell, so that no name needs quoting.
+// Runs a program without a shell, so that no name needs quoting.
 Outcome run(std::vector<std::string> arguments, const std::filesystem::path& folder) {
   Outcome outcome;
   int ends[2];
@@ -54,7 +54,7 @@ Outcome run(std::vector<std::string> arguments, const std::filesystem::path& fol
   return outcome;
 }
 
-// gnuplot says where, shows the line, then says what: the last line that is not empty.
+// Returns the last line that is not empty: gnuplot prints the place, shows the line, then says what is wrong.
 std::string lastLine(std::string text) {
   text.erase(text.find_last_not_of(" \t\r\n") + 1);
   const std::size_t begin = text.find_last_of('\n');

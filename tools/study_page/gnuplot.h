@@ -1,4 +1,4 @@
-// The program that draws the plots.
+// Runs gnuplot, which draws the plots.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
@@ -6,10 +6,10 @@
 
 namespace umbrick::tools {
 
-/// "gnuplot 5.4 patchlevel 4". @throw IoError  it cannot be run, or draws no SVG
+/// Returns name and version: "gnuplot 5.4 patchlevel 4". @throw IoError  gnuplot cannot be run, or draws no SVG
 std::string gnuplotVersion();
 
-/// Runs a script in its folder. @throw IoError  names the script and the last line that gnuplot said
+/// Runs a script in its folder. @throw IoError  names the script and the last line that gnuplot printed
 void runGnuplot(const std::filesystem::path& script);
 
 }  // namespace umbrick::tools

@@ -44,7 +44,7 @@ std::string modelTitle(Model model) {
   return !traitsOf(model).occlusion ? "Emission: no occlusion" : "Cone: directional occlusion";
 }
 
-// Methods that share a base are named together.
+// Describes the bases of a plan. Methods that share a base are named together.
 std::string baseText(const StudyPlan& plan) {
   std::vector<std::pair<std::string, std::string>> bases;  // description, methods
   for (const std::string& name : plan.settings.methods) {
@@ -65,7 +65,7 @@ std::string baseText(const StudyPlan& plan) {
          jsonDegrees(plan.baseTheta) + " degrees";
 }
 
-// The front in two numbers: the least error, and what a picture costs that is nearly as good.
+// Describes the front in two numbers: the least error, and what a picture costs that is nearly as good.
 std::string modelFacts(const StudyRecord& record, const std::vector<ComparableCases>& groups) {
   std::string html;
   for (const Model model : {Model::cone, Model::emission}) {

@@ -1,4 +1,4 @@
-// index.html: the study for a reader, in one file.
+// Writes index.html, which shows a study to a reader, in one file.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -11,30 +11,31 @@
 
 namespace umbrick::tools {
 
-/// Draws the plots, then writes the page with all that it shows inside. An unfinished study says so.
+/// Draws the plots, then writes the page with everything that it shows inside. The page of an unfinished study says
+/// that it is one.
 /// @throw IoError
 void writePage(const StudyRecord& record, const PageFolder& folder);
 
 // --- sections, each a piece of HTML; empty where there is nothing to tell ---
 
-/// A case in words: "dos, Algorithm 3, n = 3, 256 slices"; what is at the base is left out, slices and detail are not.
+/// Describes a case: "dos, Algorithm 3, n = 3, 256 slices"; what is at the base is left out, except slices and detail.
 std::string describeCase(const StudyCase& what, const StudyPlan& plan);
-/// "2 segments per slab"
+/// Returns "2 segments per slab" and the like.
 std::string describeSegments(int segments);
 
 std::string frontTable(const StudyRecord& record, const ComparableCases& group);
-/// The front of the earlier study beside.
+/// Returns the front of the earlier study, to be shown beside the new one.
 std::string earlierTable(const StudyRecord& record, Model model);
 std::string aroundBaseTable(const StudyRecord& record);
 std::string modelErrorTable(const StudyRecord& record);
-/// Methods with windows (ordinates) beside those without (dos).
+/// Compares methods with windows (ordinates) with methods without (dos).
 std::string comparisonTables(const StudyRecord& record, const std::vector<ComparableCases>& groups);
-/// What windows take in memory and in time.
+/// Returns what windows take in memory and in time.
 std::string windowTable(const StudyRecord& record);
 std::string caseTable(const StudyRecord& record, const std::vector<ComparableCases>& groups);
 std::string referenceTable(const StudyRecord& record);
 
-/// Reference, case and error of the front of the base groups; and cone, ambient and error of the models.
+/// Returns reference, case and error of the front of the base groups; and cone, ambient and error of the models.
 std::string casePictures(const StudyRecord& record, const PageFolder& folder, const ComparableCases& group);
 std::string modelPictures(const StudyRecord& record, const PageFolder& folder);
 

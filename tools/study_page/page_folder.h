@@ -1,4 +1,4 @@
-// Where the page of a study, its plots and its pictures lie in the folder of the study.
+// Knows where the page of a study, its plots and its pictures lie in the folder of the study.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
@@ -17,10 +17,10 @@ class PageFolder {
   std::filesystem::path smallPicture(const std::string& id) const {
     return root_ / "pictures" / "small" / (id + ".png");
   }
-  /// What the page shows: the picture itself, or a smaller copy of a large one.
+  /// Returns the file that the page shows: the picture itself, or a smaller copy of a large one.
   std::filesystem::path thumbnail(const std::string& id) const;
 
-  /// Makes the folders of plots and pictures where they are missing. @throw IoError
+  /// Makes the folders of plots and pictures if they are missing. @throw IoError
   void create() const;
 
  private:

@@ -57,7 +57,7 @@ std::string embeddedPicture(const std::filesystem::path& png, const std::string&
 }
 
 std::string inlineSvg(std::string_view svg, const std::string& prefix) {
-  // From the element itself; the title would show as a tooltip over all of the plot.
+  // The text starts at the element itself. The title would show as a tooltip over the whole plot.
   std::string text(svg.substr(std::min(svg.find("<svg"), svg.size())));
   text = std::regex_replace(text, std::regex("<title>[^<]*</title>|<desc>[^<]*</desc>"), "");
   text = std::regex_replace(text, std::regex("\\bid=(['\"])"), "id=$1" + prefix + "-");

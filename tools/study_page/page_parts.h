@@ -1,4 +1,4 @@
-// Pieces of an HTML page that needs no other file. What they return is well-formed as XML, too.
+// Makes pieces of an HTML page that needs no other file. What these functions return is well-formed as XML, too.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
@@ -8,16 +8,16 @@
 
 namespace umbrick::tools {
 
-/// For element text and attribute values.
+/// Escapes a text for element text and attribute values.
 std::string escapeHtml(std::string_view text);
-/// Three significant digits; "-" for what is not finite.
+/// Prints three significant digits; "-" for a number that is not finite.
 std::string printShort(double number);
 
 std::string base64(std::string_view bytes);
-/// An <img> that holds the PNG, or the word "missing" when there is no such file.
+/// Returns an <img> that holds the PNG, or the word "missing" when there is no such file.
 std::string embeddedPicture(const std::filesystem::path& png, const std::string& alt);
 
-/// gnuplot's SVG as an element of a page: without prolog, its identifiers made unique by a prefix.
+/// Returns gnuplot's SVG as an element of a page: without prolog, its identifiers made unique by a prefix.
 std::string inlineSvg(std::string_view svg, const std::string& prefix);
 
 struct HtmlTable {
@@ -29,7 +29,7 @@ struct HtmlTable {
   std::vector<Cell> head;
   struct Row {
     std::vector<Cell> cells;
-    std::string kind = {};  // class of the row
+    std::string kind = {};  // CSS class of the row
   };
   std::vector<Row> rows;
   bool sortable = false;

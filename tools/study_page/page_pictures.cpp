@@ -12,7 +12,7 @@
 namespace umbrick::tools {
 namespace {
 
-// The colours of error pictures, from 0 to their scale.
+// Returns a bar with the colours of error pictures, from 0 to their scale.
 std::string scaleBar(double scale) {
   constexpr int kStops = 16;
   std::string stops;

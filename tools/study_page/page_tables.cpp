@@ -17,7 +17,7 @@ using Cell = HtmlTable::Cell;
 Cell text(const std::string& html) { return {html, "", true}; }
 Cell words(const std::string& plain) { return text(escapeHtml(plain)); }
 Cell numberCell(double value) { return {printShort(value), jsonNumber(std::isfinite(value) ? value : 1e300), false}; }
-// Many a good picture has 0.99-something.
+// Returns a cell with enough digits, since many a good picture has 0.99-something.
 Cell similarity(const std::optional<double>& ssim) {
   if (!ssim) return {"-", "-2", false};
   char text[32];
@@ -28,7 +28,7 @@ Cell optionalNumber(const std::optional<double>& value) {
   return value ? numberCell(*value) : Cell{"-", "1e300", false};
 }
 
-// "2.31", and on hovering the spread.
+// Returns a cell such as "2.31", which shows the spread when the pointer is over it.
 Cell timeCell(const Spread& time) {
   return {"<span title=\"quartiles " + printShort(time.lowerQuartile) + " to " + printShort(time.upperQuartile) +
               ", extremes " + printShort(time.least) + " to " + printShort(time.most) + "\">" +
@@ -58,7 +58,7 @@ std::string linked(const StudyCase& what, const StudyPlan& plan) {
   return "<a href=\"#c-" + what.id() + "\">" + escapeHtml(describeCase(what, plan)) + "</a>";
 }
 
-// What of a case is not at the base.
+// A value of a case that is not the base's.
 struct Variation {
   std::string field, value;  // "segments per slab", "4 segments per slab"
 };

@@ -14,10 +14,11 @@
 namespace umbrick::tools {
 namespace {
 
-// Okabe and Ito 2008: colours that colour-blind readers tell apart. Their yellow is too pale for a line.
+// These are the colours of Okabe and Ito 2008, which colour-blind readers tell apart. Their yellow is too pale
+// for a line.
 constexpr const char* kColours[]{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"};
 constexpr int kSymbols[]{7, 5, 9, 13, 11, 6, 4};
-constexpr double kLevelReach = 30;  // a level this many times below the least error is left to the text
+constexpr double kLevelReach = 30;  // a level so many times below the least error is only in the text
 
 struct Extent {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -32,7 +33,7 @@ bool drawable(const Plot& plot, const PlotPoint& point) {
   return std::isfinite(point.x) && std::isfinite(point.y) && point.y > 0 && (plot.wholeX || point.x > 0);
 }
 
-// Without what cannot be drawn.
+// Returns a plot without what cannot be drawn.
 Plot cleaned(Plot plot) {
   for (PlotSeries& series : plot.series)
     std::erase_if(series.points, [&](const PlotPoint& point) { return !drawable(plot, point); });
@@ -50,7 +51,7 @@ std::string ticList(const std::vector<double>& tics) {
   return "(" + text + ")";
 }
 
-// Range with a margin and tics of one axis.
+// Returns range with a margin and tics of one axis.
 std::string logarithmicAxis(const std::string& axis, const Extent& extent) {
   const double low = extent.low / 1.3, high = extent.high * 1.3;
   return "set logscale " + axis + "\nset " + axis + "range [" + jsonNumber(low) + ":" + jsonNumber(high) + "]\nset " +
@@ -81,7 +82,7 @@ std::string axes(const Plot& plot) {
          gnuplotString(plot.xLabel) + "\nset ylabel " + gnuplotString(plot.yLabel) + "\n";
 }
 
-// In a data file a text has double quotes, and no way to hold one.
+// Returns a text as a data file holds it: in double quotes, which it cannot contain itself.
 std::string dataString(std::string text) {
   std::erase_if(text, [](char c) { return c == '"' || c == '\n'; });
   return '"' + text + '"';
@@ -99,15 +100,15 @@ std::string dataOf(const Plot& plot) {
   return text;
 }
 
-// A line's place in the lists of colours and symbols.
+// The place of a line in the lists of colours and symbols.
 struct LineLook {
   std::size_t colour = 0, symbol = 0;
 };
 
-// Per series; those that are no lines have none of their own.
+// Returns a look for each series; those that are not lines have none of their own.
 std::vector<LineLook> linesOf(const Plot& plot) {
   std::vector<LineLook> looks;
-  std::map<int, std::size_t> members;  // so far, by family
+  std::map<int, std::size_t> members;  // number of lines so far, by family
   std::size_t alone = 0;
   for (const PlotSeries& series : plot.series) {
     if (series.style != PlotStyle::line)
@@ -121,7 +122,7 @@ std::vector<LineLook> linesOf(const Plot& plot) {
   return looks;
 }
 
-// What is drawn of one series: its own entry, then bars and labels without an entry in the key.
+// Appends what is drawn of one series: its own entry, then bars and labels without an entry in the key.
 void appendSeries(std::vector<std::string>& parts, const Plot& plot, std::size_t index, const LineLook& look) {
   const PlotSeries& series = plot.series[index];
   const std::string data = gnuplotString(plot.name + ".dat") + " index " + std::to_string(index);
@@ -140,7 +141,7 @@ void appendSeries(std::vector<std::string>& parts, const Plot& plot, std::size_t
   }
   const std::string colour = " lc rgb \"" + std::string(kColours[look.colour % std::size(kColours)]) + "\"";
   const std::string symbol = " pt " + std::to_string(kSymbols[look.symbol % std::size(kSymbols)]);
-  // A second round of colours is dashed.
+  // Lines of a second round of colours are dashed.
   const std::string dashes = std::max(look.colour, look.symbol) < std::size(kColours) ? "" : " dt 2";
   if (series.bars) parts.push_back(data + " using 1:2:3:4 with xerrorbars pt 0 lw 1" + colour + " notitle");
   parts.push_back(data + " using 1:2 with linespoints lw 1.6 ps 0.8" + symbol + dashes + colour + title);
@@ -161,7 +162,7 @@ std::string scriptOf(const Plot& plot) {
                      axes(plot);
   std::vector<std::string> parts;
   const std::vector<LineLook> looks = linesOf(plot);
-  // The staircase lies under the rest.
+  // The staircase lies under everything else.
   for (const bool front : {true, false})
     for (std::size_t i = 0; i < plot.series.size(); ++i)
       if ((plot.series[i].style == PlotStyle::front) == front) appendSeries(parts, plot, i, looks[i]);
@@ -185,7 +186,7 @@ std::vector<double> logarithmicTics(double low, double high) {
   const int last = static_cast<int>(std::ceil(std::log10(high)));
   for (int decade = first; decade <= last; ++decade)
     for (const double step : steps) {
-      // 10^-3 as the quotient: 0.002 and not 0.0020000000000000001.
+      // 10^-3 is a quotient, which gives 0.002 and not 0.0020000000000000001.
       const double tic = decade < 0 ? step / std::pow(10, -decade) : step * std::pow(10, decade);
       if (tic >= low && tic <= high) tics.push_back(tic);
     }

@@ -34,7 +34,7 @@ std::string withOrder(const SliceSeries& series) {
   return series.title + text;
 }
 
-// A colour per method, the same in all plots.
+// Returns a colour per method, the same in all plots.
 int familyOf(const SliceSeries& series, const StudyRecord& record) {
   int family = 0;
   for (const std::string& name : record.plan.settings.methods) {
@@ -59,7 +59,7 @@ Plot paretoPlot(const StudyRecord& record, Model model) {
   std::set<std::vector<int>> labelled;
   for (const SliceSeries& series : sliceSeries(record, model)) {
     PlotSeries line{series.title, PlotStyle::line, {}, true, familyOf(series, record)};
-    // One line says the numbers of slices for all that have the same.
+    // Only one of the lines with the same numbers of slices has labels.
     const bool first = labelled.insert(record.plan.slices.at(series.method->name)).second;
     for (const CaseResult* result : series.cases) {
       line.points.push_back(timePoint(*result));
@@ -110,7 +110,7 @@ Plot detailPlot(const StudyRecord& record, const StudyMethod::Detail& detail) {
   plot.xLabel = detail.symbol + ": " + detail.meaning;
   plot.yLabel = kErrorLabel;
   plot.wholeX = true;
-  // Lines of a method and a number of slices, from all its slice series.
+  // There is a line for each method and number of slices, from all slice series of the method.
   for (const std::string& name : record.plan.settings.methods) {
     const StudyMethod& method = studyMethod(name);
     if (method.detail.name != detail.name) continue;

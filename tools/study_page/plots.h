@@ -1,4 +1,4 @@
-// The plots of a study.
+// Makes the plots of a study.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace umbrick::tools {
 
-/// Of one model at the base size and theta.
+/// These two plots are of one model at the base size and theta.
 Plot paretoPlot(const StudyRecord& record, Model model);       // error over time ratio, front marked
 Plot convergencePlot(const StudyRecord& record, Model model);  // error over the distance of slices
-/// Error over the detail of the methods that have it, a line per number of slices.
+/// Plots the error over the detail of the methods that have it, a line per number of slices.
 Plot detailPlot(const StudyRecord& record, const StudyMethod::Detail& detail);
 
 }  // namespace umbrick::tools
