@@ -6,17 +6,11 @@
 #include <numbers>
 
 #include "core/json_writer.h"
+#include "core/overload.h"
 #include "scene/checker.h"
 
 namespace umbrick {
 namespace {
-
-// Joins handlers for std::visit. Beside a handler of the rest (`const auto&`), a handler that takes a pointer takes
-// exactly that type: a `double*` fits the handler of the rest better than one of `const double*`.
-template <class... Handlers>
-struct Overload : Handlers... {
-  using Handlers::operator()...;
-};
 
 std::string spaced(const glm::dvec3& v) { return jsonNumber(v.x) + ' ' + jsonNumber(v.y) + ' ' + jsonNumber(v.z); }
 std::string jsonVector(const glm::dvec3& v) { return jsonNumbers({v.x, v.y, v.z}); }

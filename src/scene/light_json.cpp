@@ -13,17 +13,15 @@ constexpr Name<LightType> kLightTypes[]{{"cone", LightType::cone},
                                         {"directions", LightType::directions},
                                         {"environment", LightType::environment}};
 
-glm::dvec3 vectorOf(const JsonValue& value) {
-  const std::vector<double> numbers = value.numbers(3);
-  return {numbers[0], numbers[1], numbers[2]};
-}
 // Reads three numbers, or one for all three.
-glm::dvec3 radianceOf(const JsonValue& value) { return value.isArray() ? vectorOf(value) : glm::dvec3(value.number()); }
+glm::dvec3 radianceOf(const JsonValue& value) {
+  return value.isArray() ? readVector(value) : glm::dvec3(value.number());
+}
 
 ConeLight readCone(const JsonValue& value, std::string_view axis, std::string_view angle, bool sharp) {
   value.allowFields({"type", "frame", axis, angle, "radiance"});
   ConeLight cone;
-  cone.axis = vectorOf(value.at(axis));
+  cone.axis = readVector(value.at(axis));
   if (!sharp || value.find(angle)) cone.aperture = value.at(angle).degrees();
   if (const auto radiance = value.find("radiance")) cone.radiance = radianceOf(*radiance);
   return cone;
@@ -35,7 +33,7 @@ ListedLight readListed(const JsonValue& value) {
   for (const JsonValue& item : value.at("list").items()) {
     item.allowFields({"direction", "weight", "colour"});
     ListedDirection& listed = light.list.emplace_back();
-    listed.direction = vectorOf(item.at("direction"));
+    listed.direction = readVector(item.at("direction"));
     if (const auto weight = item.find("weight")) listed.weight = weight->number();
     if (const auto colour = item.find("colour")) listed.colour = radianceOf(*colour);
   }
@@ -56,8 +54,8 @@ EnvironmentLight readEnvironment(const JsonValue& value, LightFrame frame, const
     light.up = {0, 0, 1};
     light.front = {0, -1, 0};
   }
-  if (const auto up = value.find("up")) light.up = vectorOf(*up);
-  if (const auto front = value.find("front")) light.front = vectorOf(*front);
+  if (const auto up = value.find("up")) light.up = readVector(*up);
+  if (const auto front = value.find("front")) light.front = readVector(*front);
   if (const auto scale = value.find("scale")) light.scale = scale->number();
   return light;
 }
@@ -91,6 +89,11 @@ JsonFields fieldsOf(const EnvironmentLight& light) {
 }
 
 }  // namespace
+
+glm::dvec3 readVector(const JsonValue& value) {
+  const std::vector<double> numbers = value.numbers(3);
+  return {numbers[0], numbers[1], numbers[2]};
+}
 
 LightSource readLightSource(const JsonValue& value, const std::filesystem::path& folder) {
   LightSource source;

@@ -9,6 +9,9 @@
 
 namespace umbrick {
 
+/// Reads three numbers. @throw IoError  anything else
+glm::dvec3 readVector(const JsonValue& value);
+
 /// Reads a light source. @param folder  that file names are relative to
 LightSource readLightSource(const JsonValue& value, const std::filesystem::path& folder);
 std::string printLightSource(const LightSource& source);

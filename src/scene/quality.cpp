@@ -13,7 +13,8 @@ struct QualityRow {
   int segments, directions;
 };
 // The segments of `draft` have twice the usual length.
-constexpr QualityRow kRows[]{{Quality::draft, 5, 4, 6}, {Quality::normal, 2.5, 4, 16}, {Quality::high, 1.25, 2, 32}};
+constexpr QualityRow kQualityRows[]{
+    {Quality::draft, 5, 4, 6}, {Quality::normal, 2.5, 4, 16}, {Quality::high, 1.25, 2, 32}};
 
 }  // namespace
 
@@ -23,7 +24,7 @@ int segmentsOf(double slabVoxels) {
 }
 
 void applyQuality(Quality quality, Scene& scene) {
-  const QualityRow& row = *std::find_if(std::begin(kRows), std::end(kRows),
+  const QualityRow& row = *std::find_if(std::begin(kQualityRows), std::end(kQualityRows),
                                         [&](const QualityRow& candidate) { return candidate.quality == quality; });
   scene.spacingUnit = SpacingUnit::voxel;
   scene.sampling.spacing = row.spacing;

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "core/json_reader.h"
+#include "core/overload.h"
 #include "core/text_file.h"
 #include "scene/light_json.h"
 #include "scene/scene_check.h"
@@ -12,16 +13,6 @@
 namespace umbrick {
 namespace {
 
-template <class... Handlers>
-struct Overload : Handlers... {
-  using Handlers::operator()...;
-};
-
-glm::dvec3 vectorOf(const JsonValue& value) {
-  const std::vector<double> numbers = value.numbers(3);
-  return {numbers[0], numbers[1], numbers[2]};
-}
-
 // Sets a field to a value of its kind. Ranges are checked once the scene is complete.
 void readField(const JsonValue& value, const FieldPlace& place) {
   std::visit(Overload{[](std::monostate) {}, [&](double* target) { *target = value.number(); },
@@ -30,8 +21,8 @@ void readField(const JsonValue& value, const FieldPlace& place) {
                       [&](std::uint64_t* target) { *target = value.unsignedInteger(); },
                       [&](bool* target) { *target = value.boolean(); },
                       [&](const Choice& choice) { choice.set(value.oneOf(choice.names())); },
-                      [&](glm::dvec3* target) { *target = vectorOf(value); },
-                      [&](std::optional<glm::dvec3>* target) { *target = vectorOf(value); },
+                      [&](glm::dvec3* target) { *target = readVector(value); },
+                      [&](std::optional<glm::dvec3>* target) { *target = readVector(value); },
                       [&](const PixelSize& size) {
                         const std::vector<JsonValue> items = value.items(2);
                         *size.width = items[0].integer();
