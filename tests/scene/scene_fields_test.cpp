@@ -32,7 +32,7 @@ struct Overload : Handlers... {
   using Handlers::operator()...;
 };
 
-Scene parse(const std::string& text) { return parseScene(text, "s.json"); }
+Scene parsedScene(const std::string& text) { return parseScene(text, "s.json"); }
 
 // Returns the default scene, with its camera placed by its eye where only such a scene has the field.
 Scene sceneOf(const SceneField& field) {
@@ -192,7 +192,7 @@ TEST_CASE("A scene with every field changed parses back to an equal one", "[scen
     for (const SceneField& field : sceneFields()) change(field, scene);
     validateScene(scene);
     CHECK_FALSE(scene == before);
-    CHECK(parse(printScene(scene)) == scene);
+    CHECK(parsedScene(printScene(scene)) == scene);
   }
 }
 
@@ -205,7 +205,7 @@ TEST_CASE("A field that is changed alone changes no other, and is read from a te
     change(field, scene);
     validateScene(scene);
     CHECK_FALSE(scene == before);
-    CHECK(parse(printScene(scene)) == scene);
+    CHECK(parsedScene(printScene(scene)) == scene);
     for (const SceneField& other : sceneFields()) {
       CAPTURE(other.path);
       CHECK((jsonText(other.place(scene)) == jsonText(other.place(before))) == (&other != &field));
@@ -213,7 +213,7 @@ TEST_CASE("A field that is changed alone changes no other, and is read from a te
     std::string text = quoted(field.key()) + ": " + jsonText(field.place(scene));
     if (!scene.orbit && field.key() != "eye") text += ", \"eye\": " + jsonText(&scene.camera.eye);
     if (!field.section().empty()) text = quoted(field.section()) + ": {" + text + "}";
-    CHECK(parse("{" + text + "}") == scene);
+    CHECK(parsedScene("{" + text + "}") == scene);
   }
 }
 
@@ -231,7 +231,7 @@ TEST_CASE("Every name of a choice is read, printed and kept apart from the other
       CAPTURE(name);
       CHECK(choice->set(name));
       CHECK(choice->get() == name);
-      CHECK(parse(printScene(scene)) == scene);
+      CHECK(parsedScene(printScene(scene)) == scene);
       CHECK_THAT(std::string(field.help), Contains(name));
     }
     const Scene before = scene;
@@ -251,7 +251,7 @@ TEST_CASE("Numbers just outside their range are refused by the name of their fie
       CHECK_THROWS_WITH(validateScene(scene), StartsWith(complaint) && EndsWith(range));
       // A text with such a number is refused in the same words, after the place in the text.
       if (!std::isfinite(number)) continue;
-      CHECK_THROWS_WITH(parse(printScene(scene)),
+      CHECK_THROWS_WITH(parsedScene(printScene(scene)),
                         StartsWith("s.json:") && Contains(": " + complaint) && EndsWith(range));
     }
   });
@@ -264,7 +264,7 @@ TEST_CASE("Numbers at the ends of their range are accepted, or next to ends that
       CAPTURE(field.path, component, number);
       setNumber(field.place(scene), component, number);
       CHECK_NOTHROW(validateScene(scene));
-      CHECK(parse(printScene(scene)) == scene);
+      CHECK(parsedScene(printScene(scene)) == scene);
     }
   });
 }
