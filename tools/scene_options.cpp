@@ -56,12 +56,10 @@ class FieldOption {
     return add<std::uint64_t>(
         [](const FieldPlace& place, std::uint64_t value) { *std::get<std::uint64_t*>(place) = value; });
   }
-  CLI::Option* operator()(const bool*) const {
-    return command_.add_flag_callback(name_, setter([](const FieldPlace& place) {
-                                        bool& value = *std::get<bool*>(place);
-                                        value = !value;
-                                      }),
-                                      helpText(field_));
+  CLI::Option* operator()(const bool* usual) const {
+    const bool other = !*usual;
+    return command_.add_flag_callback(
+        name_, setter([other](const FieldPlace& place) { *std::get<bool*>(place) = other; }), helpText(field_));
   }
   CLI::Option* operator()(const Choice& choice) const {
     return add<std::string>(
@@ -149,9 +147,9 @@ void placeCamera(const SceneOptions& options, Scene& scene) {
     if (scene.orbit) camera.up = {0, 0, 1};
     scene.orbit.reset();
   }
+  if (angles && !scene.orbit) scene.orbit = Orbit{};
   if (scene.orbit && (lookAt || options.has("up") || options.has("view-height")))
     throw UsageError("--look-at, --up and --view-height need --eye");
-  if (angles && !scene.orbit) scene.orbit = Orbit{};
 }
 
 void applyTransfer(const SceneOptions& options, const DefaultTransfer& defaultTransfer, Scene& scene) {

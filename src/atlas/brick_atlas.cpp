@@ -79,7 +79,8 @@ void BrickAtlas::append(const std::vector<Brick>& bricks) {
 }
 
 // How slots are arranged in textures, which are of one size.
-void BrickAtlas::planTextures(std::size_t slots) {
+BrickAtlas::Plan BrickAtlas::planTextures(std::size_t slots) const {
+  Plan plan;
   // Slots are stacked along z first, then y, then x: a driver that stores texels row by row (all software ones) then
   // keeps a brick in few pages of memory.
   const glm::ivec3 edge = volume_.layout.edge();
@@ -92,47 +93,65 @@ void BrickAtlas::planTextures(std::size_t slots) {
   const auto divideUp = [](int a, int b) { return (a + b - 1) / b; };
   // What is left is divided evenly over each axis, so that no axis is filled up by slots nobody needs.
   const int columns = divideUp(rest, most.z);
-  slotGrid_.x = divideUp(columns, most.y);
-  slotGrid_.y = divideUp(columns, slotGrid_.x);
-  slotGrid_.z = divideUp(rest, slotGrid_.x * slotGrid_.y);
-  size_ = slotGrid_ * edge;
+  plan.slotGrid.x = divideUp(columns, most.y);
+  plan.slotGrid.y = divideUp(columns, plan.slotGrid.x);
+  plan.slotGrid.z = divideUp(rest, plan.slotGrid.x * plan.slotGrid.y);
+  plan.size = plan.slotGrid * edge;
+  return plan;
 }
 
 void BrickAtlas::reserve(std::size_t wanted) {
   wanted = std::min(std::max<std::size_t>(1, wanted), affordable_);
   if (wanted <= slots_) return;
   const std::size_t before = slots_;
-  const glm::ivec3 gridBefore = slotGrid_;
-  // A pool that has to grow may have to grow again: by half at least, so that this does not happen often.
-  slots_ = before == 0 ? wanted : std::min(affordable_, std::max(wanted, before + before / 2));
-  planTextures(slots_);
-  std::vector<GlTexture> old = std::move(textures_);
-  textures_.clear();
-  if (static_cast<std::uint64_t>(before + slots_) * slotBytes() > options_.budgetBytes) {
-    for (std::size_t brick = 0; brick < bricks_.size(); ++brick) release(static_cast<std::int32_t>(brick));
-    old.clear();
-  }
+  const auto fitBoth = [&](std::size_t slots) {
+    return static_cast<std::uint64_t>(before + slots) * slotBytes() <= options_.budgetBytes;
+  };
+  // A pool that has to grow may have to grow again: by half, so that this does not happen often, but not beyond what
+  // all bricks take, nor so far that there is no room for a copy.
+  std::size_t slots = wanted;
+  const std::size_t larger =
+      std::min({affordable_, std::max(wanted, slotsForAll_), std::max(wanted, before + before / 2)});
+  if (before > 0 && (fitBoth(larger) || !fitBoth(wanted))) slots = larger;
+  if (!fitBoth(slots)) clear();
+  const std::size_t kept = slots_;
+  const Plan plan = planTextures(slots);
   const TexelFormat texel = texelFormat(format_, volume_.hasGradients);
-  const std::size_t perTexture = static_cast<std::size_t>(slotGrid_.x) * static_cast<std::size_t>(slotGrid_.y) *
-                                 static_cast<std::size_t>(slotGrid_.z);
-  for (std::size_t held = 0; held < slots_; held += perTexture)
-    textures_.push_back(makeTexture3d(gl_, texel.internal, size_.x, size_.y, size_.z));
+  std::vector<GlTexture> textures;
+  const auto perTexture = static_cast<std::size_t>(plan.slotGrid.x * plan.slotGrid.y * plan.slotGrid.z);
+  for (std::size_t held = 0; held < slots; held += perTexture)
+    textures.push_back(makeTexture3d(gl_, texel.internal, plan.size.x, plan.size.y, plan.size.z));
   const glm::ivec3 edge = volume_.layout.edge();
-  for (std::size_t slot = 0; slot < before && !old.empty(); ++slot) {
+  for (std::size_t slot = 0; slot < kept; ++slot) {
     if (users_[slot] == 0) continue;
-    const Slot from = place(static_cast<std::int32_t>(slot), gridBefore);
-    const Slot to = place(static_cast<std::int32_t>(slot), slotGrid_);
-    gl_.CopyImageSubData(old[static_cast<std::size_t>(from.texture)].name(), GL_TEXTURE_3D, 0, from.origin.x,
-                         from.origin.y, from.origin.z, textures_[static_cast<std::size_t>(to.texture)].name(),
+    const Slot from = place(static_cast<std::int32_t>(slot), plan_.slotGrid);
+    const Slot to = place(static_cast<std::int32_t>(slot), plan.slotGrid);
+    gl_.CopyImageSubData(textures_[static_cast<std::size_t>(from.texture)].name(), GL_TEXTURE_3D, 0, from.origin.x,
+                         from.origin.y, from.origin.z, textures[static_cast<std::size_t>(to.texture)].name(),
                          GL_TEXTURE_3D, 0, to.origin.x, to.origin.y, to.origin.z, edge.x, edge.y, edge.z);
   }
   checkGl(gl_, "growth of the pool of bricks");
-  users_.resize(slots_, 0);
-  requiredAt_.resize(slots_, 0);
   // The last one is taken first: slots are filled from 0 on.
-  std::vector<std::int32_t> added(slots_ - before);
-  std::iota(added.rbegin(), added.rend(), static_cast<std::int32_t>(before));
+  std::vector<std::int32_t> added(slots - kept);
+  std::iota(added.rbegin(), added.rend(), static_cast<std::int32_t>(kept));
+  users_.resize(slots, 0);
+  requiredAt_.resize(slots, 0);
   free_.insert(free_.begin(), added.begin(), added.end());
+  textures_ = std::move(textures);
+  plan_ = plan;
+  slots_ = slots;
+}
+
+// An atlas of no slot, so that whatever fails next finds it whole.
+void BrickAtlas::clear() {
+  textures_.clear();
+  slotOf_.assign(bricks_.size(), -1);
+  users_.clear();
+  requiredAt_.clear();
+  free_.clear();
+  uniform_.clear();
+  slots_ = 0;
+  plan_ = {};
 }
 
 BrickAtlas::Slot BrickAtlas::place(std::int32_t slot, const glm::ivec3& slotGrid) const {
@@ -143,11 +162,11 @@ BrickAtlas::Slot BrickAtlas::place(std::int32_t slot, const glm::ivec3& slotGrid
 }
 
 BrickAtlas::Slot BrickAtlas::slot(std::int32_t brick) const {
-  return place(slotOf_[static_cast<std::size_t>(brick)], slotGrid_);
+  return place(slotOf_[static_cast<std::size_t>(brick)], plan_.slotGrid);
 }
 
 std::uint64_t BrickAtlas::textureBytes() const {
-  return textures_.size() * std::uint64_t(size_.x) * std::uint64_t(size_.y) * std::uint64_t(size_.z) *
+  return textures_.size() * std::uint64_t(plan_.size.x) * std::uint64_t(plan_.size.y) * std::uint64_t(plan_.size.z) *
          texelFormat(format_, volume_.hasGradients).bytes;
 }
 
@@ -188,7 +207,13 @@ void BrickAtlas::require(std::span<const std::int32_t> bricks) {
     requiredAt_[static_cast<std::size_t>(slot)] = requests_;
     ++users_[static_cast<std::size_t>(slot)];
   }
-  upload(uploads);
+  try {
+    upload(uploads);
+  } catch (...) {
+    // What was not uploaded is not resident.
+    for (const std::int32_t brick : missing) release(brick);
+    throw;
+  }
 }
 
 // Frees slots that the present call of require() does not ask for, those first that were asked for longest ago.
@@ -233,6 +258,7 @@ void BrickAtlas::upload(std::span<const std::pair<std::int32_t, std::int32_t>> b
     double error = 0;
   };
   tbb::enumerable_thread_specific<Scratch> scratches;
+  resetGlState(gl_);
   gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
   for (std::size_t first = 0; first < brickAndSlot.size(); first += batch) {
     const std::size_t count = std::min(batch, brickAndSlot.size() - first);

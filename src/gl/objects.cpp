@@ -116,4 +116,22 @@ void checkGl(const GlFunctions& gl, const char* where) {
                   (error == GL_OUT_OF_MEMORY ? ": out of graphics memory" : ": OpenGL error " + hex(error)));
 }
 
+void resetGlState(const GlFunctions& gl) {
+  for (const GLenum capability :
+       {GL_CULL_FACE, GL_RASTERIZER_DISCARD, GL_POLYGON_OFFSET_FILL, GL_COLOR_LOGIC_OP, GL_FRAMEBUFFER_SRGB,
+        GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK, GL_PRIMITIVE_RESTART, GL_DEPTH_CLAMP})
+    gl.Disable(capability);
+  for (GLenum plane = 0; plane < 8; ++plane) gl.Disable(GL_CLIP_DISTANCE0 + plane);
+  gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  gl.BlendEquation(GL_FUNC_ADD);
+  for (const GLenum store : {GL_UNPACK_ROW_LENGTH, GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS,
+                             GL_UNPACK_SKIP_IMAGES, GL_UNPACK_SWAP_BYTES, GL_PACK_ROW_LENGTH, GL_PACK_IMAGE_HEIGHT,
+                             GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_IMAGES, GL_PACK_SWAP_BYTES})
+    gl.PixelStorei(store, 0);
+  gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  constexpr GLuint kUnits = 16;  // as many as any pass uses, and more
+  for (GLuint unit = 0; unit < kUnits; ++unit) gl.BindSampler(unit, 0);
+}
+
 }  // namespace umbrick

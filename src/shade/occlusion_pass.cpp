@@ -36,6 +36,8 @@ class OcclusionPass : public SlicePass {
     if (frame.scene.sampling.saturation > 0) {
       if (!tiles_) tiles_.emplace(gl);
       tiles_->begin(frame, steps_);
+    } else {
+      tiles_.reset();  // those of a scene before know nothing of these steps
     }
     previous_ = 0;
     stencil_ = 0;

@@ -83,6 +83,7 @@ class SliceRenderer::Implementation {
   /// Makes anew all that is dirty or, when something throws, nothing.
   void update(const ResolvedScene& next, const Dirty& dirty) {
     checkScene(next);
+    resetGlState(gl_);
     std::optional<TransferLookup> lookup;
     if (dirty.lookup) lookup.emplace(gl_, next.transfer, next.sampling, volume_, resident_.format());
     const TransferLookup& transfer = lookup ? *lookup : *transfer_;
@@ -115,8 +116,11 @@ class SliceRenderer::Implementation {
     fits_ = fits;
   }
 
+  /// Draws a picture. What throws leaves none to be read.
   void draw(const ResolvedScene& scene, const RenderSample& sample) {
+    drawn_ = false;
     stats_ = {};
+    resetGlState(gl_);
     const Stopwatch geometry;
     prepareFrame(scene, sample);
     Frame& frame = *frame_;
@@ -141,10 +145,12 @@ class SliceRenderer::Implementation {
     }
     checkGl(gl_, "render");
     stats_.uploadedBricks = resident_.atlas().uploadedBricks() - uploadedBefore;
+    drawn_ = true;
   }
 
   Picture read(const ResolvedScene& scene) {
-    if (!frame_) throw InvalidArgument("render: nothing was drawn since the scene changed");
+    if (!frame_ || !drawn_) throw InvalidArgument("render: nothing was drawn since the scene changed");
+    resetGlState(gl_);
     const Frame& frame = *frame_;
     Picture picture;
     const Stopwatch read;
@@ -174,6 +180,7 @@ class SliceRenderer::Implementation {
       throw InvalidArgument("probe: no slice " + std::to_string(slice) + " in the last picture");
     Frame& frame = *frame_;
     const int width = frame.camera.width, height = frame.camera.height;
+    resetGlState(gl_);
     const GlTexture target = makeTexture2d(gl_, GL_RGBA32F, width, height, GL_NEAREST);
     const GlFramebuffer framebuffer = makeFramebuffer(gl_, {target.name()});
     const glm::vec4 zero(0);
@@ -305,6 +312,7 @@ class SliceRenderer::Implementation {
   SpecialisedProgram probe_{"shade/slice.vert", "shade/probe.frag"};
   std::vector<SweepRun> runs_;
   std::optional<Frame> frame_;  // the frame of the last picture
+  bool drawn_ = false;          // nothing was thrown on the way
   RenderStats stats_;           // statistics of drawing that frame
 };
 

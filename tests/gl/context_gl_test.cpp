@@ -114,6 +114,20 @@ TEST_CASE("A foreign context is adopted, draws the same picture and is left aliv
     CHECK(foreign->renderer() == made->renderer());
     CHECK(foreign->maxTextureEdge3d() == made->maxTextureEdge3d());
     CHECK(maxDifference(samplePicture(*foreign), expected) == 0);
+    // Whatever state its owner left behind.
+    const GlFunctions& gl = foreign->gl();
+    gl.Enable(GL_CULL_FACE);
+    gl.Enable(GL_RASTERIZER_DISCARD);
+    gl.PixelStorei(GL_UNPACK_ROW_LENGTH, 7);
+    gl.PixelStorei(GL_UNPACK_SKIP_PIXELS, 3);
+    gl.PixelStorei(GL_PACK_ROW_LENGTH, 99);
+    gl.PolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    gl.BlendEquation(GL_MAX);
+    const GlBuffer pixels(gl);
+    gl.NamedBufferData(pixels.name(), 64, nullptr, GL_STREAM_DRAW);
+    gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, pixels.name());
+    gl.BindBuffer(GL_PIXEL_PACK_BUFFER, pixels.name());
+    CHECK(maxDifference(samplePicture(*foreign), expected) == 0);
     foreign->makeCurrent();
     CHECK(madeCurrent == 1);
   }

@@ -11,6 +11,7 @@
 #include "support/gl_fixture.h"
 #include "support/test_grids.h"
 #include "support/test_scenes.h"
+#include "umbrick/core/error.h"
 #include "umbrick/grid/build_grid.h"
 #include "umbrick/grid/float_grid.h"
 #include "umbrick/ingest/raw_volume.h"
@@ -231,6 +232,42 @@ TEST_CASE("A scene that is refused leaves the one before", "[render][gl]") {
   CHECK_THROWS_WITH(view.render(), Contains("apron"));
   renderer.setSampling(scene.sampling);
   CHECK(maxDifference(view.render().colour, before) == 0);
+}
+
+TEST_CASE("Pixels of a scene that was saturated are not left out of the next one", "[render][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const Volume volume(makeDense({40, 40, 40}), "dense");
+  Scene scene = sparseScene();
+  scene.transfer = above(0.1).scaled(20);
+  scene.model = Model::cone;
+  scene.method = Method::dos;
+  scene.sampling.saturation = 0.01;
+  VolumeView view(*context, volume, scene);
+  view.render();
+  SamplingOptions sampling = view.renderer().scene().sampling;
+  sampling.saturation = 0;
+  sampling.spacing *= 0.6;  // more slices than before
+  view.renderer().setSampling(sampling);
+  Camera camera = view.renderer().scene().camera;
+  camera.width = 64;
+  view.renderer().setCamera(camera);
+  const Image found = view.render().colour;
+  VolumeView fresh(*context, volume, unresolved(view.renderer().scene()));
+  CHECK(maxDifference(found, fresh.render().colour) < 2e-5);
+}
+
+TEST_CASE("A picture that could not be drawn cannot be read", "[render][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const Volume volume(makeSparse(glm::ivec3(0), 3, 4, 50), "balls");
+  VolumeView view(*context, volume, sparseScene());
+  view.render();
+  SamplingOptions thick = view.renderer().scene().sampling;
+  thick.spacing = 40;  // beyond the apron
+  view.renderer().setSampling(thick);
+  CHECK_THROWS_AS(view.renderer().draw(), InvalidArgument);
+  CHECK_THROWS_WITH(view.renderer().read(), Contains("nothing was drawn"));
 }
 
 TEST_CASE("Bricks beyond the budget make room for each other, and the picture is the same", "[render][gl]") {

@@ -62,6 +62,9 @@ class BrickAtlas {
   /// @throw InvalidArgument  as above
   BrickAtlas(const GlContext& context, const Bricks& volume, const AtlasOptions& options);
 
+  BrickAtlas(const BrickAtlas&) = delete;  // selections and renderers point to it
+  BrickAtlas& operator=(const BrickAtlas&) = delete;
+
   /// Returns how many slots these bricks take.
   std::size_t slotsFor(std::span<const std::int32_t> bricks) const;
   /// Makes room for so many slots, or for as many as the budget allows.
@@ -80,7 +83,7 @@ class BrickAtlas {
   Slot slot(std::int32_t brick) const;  // the brick must be resident
   GLuint texture(int index) const { return textures_[static_cast<std::size_t>(index)].name(); }
   int textureCount() const { return static_cast<int>(textures_.size()); }
-  glm::ivec3 textureSize() const { return size_; }
+  glm::ivec3 textureSize() const { return plan_.size; }
   TexelScale valueScale() const { return valueScale_; }
   double texelOf(float value) const { return umbrick::texelOf(value, valueScale_, format_); }
   const std::vector<Brick>& bricks() const { return bricks_; }
@@ -95,7 +98,12 @@ class BrickAtlas {
  private:
   using UniformKey = std::tuple<float, float>;
   void checkLimits(int maxEdge);
-  void planTextures(std::size_t slots);
+  // How slots are arranged.
+  struct Plan {
+    glm::ivec3 slotGrid{1}, size{0};  // slots along each axis of a texture, and its texels
+  };
+  Plan planTextures(std::size_t slots) const;
+  void clear();
   void evict(std::size_t slots);
   std::uint64_t slotBytes() const;
   Slot place(std::int32_t slot, const glm::ivec3& slotGrid) const;
@@ -106,7 +114,7 @@ class BrickAtlas {
   std::vector<Brick> bricks_;
   VoxelFormat format_;
   TexelScale valueScale_;
-  glm::ivec3 slotGrid_{1}, size_{0};  // slots along each axis of a texture, and its texels
+  Plan plan_;
   std::size_t slots_ = 0, slotsForAll_ = 0, affordable_ = 0;
   AtlasOptions options_;
   int maxEdge_ = 0;  // texels, of a texture

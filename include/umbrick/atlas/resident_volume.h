@@ -19,6 +19,9 @@ class ResidentVolume {
   /// @throw InvalidArgument  as BrickAtlas
   ResidentVolume(const GlContext& context, const Bricks& volume, const AtlasOptions& options);
 
+  ResidentVolume(const ResidentVolume&) = delete;  // renderers point to it
+  ResidentVolume& operator=(const ResidentVolume&) = delete;
+
   const GlContext& context() const { return context_; }
   const Bricks& volume() const { return volume_; }
   VoxelFormat format() const { return format_; }
@@ -71,7 +74,10 @@ class BrickSelection {
 class ResidentVolumes {
  public:
   ResidentVolumes(const GlContext& context, std::uint64_t budgetBytes) : context_(context), budgetBytes_(budgetBytes) {}
-  /// @param volume  outlives this  @throw InvalidArgument  as BrickAtlas
+  /// Returns the volume as it is held, or makes it resident.
+  /// @param volume   outlives this
+  /// @param options  of one that is held already, only the format counts
+  /// @throw InvalidArgument  as BrickAtlas
   std::shared_ptr<ResidentVolume> get(const Bricks& volume, const AtlasOptions& options);
 
  private:

@@ -20,6 +20,7 @@ namespace umbrick {
   X(TEXTURESUBIMAGE1D, TextureSubImage1D) X(TEXTURESUBIMAGE2D, TextureSubImage2D) \
   X(TEXTURESUBIMAGE3D, TextureSubImage3D) X(TEXTUREPARAMETERI, TextureParameteri) \
   X(GETTEXTUREIMAGE, GetTextureImage) X(COPYIMAGESUBDATA, CopyImageSubData) \
+  X(BINDBUFFER, BindBuffer) X(BINDSAMPLER, BindSampler) X(BLENDEQUATION, BlendEquation) X(POLYGONMODE, PolygonMode) \
   X(CREATEBUFFERS, CreateBuffers) X(DELETEBUFFERS, DeleteBuffers) X(NAMEDBUFFERDATA, NamedBufferData) \
   X(NAMEDBUFFERSUBDATA, NamedBufferSubData) \
   X(CREATEVERTEXARRAYS, CreateVertexArrays) X(DELETEVERTEXARRAYS, DeleteVertexArrays) \

@@ -73,6 +73,10 @@ GlTexture makeTexture3d(const GlFunctions& gl, GLenum format, int width, int hei
 /// @throw GlError  the driver refuses the combination
 GlFramebuffer makeFramebuffer(const GlFunctions& gl, std::initializer_list<GLuint> colours, GLuint depthStencil = 0);
 
+/// Sets the state that no pass sets since a context of ours has it from the beginning, but that a foreign context may
+/// have changed: culling of faces, polygon mode, blend equation, pixel storage, bound buffers of pixels, samplers.
+void resetGlState(const GlFunctions& gl);
+
 /// @throw GlError  an OpenGL error is pending; the message names it and `where`
 void checkGl(const GlFunctions& gl, const char* where);
 
