@@ -91,7 +91,7 @@ TEST_CASE("A mask of another size or place is refused, and the message has both"
   CHECK_NOTHROW(maskSource(numbered(dims), std::move(rounded), 0));
 }
 
-TEST_CASE("The border's most frequent value is that of the six faces; the inside does not count", "[grid]") {
+TEST_CASE("The border's most frequent value is that of the six faces, and the inside does not count", "[grid]") {
   const glm::i64vec3 dims(6, 5, 4);
   std::vector<float> voxels(120, 3);
   int faces = 0;
