@@ -38,12 +38,12 @@ std::shared_ptr<PictureOutput> addPictureOutput(CLI::App& command, const std::st
       ->allow_extra_args(false)
       ->group(group);
   command.add_option("--exr-pixel", output->exrPixel, "half or float")
-      ->check(CLI::IsMember({"half", "float"}))
+      ->check(CLI::IsMember(listNames(kExrPixels)))
       ->capture_default_str()
       ->group(group);
   command.add_flag("--layers", output->layers, "add to the EXR: " + layers)->group(group);
   command.add_option("--tone-map", output->toneMap, "of the PNG: none, reinhard or filmic")
-      ->check(CLI::IsMember({"none", "reinhard", "filmic"}))
+      ->check(CLI::IsMember(listNames(kToneMaps)))
       ->capture_default_str()
       ->group(group);
   command.add_option("--exposure", output->exposure, "of the PNG, stops")->capture_default_str()->group(group);
@@ -82,15 +82,13 @@ void writeOutputs(const PictureOutput& output, const std::vector<ImageLayer>& la
   for (const std::filesystem::path& path : output.files) {
     if (isExr(path)) {
       ExrOptions options;
-      options.pixel = output.exrPixel == "half" ? ExrPixel::half : ExrPixel::float32;
+      options.pixel = parseName(kExrPixels, output.exrPixel, "--exr-pixel");
       options.metadata = metadata;
       if (options.pixel == ExrPixel::half) tellClipped(path, layers);
       writeExr(path, layers, options);
     } else {
       PngOptions options;
-      options.toneMap = output.toneMap == "reinhard" ? ToneMap::reinhard
-                        : output.toneMap == "filmic" ? ToneMap::filmic
-                                                     : ToneMap::none;
+      options.toneMap = parseName(kToneMaps, output.toneMap, "--tone-map");
       options.exposure = static_cast<float>(output.exposure);
       if (const auto scene = metadata.find("umbrick.scene"); scene != metadata.end()) options.metadata.insert(*scene);
       writePng(path, layers.front().image, options);

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "umbrick/core/error.h"
+#include "umbrick/core/names.h"
 
 namespace umbrick {
 namespace {
@@ -50,12 +51,6 @@ std::string reason(const std::string& what) {
     if (colon != std::string::npos) begin = colon + 2;
   }
   return what.substr(begin);
-}
-
-std::string joined(const std::vector<std::string_view>& names) {
-  std::string text;
-  for (const std::string_view name : names) text.append(text.empty() ? "" : ", ").append(name);
-  return text;
 }
 
 }  // namespace
@@ -334,7 +329,7 @@ void JsonValue::failExpected(std::string_view expected) const {
 }
 
 void JsonValue::failUnknownChoice(const std::vector<std::string_view>& known) const {
-  failExpected((known.size() > 1 ? "one of " : "") + joined(known));
+  failExpected((known.size() > 1 ? "one of " : "") + joined({known.begin(), known.end()}));
 }
 
 void JsonValue::failUnknownField(const std::vector<std::string_view>& known) const {
@@ -344,7 +339,8 @@ void JsonValue::failUnknownField(const std::vector<std::string_view>& known) con
   });
   const bool near =
       nearest != known.end() && editDistance(name, *nearest) <= std::max<std::size_t>(1, (name.size() + 1) / 3);
-  fail("unknown field" + (near ? "; did you mean '" + std::string(*nearest) + "'?" : "; known are " + joined(known)));
+  fail("unknown field" + (near ? "; did you mean '" + std::string(*nearest) + "'?"
+                               : "; known are " + joined({known.begin(), known.end()})));
 }
 
 }  // namespace umbrick

@@ -2,8 +2,10 @@
 #include "umbrick/render/techniques.h"
 
 #include <string>
+#include <vector>
 
 #include "umbrick/core/error.h"
+#include "umbrick/core/names.h"
 #include "umbrick/shade/slice_renderer.h"
 
 namespace umbrick {
@@ -25,12 +27,12 @@ std::span<const Technique> techniques() { return kTechniques; }
 
 std::unique_ptr<Renderer> makeRenderer(ResidentVolume& volume, const ResolvedScene& scene, const RenderOptions& options,
                                        std::string_view technique) {
-  std::string known;
+  std::vector<std::string> known;
   for (const Technique& one : kTechniques) {
     if (technique.empty() || one.name == technique) return one.make(volume, scene, options);
-    known.append(known.empty() ? "" : ", ").append(one.name);
+    known.emplace_back(one.name);
   }
-  throw InvalidArgument("technique: expected one of " + known + ", found '" + std::string(technique) + "'");
+  throw InvalidArgument("technique: expected one of " + joined(known) + ", found '" + std::string(technique) + "'");
 }
 
 }  // namespace umbrick

@@ -6,12 +6,26 @@
 
 #include "core/json_writer.h"
 #include "scene/field_text.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
 namespace {
 
 // Returns the table. Its help texts say what a field is; helpText() adds range and default.
+// "emission (no occlusion), cone (...) or lights (...); cone-ray and ambient only in the reference"
+std::string modelHelp() {
+  std::string list, others;
+  for (const ModelTraits& traits : modelTraits()) {
+    const bool last = &traits == &modelTraits().back();
+    const std::string between = list.empty() ? "" : last ? " or " : ", ";
+    list += between + modelName(traits.model) + " (" + std::string(traits.meaning) + ")";
+    if (!supports(Method::ordinates, traits.model)) others += (others.empty() ? "" : " and ") + modelName(traits.model);
+  }
+  return list + "; " + others + " only in the reference";
+}
+
 const std::vector<SceneField>& table() {
+  static const std::string models = modelHelp();
   static const std::vector<SceneField> fields{
       {"camera.projection", "", "Camera", "perspective or orthographic",
        [](Scene& s) -> FieldPlace { return Choice(s.camera.projection, kProjections); }},
@@ -60,11 +74,7 @@ const std::vector<SceneField>& table() {
        },
        {.low = 1}},
 
-      {"model", "model", "Light",
-       "emission (no occlusion), cone (around the slice normal), cone-ray (around the view ray), ambient (whole "
-       "sphere) "
-       "or lights (the scene's light.sources); cone-ray and ambient only in the reference",
-       [](Scene& s) -> FieldPlace { return Choice(s.model, kModels); }},
+      {"model", "model", "Light", models, [](Scene& s) -> FieldPlace { return Choice(s.model, kModels); }},
       {"method", "method", "Light", "of the models cone (dos or ordinates) and lights (ordinates)",
        [](Scene& s) -> FieldPlace { return Choice(s.method, kMethods); }},
 

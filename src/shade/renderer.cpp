@@ -9,43 +9,42 @@ void Renderer::setScene(const ResolvedScene& scene) {
   scene_ = scene;
 }
 
-void Renderer::setCamera(const Camera& camera) {
+template <class Edit>
+void Renderer::change(const Edit& edit) {
   ResolvedScene next = scene();
-  next.camera = camera;
+  edit(next);
   setScene(next);
+}
+
+void Renderer::setCamera(const Camera& camera) {
+  change([&](ResolvedScene& next) { next.camera = camera; });
 }
 
 void Renderer::setTransfer(const TransferFunction& transfer) {
-  ResolvedScene next = scene();
-  next.transfer = transfer;
-  setScene(next);
+  change([&](ResolvedScene& next) { next.transfer = transfer; });
 }
 
 void Renderer::setClip(const std::vector<ClipPlane>& planes, const std::optional<Box>& box) {
-  ResolvedScene next = scene();
-  next.clipPlanes = planes;
-  next.clipBox = box;
-  setScene(next);
+  change([&](ResolvedScene& next) {
+    next.clipPlanes = planes;
+    next.clipBox = box;
+  });
 }
 
 void Renderer::setLight(Model model, Method method, const std::vector<LightSource>& sources) {
-  ResolvedScene next = scene();
-  next.model = model;
-  next.method = method;
-  next.lights = sources;
-  setScene(next);
+  change([&](ResolvedScene& next) {
+    next.model = model;
+    next.method = method;
+    next.lights = sources;
+  });
 }
 
 void Renderer::setOcclusion(const OcclusionOptions& occlusion) {
-  ResolvedScene next = scene();
-  next.occlusion = occlusion;
-  setScene(next);
+  change([&](ResolvedScene& next) { next.occlusion = occlusion; });
 }
 
 void Renderer::setSampling(const SamplingOptions& sampling) {
-  ResolvedScene next = scene();
-  next.sampling = sampling;
-  setScene(next);
+  change([&](ResolvedScene& next) { next.sampling = sampling; });
 }
 
 Picture Renderer::render(const RenderSample& sample) {

@@ -26,8 +26,7 @@ BrickOptions bricksOf(const ScalarGrid& grid, const ResolvedScene& scene) {
   return requiredBricks(scene, grid.indexToWorld(), grid.worldBounds());
 }
 
-std::unique_ptr<Bricks> cut(const ScalarGrid& grid, const ResolvedScene& scene) {
-  const BrickOptions options = bricksOf(grid, scene);
+std::unique_ptr<Bricks> cut(const ScalarGrid& grid, const ResolvedScene& scene, const BrickOptions& options) {
   return scene.bricks.bricked ? brickGrid(grid, options) : unbrickedGrid(grid, options);
 }
 
@@ -66,7 +65,7 @@ double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Res
   probe.size = 64;  // so many pixels are enough to know what lies in the picture
   const double voxelEdge = shortestVoxelEdge(grid.indexToWorld()), spacing = 0.5 * voxelEdge;
   const ResolvedScene fine = caseScene(scene, probe, {spacing, voxelEdge});
-  const std::unique_ptr<Bricks> bricks = cut(grid, fine);
+  const std::unique_ptr<Bricks> bricks = cut(grid, fine, bricksOf(grid, fine));
   SliceRenderer renderer(context, *bricks, fine, quietly());
   const auto slices = static_cast<double>(renderer.render().stats.slices);
   if (slices == 0)
@@ -171,7 +170,7 @@ bool StudyRun::report(const std::string& step, double share) {
 const Bricks& StudyRun::bricksFor(const ResolvedScene& scene) {
   const BrickOptions options = bricksOf(grid_, scene);
   std::unique_ptr<Bricks>& bricks = bricks_[{options.interior, options.apron}];
-  if (!bricks) bricks = cut(grid_, scene);
+  if (!bricks) bricks = cut(grid_, scene, options);
   return *bricks;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "umbrick/core/names.h"
 #include "umbrick/image/image.h"
 
 namespace umbrick {
@@ -19,6 +20,7 @@ struct ImageLayer {
 };
 
 enum class ExrPixel { half, float32 };
+inline constexpr Name<ExrPixel> kExrPixels[]{{"half", ExrPixel::half}, {"float", ExrPixel::float32}};
 
 struct ExrOptions {
   ExrPixel pixel = ExrPixel::half;              // of all layers but "Z", which is always float32

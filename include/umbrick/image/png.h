@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "umbrick/core/names.h"
 #include "umbrick/image/image.h"
 
 namespace umbrick {
@@ -14,6 +15,8 @@ enum class ToneMap {
   reinhard,  // c / (1 + luminance)
   filmic,    // a fit of the ACES curve; the source is named where it is implemented
 };
+inline constexpr Name<ToneMap> kToneMaps[]{
+    {"none", ToneMap::none}, {"reinhard", ToneMap::reinhard}, {"filmic", ToneMap::filmic}};
 
 struct PngOptions {
   ToneMap toneMap = ToneMap::none;

@@ -110,6 +110,10 @@ class Renderer {
   bool hasScene() const { return scene_.has_value(); }
 
  private:
+  /// Takes the scene with an edit.
+  template <class Edit>
+  void change(const Edit& edit);
+
   std::optional<ResolvedScene> scene_;
 };
 
