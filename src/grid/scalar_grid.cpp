@@ -7,6 +7,13 @@
 
 namespace umbrick {
 
+bool ScalarGrid::isLevelSet() const { return grid->getGridClass() == openvdb::GRID_LEVEL_SET; }
+
+std::string ScalarGrid::metadata(const std::string& key) const {
+  const openvdb::Metadata::ConstPtr found = (*grid)[key];
+  return found ? found->str() : std::string();
+}
+
 glm::dmat4 ScalarGrid::indexToWorld() const {
   if (!grid->transform().isLinear())
     throw InvalidArgument("grid \"" + name + "\": expected an affine transform, found " + grid->transform().mapType());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/ext/matrix_transform.hpp>
+#include <map>
 #include <sstream>
 #include <unordered_map>
 #include <vector>
@@ -134,7 +135,7 @@ std::unique_ptr<VoxelSource> maskSource(std::unique_ptr<VoxelSource> source, std
   return std::make_unique<MaskedSource>(std::move(source), std::move(mask), background, leftOut);
 }
 
-BorderMode borderMode(VoxelSource& source) {
+BorderMode borderValues(VoxelSource& source) {
   constexpr std::size_t kMostValues = std::size_t(1) << 20;
   const glm::i64vec3 dims = source.info().dims;
   const std::int64_t slice = dims.x * dims.y;
@@ -168,16 +169,32 @@ BorderMode borderMode(VoxelSource& source) {
     }
     first += slices;
   }
-  for (const auto& [value, voxels] : counts)
-    if (voxels > mode.voxels || (voxels == mode.voxels && value < mode.value)) {
+  if (counts.empty())
+    throw InvalidArgument(source.info().name + ": background: expected a finite voxel on the border, found none");
+  const std::map<float, std::uint64_t> ascending(counts.begin(), counts.end());
+  std::uint64_t counted = 0, below = 0;
+  for (const auto& [value, voxels] : ascending) {
+    counted += voxels;
+    if (voxels > mode.voxels) {
       mode.value = value;
       mode.voxels = voxels;
     }
-  if (mode.voxels == 0 || (mode.voxels == 1 && mode.border > 1))
+  }
+  mode.different = ascending.size();
+  for (const auto& [value, voxels] : ascending) {
+    mode.median = value;
+    if (2 * (below += voxels) >= counted) break;
+  }
+  return mode;
+}
+
+BorderMode borderMode(VoxelSource& source) {
+  const BorderMode mode = borderValues(source);
+  if (mode.voxels == 1 && mode.border > 1)
     throw InvalidArgument(source.info().name +
                           ": background: expected a value that several voxels of the border have, "
                           "found " +
-                          std::to_string(counts.size()) + " different ones in " + std::to_string(mode.border) +
+                          std::to_string(mode.different) + " different ones in " + std::to_string(mode.border) +
                           " finite voxels; give it as a number");
   return mode;
 }

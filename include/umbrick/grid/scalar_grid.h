@@ -17,6 +17,10 @@ struct ScalarGrid {
   /// Grid units; not 0 when the file held doubles or integers beyond 24 bits: largest |stored - float|.
   double conversionError = 0;
 
+  /// True for a grid of OpenVDB's class "level set": distances to a surface, negative inside.
+  bool isLevelSet() const;
+  /// Returns the text of a grid's metadata, such as "modality" (see VolumeInfo); empty where there is none.
+  std::string metadata(const std::string& key) const;
   /// @throw InvalidArgument  the transform is not affine
   glm::dmat4 indexToWorld() const;
   /// Returns the bounds of the centres of the active voxels, tiles included; empty for an empty grid.

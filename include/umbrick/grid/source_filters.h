@@ -24,10 +24,16 @@ std::unique_ptr<VoxelSource> maskSource(std::unique_ptr<VoxelSource> source, std
 struct BorderMode {
   float value = 0;                       // grid units; the smaller of two that are equally frequent
   std::uint64_t voxels = 0, border = 0;  // voxels that have it, and voxels of the border, without NaN and infinite ones
+  std::uint64_t different = 0;           // values that the border has
+  float median = 0;                      // grid units, of the border
 };
 
 /// Reads the source to its end. It counts up to 2^20 different values; values first met after these are not counted.
-/// @throw InvalidArgument  no two voxels of the border have the same value, or none is finite
+/// @throw InvalidArgument  no voxel of the border is finite
+BorderMode borderValues(VoxelSource& source);
+
+/// Does the same where one value must stand out. @throw InvalidArgument  no two voxels of the border have the same
+/// value, or none is finite
 BorderMode borderMode(VoxelSource& source);
 
 }  // namespace umbrick
