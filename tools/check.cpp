@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "command.h"
+#include "opened_scene.h"
 #include "scene_options.h"
 #include "umbrick/check/invariants.h"
 #include "umbrick/core/error.h"
@@ -85,18 +86,14 @@ void printJson(const std::vector<InvariantResult>& results, const ResolvedScene&
 int check(const CheckCommand& command) {
   for (const int edge : command.check.edges)
     if (edge % 8 != 0) throw UsageError("--edges: " + std::to_string(edge) + " is not a multiple of 8");
-  std::optional<Volume> volume;
-  const auto load = [&](const Scene& scene) {
-    if (!volume) volume.emplace(scene.volume);
-  };
-  Scene scene = makeScene(*command.scene, [&](const Scene& unfinished) {
-    load(unfinished);
-    return greyRamp(*volume);
-  });
-  load(scene);
-  if (!command.scene->has("size")) scene.camera.width = scene.camera.height = 256;
+  Scene unopened = makeScene(*command.scene);
+  if (!command.scene->has("size")) unopened.camera.width = unopened.camera.height = 256;
+  const OpenedScene opened = openScene(*command.scene, unopened);
+  const Scene& scene = opened.scene;
+  const auto& volume = opened.volume;
   const ResolvedScene resolved = resolveScene(scene, volume->worldBounds(), volume->indexToWorld());
   const auto context = createContext(command.backend);
+  std::cerr << opened.chosen;
   CheckOptions options = command.check;
   const bool terminal = isatty(STDERR_FILENO);
   if (terminal)
@@ -123,7 +120,6 @@ Command addCheck(CLI::App& app) {
   // are no options.
   for (const char* option : {"--model", "--unbricked", "--no-culling"}) sub->remove_option(sub->get_option(option));
   sub->get_option("--size")->description("of the pictures, pixels [256x256]");
-  sub->get_option("--tf")->description("transfer function: a preset or a JSON file [a grey ramp over the values]");
   const std::string group = "Check";
   sub->add_option("--edges", command->check.edges, "of bricks that are compared, voxels, multiples of 8")
       ->check(CLI::Range(8, 256))

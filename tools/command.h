@@ -27,5 +27,6 @@ Command addInfo(CLI::App& app);
 Command addReference(CLI::App& app);
 Command addRender(CLI::App& app);
 Command addStudy(CLI::App& app);
+Command addTf(CLI::App& app);
 
 }  // namespace umbrick::tools

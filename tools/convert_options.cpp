@@ -22,10 +22,6 @@ constexpr Name<VdbCodec> kCodecs[] = {{"blosc", VdbCodec::blosc}, {"zip", VdbCod
 constexpr Name<NanoValues> kQuantise[] = {
     {"4", NanoValues::bits4}, {"8", NanoValues::bits8}, {"16", NanoValues::bits16}, {"n", NanoValues::adaptive}};
 
-CLI::Validator voxelType() {
-  return CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "i64", "u64", "f16", "f32", "f64"});
-}
-
 void addRawOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
   const std::string raw = "Headerless raw";
   app.add_option("--dims", command->dims, "voxels along x (fastest), y and z")->expected(3)->group(raw);

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "command.h"
+#include "opened_scene.h"
 #include "umbrick/vdb/summary.h"
 
 namespace umbrick::tools {
@@ -21,7 +22,8 @@ namespace fs = std::filesystem;
 struct InfoOptions {
   fs::path input;
   int bins = 16;
-  bool json = false;
+  bool json = false, suggestTransfer = false;
+  VolumeOptions volume;
 };
 
 template <class Vector>
@@ -156,6 +158,15 @@ void print(const GridSummary& grid) {
 }
 
 int info(const InfoOptions& options) {
+  if (options.suggestTransfer) {
+    VolumeReference reference;
+    reference.file = options.input;
+    applyVolumeOptions(options.volume, reference);
+    const SuggestedTransfer suggested = suggestTransfer(*openVolumeOf(reference));
+    std::cerr << options.input.string() << ": " << suggested.reason << '\n';
+    std::cout << printTransferFunction(suggested.transfer) << '\n';
+    return 0;
+  }
   const FileSummary file = summariseFile(options.input, options.bins);
   if (options.json) {
     std::cout << toJson(options.input, file).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
@@ -179,6 +190,9 @@ Command addInfo(CLI::App& app) {
       ->check(CLI::Range(1, 65536))
       ->capture_default_str();
   command->add_flag("--json", options->json, "JSON instead of text");
+  command->add_flag("--suggest-tf", options->suggestTransfer,
+                    "print the transfer function that --tf auto makes, of a volume of any format");
+  addVolumeOptions(*command, options->volume);
   return {command, [options] { return info(*options); }};
 }
 

@@ -1,11 +1,13 @@
 // The umbrick program. Each sub-command has a file of its own beside this one.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include "command.h"
+#include "volume_options.h"
 
 namespace {
 using namespace umbrick::tools;
@@ -19,10 +21,14 @@ int runProgram(int argc, char** argv) {
   app.failure_message(
       [](const CLI::App*, const CLI::Error& error) { return std::string("umbrick: ") + error.what() + "\n"; });
   const std::vector<Command> commands{
-      addConvert(app), addInfo(app), addRender(app), addReference(app), addCompare(app), addCheck(app), addStudy(app),
+      addConvert(app), addInfo(app),  addRender(app), addReference(app),
+      addCompare(app), addCheck(app), addStudy(app),  addTf(app),
   };
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> arguments(argv + 1, argv + argc);
+    if (!arguments.empty() && arguments.front() != "convert") arguments = joinVectors(std::move(arguments));
+    std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
+    app.parse(std::move(arguments));
   } catch (const CLI::ParseError& error) {
     return app.exit(error, std::cout, std::cerr) == 0 ? 0 : 2;
   }

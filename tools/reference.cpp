@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "command.h"
+#include "empty_picture.h"
+#include "opened_scene.h"
 #include "picture_output.h"
 #include "progress.h"
 #include "scene_options.h"
@@ -25,7 +27,7 @@ struct ReferenceCommand {
   ReferenceOptions reference;
   std::string integrator = "quadrature";
   int samples = 0;  // 0: not given
-  bool noSkipping = false;
+  bool noSkipping = false, strict = false;
 };
 
 std::string describe(const ReferenceOptions& options) {
@@ -71,8 +73,9 @@ int runReference(ReferenceCommand& command) {
   PictureOutput& output = *command.output;
   checkOutputs(output);
   const StopRequest stop;
-  const Scene scene = makeScene(*command.scene);
-  const Volume volume(scene.volume);
+  const OpenedScene opened = openScene(*command.scene, makeScene(*command.scene, {.model = Model::cone}));
+  const Scene& scene = opened.scene;
+  const Volume& volume = *opened.volume;
   const ResolvedScene resolved = volume.resolve(scene);
   ReferenceOptions& options = command.reference;
   options.integrator = parseName(kIntegrators, command.integrator, "--integrator");
@@ -80,6 +83,7 @@ int runReference(ReferenceCommand& command) {
   // If no number of paths is given, as many are traced as the standard error needs.
   if (options.standardError > 0 && command.samples == 0) options.samples = 1'000'000'000;
   if (command.samples > 0) options.samples = command.samples;
+  std::cerr << opened.chosen;
   ReferencePicture picture;
   {
     ProgressBar bar("reference");
@@ -108,7 +112,9 @@ int runReference(ReferenceCommand& command) {
   if (picture.stats.unconvergedPixels > 0)
     std::cerr << "umbrick: " << picture.stats.unconvergedPixels << " pixels took all " << options.samples
               << " samples and have a standard error above " << options.standardError << '\n';
-  if (picture.complete) return 0;
+  const auto empty = picture.complete ? describeEmptyPicture(picture.colour, resolved, volume) : std::nullopt;
+  if (empty) std::cerr << *empty << '\n';
+  if (picture.complete) return empty && command.strict ? 1 : 0;
   std::cerr << "umbrick: stopped; the picture holds " << static_cast<int>(100 * picture.stats.share)
             << " % of its pixels, the rest is 0\n";
   return 1;
@@ -163,6 +169,7 @@ Command addReference(CLI::App& app) {
       ->check(CLI::Range(0, 4096))
       ->capture_default_str()
       ->group(group);
+  addStrictOption(*sub, command->strict);
   return {sub, [command] { return runReference(*command); }};
 }
 

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "command.h"
+#include "empty_picture.h"
+#include "opened_scene.h"
 #include "picture_output.h"
 #include "progress.h"
 #include "scene_options.h"
@@ -37,22 +39,24 @@ struct RenderCommand {
   std::optional<int> passes;  // of a progressive picture: most samples
   std::optional<double> maxSeconds, targetError;
   std::uint64_t seed = 1;
+  bool strict = false;
 };
 
 // The volume of a scene, cut into bricks for it.
 struct LoadedScene {
   ResolvedScene scene;
   double loadMs = 0, brickMs = 0;
+  std::shared_ptr<const Volume> volume;
   std::unique_ptr<Bricks> bricks = {};
 };
 
-LoadedScene loadScene(const Scene& scene, bool refined) {
-  const Volume volume(scene.volume);
-  LoadedScene loaded{.scene = volume.resolve(scene), .loadMs = volume.loadMs()};
+LoadedScene loadScene(const OpenedScene& opened, bool refined) {
+  const Volume& volume = *opened.volume;
+  LoadedScene loaded{.scene = volume.resolve(opened.scene), .loadMs = volume.loadMs(), .volume = opened.volume};
   const Stopwatch brick;
   loaded.bricks = refined ? volume.cutForRefinement(loaded.scene) : volume.cut(loaded.scene);
   loaded.brickMs = brick.elapsedMs();
-  warnOfNonFinite(scene, loaded.bricks->nonFiniteVoxels);
+  warnOfNonFinite(opened.scene, loaded.bricks->nonFiniteVoxels);
   return loaded;
 }
 
@@ -176,19 +180,21 @@ ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& vo
 int render(const RenderCommand& command) {
   const PictureOutput& output = *command.output;
   checkOutputs(output);
-  const Scene scene = makeScene(*command.scene);
+  const Scene scene = makeScene(*command.scene, {.model = Model::cone});
   const bool progressive = command.passes || command.maxSeconds || command.targetError;
   if (progressive && command.frames > 1) throw UsageError("--frames and --progressive exclude each other");
   if (progressive && !(traitsOf(scene.model).occlusion && traitsOf(scene.method).directions))
     throw UsageError(
         "--progressive, --max-seconds and --target-error need the model cone or lights and the method ordinates");
-  LoadedScene loaded = loadScene(scene, progressive);
+  const OpenedScene opened = openScene(*command.scene, scene);
+  LoadedScene loaded = loadScene(opened, progressive);
   const auto context = createContext(command.backend);
   ResidentVolume volume(*context, *loaded.bricks, atlasOptions(loaded.scene, *loaded.bricks));
   RenderOptions options;
   options.visibilityAndDepth = output.layers;
   options.countFragments = !output.stats.empty();
   options.timePasses = command.timePasses;
+  std::cerr << opened.chosen;
   std::vector<double> framesMs;
   Picture picture;
   std::optional<ProgressivePicture> passes;
@@ -217,7 +223,9 @@ int render(const RenderCommand& command) {
     if (passes) stats["progressive"] = printPasses(*passes, command.seed);
     writeTextFile(output.stats, stats.dump(2) + "\n");
   }
-  return command.targetError && !passes->reachedTarget ? 1 : 0;
+  const auto empty = describeEmptyPicture(picture.colour, loaded.scene, *loaded.volume);
+  if (empty) std::cerr << *empty << '\n';
+  return (command.targetError && !passes->reachedTarget) || (empty && command.strict) ? 1 : 0;
 }
 
 }  // namespace
@@ -253,6 +261,7 @@ Command addRender(CLI::App& app) {
       ->group(progressive);
   sub->add_flag("--time-passes", command->timePasses, "also time each kind of pass, for --stats; slower");
   sub->get_option("--time-passes")->group("Output");
+  addStrictOption(*sub, command->strict);
   return {sub, [command] { return render(*command); }};
 }
 

@@ -66,6 +66,12 @@ class FieldOption {
                [](const FieldPlace& place, const std::string& value) { std::get<Choice>(place).set(value); })
         ->check(CLI::IsMember(choice.names()));
   }
+  CLI::Option* operator()(const glm::dvec2*) const {
+    return add<std::vector<double>>([](const FieldPlace& place, const std::vector<double>& value) {
+             *std::get<glm::dvec2*>(place) = {value[0], value[1]};
+           })
+        ->expected(2);
+  }
   CLI::Option* operator()(const glm::dvec3*) const {
     return add<std::vector<double>>([](const FieldPlace& place, const std::vector<double>& value) {
              *std::get<glm::dvec3*>(place) = toVector(value);
@@ -135,29 +141,65 @@ void validate(const SceneOptions& options, const Scene& scene) {
 
 // --- parts of a scene that are no single field ---
 
+// A picture of a volume of which nothing is said shows it from the front, a little from its side and from above, where
+// its shape is seen best.
+constexpr Orbit kFirstLook{.azimuth = 30 * kRadians, .elevation = 15 * kRadians};
+
+Axis parseAxis(const std::string& text) {
+  try {
+    return parseName(kAxes, text, "--up");
+  } catch (const InvalidArgument& error) {
+    throw UsageError(error.what());
+  }
+}
+
+// Sets what is up: an axis or three numbers.
+void applyUp(const std::string& up, Scene& scene) {
+  const auto numbers = parseNumbers(up);
+  if (scene.orbit) {
+    if (numbers)
+      throw UsageError("--up: three numbers need --eye; around the volume it is x, y, z, -x, -y, -z or auto");
+    scene.orbit->up = parseAxis(up);
+    return;
+  }
+  if (numbers && numbers->size() == 3)
+    scene.camera.up = toVector(*numbers);
+  else if (numbers || up == "auto")
+    throw UsageError("--up: beside an eye, expected three numbers or one of x, y, z, -x, -y, -z, found '" + up + "'");
+  else
+    scene.camera.up = axisDirection(parseAxis(up));
+}
+
 // Places the camera. An eye replaces the angles around the volume, and angles replace an eye.
-void placeCamera(const SceneOptions& options, Scene& scene) {
+void placeCamera(const SceneOptions& options, bool fromScene, Scene& scene) {
   Camera& camera = scene.camera;
   if (options.orthographic) camera.projection = Projection::orthographic;
-  const bool angles = options.has("azimuth") || options.has("elevation");
+  if (options.view && (options.has("azimuth") || options.has("elevation")))
+    throw UsageError("--view and --azimuth, --elevation exclude each other");
+  const bool angles = options.view || options.has("azimuth") || options.has("elevation") || options.has("front") ||
+                      options.has("zoom") || options.has("pan");
   const bool eye = options.has("eye"), lookAt = options.has("look-at");
-  if (eye && angles) throw UsageError("--eye and --azimuth, --elevation exclude each other");
+  if (eye && angles) throw UsageError("--eye excludes --view, --azimuth, --elevation, --front, --zoom and --pan");
   if (eye || (lookAt && !scene.orbit)) {
     if (scene.orbit && !lookAt) throw UsageError("--eye needs --look-at");
     if (scene.orbit) camera.up = {0, 0, 1};
     scene.orbit.reset();
   }
   if (angles && !scene.orbit) scene.orbit = Orbit{};
-  if (scene.orbit && (lookAt || options.has("up") || options.has("view-height")))
-    throw UsageError("--look-at, --up and --view-height need --eye");
+  if (scene.orbit && (lookAt || options.has("view-height"))) throw UsageError("--look-at and --view-height need --eye");
+  if (scene.orbit && !fromScene && !options.view && !options.has("azimuth") && !options.has("elevation"))
+    scene.orbit = kFirstLook;
+  if (options.up) applyUp(*options.up, scene);
 }
 
-void applyTransfer(const SceneOptions& options, const DefaultTransfer& defaultTransfer, Scene& scene) {
-  if (options.transfer) scene.transfer = loadTransferFunction(*options.transfer);
-  if (!scene.transfer && defaultTransfer) scene.transfer = defaultTransfer(scene);
-  if (!scene.transfer) throw UsageError("no transfer function: give --tf (a preset or a file) or a scene that has one");
-  if (options.window) scene.transfer = scene.transfer->windowed((*options.window)[0], (*options.window)[1]);
-  if (options.sigmaScale) scene.transfer = scene.transfer->scaled(*options.sigmaScale);
+// Without --tf and without a scene that has one, the transfer function is made when the volume is known, and so are
+// window and scale of it.
+void applyTransfer(const SceneOptions& options, Scene& scene) {
+  if (options.transfer && *options.transfer == "auto")
+    scene.transfer.reset();
+  else if (options.transfer)
+    scene.transfer = loadTransferFunction(*options.transfer);
+  applyWindow(options, scene);
 }
 
 // Applies model and method, and then the quality, before the fields that it sets are given one by one. A scene without
@@ -180,6 +222,17 @@ void applyQuality(const SceneOptions& options, bool fromScene, Scene& scene) {
   for (const char* option : {"spacing", "spacing-unit"})
     if (options.has(option)) options.fields.find(option)->second(spaced);
   if (spaced.spacingUnit == SpacingUnit::voxel) scene.sampling.segments = segmentsOf(spaced.sampling.spacing);
+}
+
+// Reads one number, the distance of slices, or three, the spacing of voxels.
+void readSpacing(const std::string& text, SceneOptions& options) {
+  const auto numbers = parseNumbers(text);
+  if (numbers && numbers->size() == 3)
+    options.volume.spacing = *numbers;
+  else if (numbers && numbers->size() == 1)
+    options.fields["spacing"] = [distance = numbers->front()](Scene& scene) { scene.sampling.spacing = distance; };
+  else
+    throw CLI::ValidationError("--spacing", "expected a distance of slices, or three numbers, found '" + text + "'");
 }
 
 // Refuses an option that only the other method looks at, since it shows that the user expects that method.
@@ -205,12 +258,19 @@ void applyClipping(const SceneOptions& options, Scene& scene) {
 std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
   const auto options = std::make_shared<SceneOptions>();
   SceneOptions& o = *options;
-  command.add_option("input", o.input, ".vdb or .nvdb file, or .json scene")->required();
-  command.add_option("--grid", o.grid,
-                     "grid of the file: name, or name[1] for the second of that name [the only one, or density]");
+  command
+      .add_option("input", o.input,
+                  "a volume of any format that convert reads, a .vdb or .nvdb, numbered files (frame_%04d.nrrd: the "
+                  "first), or a .json scene")
+      ->required();
+  addVolumeOptions(command, o.volume);
 
   const std::string medium = "Medium";
-  command.add_option("--tf", o.transfer, "transfer function: a preset or a JSON file")->group(medium);
+  command
+      .add_option("--tf", o.transfer,
+                  "transfer function: a preset (umbrick tf list), a JSON file, or auto: one that fits the volume "
+                  "[that of the scene, or auto]")
+      ->group(medium);
   command.add_option("--window", o.window, "stretch the transfer function to these values, grid units")
       ->expected(2)
       ->group(medium);
@@ -218,6 +278,18 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
 
   addFieldOptions(command, o, "Camera");
   command.add_flag("--orthographic", o.orthographic, "parallel view")->group("Camera");
+  command
+      .add_option("--view", o.view,
+                  "by name: front, back, left, right, top, bottom; of a patient whose file states the anatomy also "
+                  "anterior, posterior, superior, inferior, and left and right are the patient's own [azimuth 30, "
+                  "elevation 15]")
+      ->group("Camera");
+  command
+      .add_option(
+          "--up", o.up,
+          "what is up: x, y, z, -x, -y, -z or auto (the patient's head; z for other scans; of a .vdb that other "
+          "programs wrote mostly y); beside --eye also three numbers [auto; with --eye 0 0 1]")
+      ->group("Camera");
 
   addFieldOptions(command, o, "Light");
   command
@@ -228,6 +300,16 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
       ->group("Light");
 
   addFieldOptions(command, o, "Sampling");
+  // Three numbers are those that convert takes by the same name.
+  command.remove_option(command.get_option("--spacing"));
+  const SceneField& spacing = *findSceneField("spacing");
+  command
+      .add_option_function<std::string>(
+          "--spacing", [&o](const std::string& text) { readSpacing(text, o); },
+          helpText(spacing) + "; three numbers: of the voxels of a volume whose file states none")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->group("Sampling");
   command
       .add_option("--table-size", o.tableSize,
                   "no effect: there is no table any more; kept so that earlier commands work")
@@ -243,6 +325,12 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
   return options;
 }
 
+void addStrictOption(CLI::App& command, bool& strict) {
+  command
+      .add_flag("--strict", strict, "exit status 1 for a picture in which nothing is drawn, or every pixel is opaque")
+      ->group("Output");
+}
+
 void addBackendOption(CLI::App& command, std::string& backend) {
   command.add_option("--backend", backend, "OpenGL: auto (OSMesa, else EGL), osmesa or egl")
       ->check(CLI::IsMember(listNames(kBackends)))
@@ -253,16 +341,18 @@ std::unique_ptr<GlContext> createContext(const std::string& backend) {
   return createGlContext(parseName(kBackends, backend, "--backend"));
 }
 
-Scene makeScene(const SceneOptions& options, const DefaultTransfer& defaultTransfer) {
+Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults) {
   Scene scene;
   const bool fromScene = options.input.extension() == ".json";
-  if (fromScene)
+  if (fromScene) {
     scene = readScene(options.input);
-  else
+  } else {
     scene.volume.file = options.input;
-  if (options.grid) scene.volume.grid = *options.grid;
-  applyTransfer(options, defaultTransfer, scene);
-  placeCamera(options, scene);
+    scene.model = defaults.model;
+  }
+  applyVolumeOptions(options.volume, scene.volume);
+  applyTransfer(options, scene);
+  placeCamera(options, fromScene, scene);
   applyQuality(options, fromScene, scene);
   for (const auto& [option, set] : options.fields) set(scene);
   checkMethodOptions(options, scene.method);
@@ -271,6 +361,12 @@ Scene makeScene(const SceneOptions& options, const DefaultTransfer& defaultTrans
   applyClipping(options, scene);
   validate(options, scene);
   return scene;
+}
+
+void applyWindow(const SceneOptions& options, Scene& scene) {
+  if (!scene.transfer) return;
+  if (options.window) scene.transfer = scene.transfer->windowed((*options.window)[0], (*options.window)[1]);
+  if (options.sigmaScale) scene.transfer = scene.transfer->scaled(*options.sigmaScale);
 }
 
 void warnOfNonFinite(const Scene& scene, std::uint64_t voxels) {

@@ -12,15 +12,17 @@
 #include <vector>
 
 #include "umbrick/gl/context.h"
-#include "umbrick/render/volume.h"
 #include "umbrick/scene/scene.h"
+#include "volume_options.h"
 
 namespace umbrick::tools {
 
-/// Holds what the command line says of a scene. The rest comes from the scene file or keeps its default.
+/// Holds what the command line says of a scene. The rest comes from the scene file, follows from the volume or keeps
+/// its default.
 struct SceneOptions {
   std::filesystem::path input;
-  std::optional<std::string> grid, transfer, quality;
+  VolumeOptions volume;
+  std::optional<std::string> transfer, quality, view, up;
   std::optional<std::vector<double>> window, clipBox;
   std::vector<std::vector<double>> clipPlanes;
   std::optional<double> sigmaScale;
@@ -34,16 +36,24 @@ struct SceneOptions {
 
 /// Adds the options to a sub-command.
 std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command);
+/// Adds --strict, for sub-commands that make one picture.
+void addStrictOption(CLI::App& command, bool& strict);
 /// Adds --backend, for sub-commands that draw with OpenGL.
 void addBackendOption(CLI::App& command, std::string& backend);
 /// Makes the context of that name.
 std::unique_ptr<GlContext> createContext(const std::string& backend);
 
-/// Returns what replaces a transfer function that nobody gave; none: then one must be given.
-using DefaultTransfer = std::function<TransferFunction(const Scene&)>;
+/// What a picture shows where neither options nor a scene file say it.
+struct SceneDefaults {
+  Model model = Model::emission;
+};
 
-/// Makes a scene from a file and the command line. @throw UsageError, IoError, InvalidArgument
-Scene makeScene(const SceneOptions& options, const DefaultTransfer& defaultTransfer = {});
+/// Makes a scene from a file and the command line, before its volume is known: what is wrong is said before anything is
+/// loaded. Without a transfer function, none is set. @throw UsageError, IoError, InvalidArgument
+Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults = {});
+
+/// Applies --window and --sigma-scale, where the scene has a transfer function.
+void applyWindow(const SceneOptions& options, Scene& scene);
 
 /// Prints one line to stderr, if there are such voxels.
 void warnOfNonFinite(const Scene& scene, std::uint64_t voxels);

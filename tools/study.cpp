@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "command.h"
+#include "opened_scene.h"
 #include "progress.h"
 #include "scene_options.h"
 #include "study_page/gnuplot.h"
@@ -88,11 +89,14 @@ StudySettings makeSettings(const StudyCommand& command) {
 
 int study(const StudyCommand& command) {
   const StudySettings settings = makeSettings(command);
-  const Scene scene = makeScene(*command.scene);
-  planStudy(settings, scene.occlusion.aperture);  // refuses wrong settings before a volume is loaded
-  const Volume volume(scene.volume);
+  const Scene unopened = makeScene(*command.scene);
+  planStudy(settings, unopened.occlusion.aperture);  // refuses wrong settings before a volume is loaded
+  const OpenedScene opened = openScene(*command.scene, unopened);
+  const Scene& scene = opened.scene;
+  const Volume& volume = *opened.volume;
   const ResolvedScene resolved = volume.resolve(scene);
   const auto context = createContext(command.backend);
+  std::cerr << opened.chosen;
   const PageFolder folder(command.folder);
   const StopRequest stop;
   StudyOptions options;

@@ -32,5 +32,9 @@ inline CLI::Validator positiveNumber() {
 inline CLI::Validator numberIn(double low, double high, const std::string& range) {
   return finiteNumber([low, high](double value) { return value >= low && value <= high; }, "a number from " + range);
 }
+/// Accepts the name of a type of voxels.
+inline CLI::Validator voxelType() {
+  return CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "i64", "u64", "f16", "f32", "f64"});
+}
 
 }  // namespace umbrick::tools

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "umbrick/core/error.h"
 
@@ -161,7 +162,21 @@ TransferFunction TransferFunction::windowed(double low, double high) const {
     const double share = extent > 0 ? (value - first) / extent : 0.5;
     value = share < 1 ? low + share * (high - low) : high;
   }
+  stretched.unit_.clear();
   return stretched;
+}
+
+TransferFunction TransferFunction::withUnit(std::string unit) const {
+  TransferFunction result = *this;
+  result.unit_ = std::move(unit);
+  return result;
+}
+
+TransferFunction TransferFunction::shifted(double offset) const {
+  TransferFunction result = *this;
+  for (double& value : result.values_) value += offset;
+  checkAxis(result.values_, "value");
+  return result;
 }
 
 TransferFunction TransferFunction::scaled(double factor) const {

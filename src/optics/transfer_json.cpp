@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "core/json_reader.h"
 #include "core/json_writer.h"
@@ -68,6 +69,11 @@ TransferFunction readLattice(const JsonValue& object) {
 
 std::string printed(const glm::dvec3& v) { return jsonNumbers({v.x, v.y, v.z}); }
 
+JsonFields withUnit(JsonFields fields, const TransferFunction& transfer) {
+  if (!transfer.unit().empty()) fields.emplace(fields.begin(), "unit", jsonString(transfer.unit()));
+  return fields;
+}
+
 constexpr std::string_view kExtension = ".json";
 
 }  // namespace
@@ -92,7 +98,8 @@ TransferFunction scaledBy(const TransferFunction& transfer, const JsonValue& fac
 TransferFunction readTransferFunction(const JsonValue& value) {
   if (value.isArray()) return readParaViewColourMap(value);
   if (!value.isObject()) value.failExpected("an object, or the array of a ParaView colour map");
-  value.allowFields({"description", "points", "values", "gradients", "albedo", "sigma_t", "window", "sigmaScale"});
+  value.allowFields(
+      {"description", "points", "values", "gradients", "albedo", "sigma_t", "unit", "window", "sigmaScale"});
   if (const auto description = value.find("description")) description->string();
   const bool lattice = value.find("values") || value.find("gradients");
   if (const auto points = value.find("points")) {
@@ -102,6 +109,7 @@ TransferFunction readTransferFunction(const JsonValue& value) {
     value.fail("needs 'points', or 'values', 'gradients', 'albedo' and 'sigma_t'");
   }
   TransferFunction transfer = lattice ? readLattice(value) : readPoints(value.at("points"));
+  if (const auto unit = value.find("unit")) transfer = transfer.withUnit(unit->string());
   if (const auto window = value.find("window")) transfer = windowedBy(transfer, *window);
   if (const auto factor = value.find("sigmaScale")) transfer = scaledBy(transfer, *factor);
   return transfer;
@@ -112,17 +120,35 @@ TransferFunction parseTransferFunction(std::string_view text, const std::string&
   return readTransferFunction(document.root());
 }
 
-TransferFunction loadTransferFunction(const std::string& nameOrFile) {
+namespace {
+
+// The text of a preset or of a file, and what messages call it.
+std::pair<std::string, std::string> transferText(const std::string& nameOrFile) {
   const std::string preset = nameOrFile + std::string(kExtension);
   if (const std::string_view text = transferPresetText(preset); !text.empty())
-    return parseTransferFunction(text, "preset " + nameOrFile);
+    return {std::string(text), "preset " + nameOrFile};
   std::error_code ignored;
   if (!std::filesystem::exists(nameOrFile, ignored)) {
     std::string names;
     for (const std::string& name : transferPresets()) names += (names.empty() ? "" : ", ") + name;
     throw IoError(nameOrFile + ": no such transfer function: neither a file nor one of the presets " + names);
   }
-  return parseTransferFunction(readTextFile(nameOrFile), nameOrFile);
+  return {readTextFile(nameOrFile), nameOrFile};
+}
+
+}  // namespace
+
+TransferFunction loadTransferFunction(const std::string& nameOrFile) {
+  const auto [text, source] = transferText(nameOrFile);
+  return parseTransferFunction(text, source);
+}
+
+std::string describeTransferFunction(const std::string& nameOrFile) {
+  const auto [text, source] = transferText(nameOrFile);
+  const JsonDocument document(text, source);
+  if (!document.root().isObject()) return {};
+  const auto description = document.root().find("description");
+  return description ? description->string() : std::string();
 }
 
 std::vector<std::string> transferPresets() {
@@ -139,7 +165,7 @@ std::string printTransferFunction(const TransferFunction& transfer) {
       points.push_back(jsonObject({{"value", jsonNumber(transfer.values()[i])},
                                    {"albedo", printed(media[i].albedo)},
                                    {"sigma_t", jsonNumber(media[i].sigma_t)}}));
-    return jsonObject({{"points", jsonArray(points)}});
+    return jsonObject(withUnit({{"points", jsonArray(points)}}, transfer));
   }
   std::vector<std::string> albedo;
   std::vector<double> sigma_t;
@@ -147,10 +173,11 @@ std::string printTransferFunction(const TransferFunction& transfer) {
     albedo.push_back(printed(medium.albedo));
     sigma_t.push_back(medium.sigma_t);
   }
-  return jsonObject({{"values", jsonNumbers(transfer.values())},
-                     {"gradients", jsonNumbers(transfer.gradients())},
-                     {"albedo", jsonArray(albedo)},
-                     {"sigma_t", jsonNumbers(sigma_t)}});
+  return jsonObject(withUnit({{"values", jsonNumbers(transfer.values())},
+                              {"gradients", jsonNumbers(transfer.gradients())},
+                              {"albedo", jsonArray(albedo)},
+                              {"sigma_t", jsonNumbers(sigma_t)}},
+                             transfer));
 }
 
 }  // namespace umbrick

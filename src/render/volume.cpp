@@ -6,18 +6,25 @@
 #include <utility>
 #include <vector>
 
+#include "render/volume_file.h"
 #include "umbrick/brick/brick_grid.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/grid/value_survey.h"
+#include "umbrick/render/suggest_transfer.h"
 #include "umbrick/shade/prepare.h"
 #include "umbrick/shade/progressive.h"
-#include "umbrick/vdb/read_grid.h"
 
 namespace umbrick {
 
 Volume::Volume(const VolumeReference& file) {
   const Stopwatch load;
-  *this = Volume(readScalarGrid(file.file, file.grid), file.file.string());
+  VolumeFile read = readVolumeFile(file);
+  *this = Volume(std::move(read.grid), file.file.string());
+  foreign_ = read.foreign && grid_.metadata("source_format").empty();
+  orientation_ = orientationOf(grid_, foreign_, read.creator);
+  notes_ = std::move(read.notes);
+  source_ = std::move(read.source);
   loadMs_ = load.elapsedMs();
 }
 
@@ -25,10 +32,43 @@ Volume::Volume(ScalarGrid grid, std::string name) : grid_(std::move(grid)), name
   if (grid_.activeBox().empty()) throw InvalidArgument(name_ + ": grid \"" + grid_.name + "\" has no active voxel");
   indexToWorld_ = grid_.indexToWorld();
   worldBounds_ = grid_.worldBounds();
+  orientation_ = orientationOf(grid_);
+  valueUnit_ = grid_.metadata("value_unit");
+}
+
+Box Volume::visibleBounds(const TransferFunction& transfer) const {
+  const double diagonal = std::max(glm::length(worldBounds_.extent()), shortestVoxelEdge(indexToWorld_));
+  constexpr double kLeastDepth = 0.01;
+  const double least = kLeastDepth / diagonal;
+  const Range gradients = transfer.is2d() ? transfer.gradientDomain() : Range{0, 0};
+  const IndexBox visible = acceptedBox(grid_, [&](double value) {
+    const auto single = static_cast<float>(value);
+    return transfer.majorant({single, single}, gradients) > least;
+  });
+  const IndexBox box = visible.empty() ? grid_.activeBox() : visible;
+  // A voxel reaches half way to its neighbours.
+  const glm::dvec3 low = glm::dvec3(box.min) - 0.5, high = glm::dvec3(box.max) + 0.5;
+  Box bounds;
+  for (int corner = 0; corner < 8; ++corner)
+    bounds.include(glm::dvec3(indexToWorld_ * glm::dvec4(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
+                                                         corner & 4 ? high.z : low.z, 1)));
+  return bounds;
+}
+
+TransferFunction inUnit(const TransferFunction& transfer, std::string_view unit) {
+  if (transfer.unit() == kShiftedHounsfield && unit == kHounsfield)
+    return transfer.shifted(-1000).withUnit(std::string(unit));
+  if (transfer.unit() == kHounsfield && unit == kShiftedHounsfield)
+    return transfer.shifted(1000).withUnit(std::string(unit));
+  return transfer;
 }
 
 ResolvedScene Volume::resolve(const Scene& scene) const {
-  ResolvedScene resolved = resolveScene(scene, worldBounds_, indexToWorld_);
+  Scene complete = scene;
+  complete.transfer = scene.transfer ? fitted(*scene.transfer, *this) : suggestTransfer(*this).transfer;
+  if (scene.orbit) complete.orbit = settledOrbit(*scene.orbit, orientation_);
+  const Box bounds = scene.orbit ? visibleBounds(*complete.transfer) : worldBounds_;
+  ResolvedScene resolved = resolveScene(complete, bounds, indexToWorld_);
   resolved.bricks.interior = brickInterior(resolved, indexToWorld_, worldBounds_);
   return resolved;
 }

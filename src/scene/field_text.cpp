@@ -13,6 +13,7 @@ namespace umbrick {
 namespace {
 
 std::string spaced(const glm::dvec3& v) { return jsonNumber(v.x) + ' ' + jsonNumber(v.y) + ' ' + jsonNumber(v.z); }
+std::string spaced(const glm::dvec2& v) { return jsonNumber(v.x) + ' ' + jsonNumber(v.y); }
 std::string jsonVector(const glm::dvec3& v) { return jsonNumbers({v.x, v.y, v.z}); }
 
 bool within(double value, const FieldRange& range, double unit = 1) {
@@ -75,6 +76,9 @@ std::string jsonText(const FieldPlace& place) {
                [](const std::uint64_t* value) { return std::to_string(*value); },
                [](const bool* value) { return std::string(*value ? "true" : "false"); },
                [](const Choice& choice) { return jsonString(std::string(choice.get())); },
+               [](const glm::dvec2* value) {
+                 return jsonNumbers({value->x, value->y});
+               },
                [](const glm::dvec3* value) { return jsonVector(*value); },
                [](const std::optional<glm::dvec3>* value) { return *value ? jsonVector(**value) : std::string(); },
                [](const PixelSize& size) {
@@ -88,6 +92,7 @@ std::string messageText(const FieldPlace& place) {
       Overload{[](double* value) { return print(*value); },
                [](const Angle& angle) { return printDegrees(*angle.radians); },
                [](const Choice& choice) { return "'" + std::string(choice.get()) + "'"; },
+               [](glm::dvec2* value) { return "(" + print(value->x) + " " + print(value->y) + ")"; },
                [](glm::dvec3* value) { return print(*value); },
                [](std::optional<glm::dvec3>* value) { return *value ? print(**value) : std::string("none"); },
                [](const PixelSize& size) { return std::to_string(*size.width) + " x " + std::to_string(*size.height); },
@@ -106,6 +111,7 @@ bool inRange(const FieldPlace& place, const FieldRange& range) {
                [&](const int* value) { return within(*value, range); },
                [&](const std::uint64_t* value) { return within(static_cast<double>(*value), range); },
                [](const Choice& choice) { return !choice.get().empty(); },
+               [&](const glm::dvec2* value) { return within(value->x, range) && within(value->y, range); },
                [&](const glm::dvec3* value) { return vector(*value); },
                [&](const std::optional<glm::dvec3>* value) { return !*value || vector(**value); },
                [&](const PixelSize& size) { return within(*size.width, range) && within(*size.height, range); }},
@@ -121,6 +127,7 @@ std::string rangeText(const SceneField& field) {
                [&](const double*) { return realRange(range); }, [&](const Angle&) { return realRange(range); },
                [&](const int*) { return wholeRange(range); }, [&](const std::uint64_t*) { return wholeRange(range); },
                [](const Choice& choice) { return "one of " + joined(choice.names()); },
+               [](const glm::dvec2*) { return std::string("two finite numbers"); },
                [&](const glm::dvec3*) { return vectorRange(range); },
                [&](const std::optional<glm::dvec3>*) { return vectorRange(range); },
                [&](const PixelSize&) { return "at least " + limitText(range.low) + " x " + limitText(range.low); }},
@@ -132,7 +139,7 @@ std::string defaultText(const SceneField& field) {
   const FieldPlace place = defaults.place(field);
   return std::visit(
       Overload{[](bool*) { return std::string(); }, [](const Choice& choice) { return std::string(choice.get()); },
-               [](glm::dvec3* value) { return spaced(*value); },
+               [](glm::dvec2* value) { return spaced(*value); }, [](glm::dvec3* value) { return spaced(*value); },
                [](std::optional<glm::dvec3>* value) { return *value ? spaced(**value) : std::string("none"); },
                [](const PixelSize& size) { return std::to_string(*size.width) + "x" + std::to_string(*size.height); },
                [&](const auto&) { return jsonText(place); }},

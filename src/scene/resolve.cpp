@@ -25,12 +25,17 @@ double shortestVoxelEdge(const glm::dmat4& indexToWorld) {
                    glm::length(glm::dvec3(indexToWorld[2]))});
 }
 
+OrbitView orbitView(const Orbit& orbit) {
+  const Axis up = orbit.up == Axis::automatic ? Axis::z : orbit.up;
+  const Axis front = orbit.front == Axis::automatic ? usualFront(up) : orbit.front;
+  return {orbit.azimuth, orbit.elevation, axisDirection(up), axisDirection(front), orbit.zoom, orbit.pan};
+}
+
 ResolvedScene resolveScene(const Scene& scene, const Box& worldBounds, const glm::dmat4& indexToWorld) {
   if (!scene.transfer) throw InvalidArgument("scene: no transfer function");
   validateScene(scene);
   ResolvedScene resolved(scene, *scene.transfer);
-  if (scene.orbit)
-    resolved.camera = orbitCamera(worldBounds, scene.orbit->azimuth, scene.orbit->elevation, scene.camera);
+  if (scene.orbit) resolved.camera = orbitCamera(worldBounds, orbitView(*scene.orbit), scene.camera);
   if (scene.spacingUnit == SpacingUnit::voxel) resolved.sampling.spacing *= shortestVoxelEdge(indexToWorld);
   return resolved;
 }

@@ -24,7 +24,15 @@ void checkFields(Checker& check, std::string_view section, Scene& scene) {
 
 // Checks that eye, view direction and up make a frame, once each of them is in its range.
 void checkFrame(Checker& check, const Scene& scene) {
-  if (scene.orbit || check.complaint()) return;
+  if (check.complaint()) return;
+  if (scene.orbit) {
+    const Orbit& orbit = *scene.orbit;
+    if (orbit.up == Axis::automatic || orbit.front == Axis::automatic) return;
+    check.require(glm::dot(axisDirection(orbit.up), axisDirection(orbit.front)) == 0, "camera.frontAxis",
+                  "'" + std::string(nameOf(kAxes, orbit.front)) + "'",
+                  "at right angles to upAxis '" + std::string(nameOf(kAxes, orbit.up)) + "'");
+    return;
+  }
   try {
     cameraFrame(scene.camera);
   } catch (const InvalidArgument& error) {

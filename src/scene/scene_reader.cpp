@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 
 #include "core/json_reader.h"
 #include "core/overload.h"
@@ -21,6 +22,10 @@ void readField(const JsonValue& value, const FieldPlace& place) {
                       [&](std::uint64_t* target) { *target = value.unsignedInteger(); },
                       [&](bool* target) { *target = value.boolean(); },
                       [&](const Choice& choice) { choice.set(value.oneOf(choice.names())); },
+                      [&](glm::dvec2* target) {
+                        const std::vector<double> numbers = value.numbers(2);
+                        *target = {numbers[0], numbers[1]};
+                      },
                       [&](glm::dvec3* target) { *target = readVector(value); },
                       [&](std::optional<glm::dvec3>* target) { *target = readVector(value); },
                       [&](const PixelSize& size) {
@@ -44,16 +49,35 @@ void readSection(const JsonValue& object, std::string_view section, Scene& scene
       if (const auto value = object.find(field.key())) readField(*value, field.place(scene));
 }
 
+RawLayout readRawLayout(const JsonValue& value) {
+  value.allowFields({"dims", "type", "endian", "headerBytes", "bitsStored"});
+  const auto whole = [](double number) { return number >= 0 && number < 0x1p53 && number == std::floor(number); };
+  RawLayout raw;
+  const std::vector<JsonValue> dims = value.at("dims").items(3);
+  for (int axis = 0; axis < 3; ++axis)
+    raw.dims[axis] = static_cast<std::int64_t>(dims[static_cast<std::size_t>(axis)].number(whole, "a whole number"));
+  raw.type = value.at("type").string();
+  if (const auto endian = value.find("endian")) raw.bigEndian = endian->oneOf({"little", "big"}) == "big";
+  if (const auto header = value.find("headerBytes"))
+    raw.headerBytes = static_cast<std::int64_t>(header->number(whole, "a whole number"));
+  if (const auto bits = value.find("bitsStored")) raw.bitsStored = bits->integer();
+  return raw;
+}
+
 void readVolume(const JsonValue& value, const std::filesystem::path& folder, VolumeReference& volume) {
-  value.allowFields({"file", "grid"});
+  value.allowFields({"file", "grid", "series", "raw", "spacing", "origin"});
   if (const auto file = value.find("file")) volume.file = folder / file->string();
   if (const auto grid = value.find("grid")) volume.grid = grid->string();
+  if (const auto series = value.find("series")) volume.series = series->string();
+  if (const auto raw = value.find("raw")) volume.raw = readRawLayout(*raw);
+  if (const auto spacing = value.find("spacing")) volume.spacing = readVector(*spacing);
+  if (const auto origin = value.find("origin")) volume.origin = readVector(*origin);
 }
 
 // Reads the camera, which is placed by its eye or by angles around the volume.
 void readCamera(const JsonValue& value, Scene& scene) {
   if (value.isObject() && value.find("eye")) {
-    for (const char* key : {"azimuth", "elevation"})
+    for (const char* key : {"azimuth", "elevation", "upAxis", "frontAxis", "zoom", "pan"})
       if (const auto field = value.find(key)) field->fail("places the camera, but so does 'eye': give one of them");
     scene.orbit.reset();
   } else if (value.isObject()) {
@@ -113,7 +137,8 @@ Scene parseScene(std::string_view text, const std::string& source, const std::fi
   if (const auto description = root.find("description")) description->string();
   if (const auto volume = root.find("volume")) readVolume(*volume, folder, scene.volume);
   if (const auto camera = root.find("camera")) readCamera(*camera, scene);
-  if (const auto transfer = root.find("transfer")) scene.transfer = readTransfer(*transfer, folder);
+  if (const auto transfer = root.find("transfer"))
+    if (!transfer->isString() || transfer->string() != "auto") scene.transfer = readTransfer(*transfer, folder);
   for (const char* key : {"window", "sigmaScale"})
     if (const auto value = root.find(key); value && !scene.transfer)
       value->fail("there is no 'transfer' to apply it to");

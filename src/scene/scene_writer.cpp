@@ -18,9 +18,23 @@ JsonFields printedFields(std::string_view section, Scene& scene) {
   return fields;
 }
 
+std::string printedRaw(const RawLayout& raw) {
+  JsonFields fields{
+      {"dims", jsonArray({std::to_string(raw.dims.x), std::to_string(raw.dims.y), std::to_string(raw.dims.z)})},
+      {"type", jsonString(raw.type)},
+      {"endian", jsonString(raw.bigEndian ? "big" : "little")}};
+  if (raw.headerBytes != 0) fields.emplace_back("headerBytes", std::to_string(raw.headerBytes));
+  if (raw.bitsStored) fields.emplace_back("bitsStored", std::to_string(*raw.bitsStored));
+  return jsonObject(fields);
+}
+
 std::string printedVolume(const VolumeReference& volume) {
   JsonFields fields{{"file", jsonString(volume.file.string())}};
   if (!volume.grid.empty()) fields.emplace_back("grid", jsonString(volume.grid));
+  if (!volume.series.empty()) fields.emplace_back("series", jsonString(volume.series));
+  if (volume.raw) fields.emplace_back("raw", printedRaw(*volume.raw));
+  if (volume.spacing) fields.emplace_back("spacing", printed(*volume.spacing));
+  if (volume.origin) fields.emplace_back("origin", printed(*volume.origin));
   return jsonObject(fields);
 }
 

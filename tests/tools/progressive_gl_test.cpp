@@ -14,7 +14,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-const std::string kRenderBall = "render ball.vdb --tf ball.json --size 24x20 ";
+const std::string kRenderBall = "render ball.vdb --tf ball.json --size 24x20 --azimuth 0 --up z ";
 const std::string kCone = kRenderBall + "--model cone --directions 4 ";
 
 // Returns spacing, its unit, segments, directions, scale and method.
@@ -110,14 +110,13 @@ TEST_CASE("Samples of a scene without directions are refused in one line and lea
   };
   const std::string needs = "need the model cone or lights and the method ordinates";
   check("--model emission --progressive 4", 2, needs);
-  check("--progressive 4", 2, needs);
   check("--model cone --method dos --progressive 4", 2, needs);
   check("--model cone --method dos --target-error 0.1", 2, needs);
   check("--model emission --max-seconds 1", 2, needs);
   check("--model cone --progressive 4 --frames 2", 2, "--frames and --progressive exclude each other");
   check("--model cone --progressive 3 --target-error 0.1", 1, "passes is 3, a target error needs at least 4");
   check("--model cone --method dos --quality high", 2, "--quality");
-  check("--quality high", 2, "--quality");
+  check("--model emission --quality high", 2, "--quality");
   check("--model cone --progressive 0", 2, "--progressive");
   check("--model cone --progressive -1", 2, "--progressive");
   check("--model cone --progressive 1.5", 2, "--progressive");
@@ -152,7 +151,8 @@ TEST_CASE("A quality sets what goes together, and single options overrule it", "
   CHECK(sampling(at.sceneOf(cone + "--directions 9")) == Json{2.5, "world", 4, 9, 0.0, "ordinates"});
   CHECK(sampling(at.sceneOf(cone + "--spacing 1")) == Json{1.0, "world", 2, 16, 0.0, "ordinates"});
   CHECK(sampling(at.sceneOf(cone + "--method dos"))[0] == 0.5);
-  CHECK(sampling(at.sceneOf(kRenderBall))[0] == 0.5);
+  CHECK(sampling(at.sceneOf(kRenderBall + "--model emission"))[0] == 0.5);
+  CHECK(sampling(at.sceneOf(kRenderBall)) == normal);  // cone is what is drawn where no model is named
 
   // A scene file counts as it is written, unless a quality overrules it.
   writeBytes(at.folder.path() / "scene.json",

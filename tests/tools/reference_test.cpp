@@ -12,7 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kBall = "ball.vdb --tf ball.json ";
+const std::string kBall = "ball.vdb --tf ball.json --azimuth 0 --up z ";
 const std::string kScene = kBall + "--size 24x20 --theta 50 ";
 
 double largest(const Image& image) {
@@ -75,7 +75,7 @@ TEST_CASE("The reference lights a scene by its sources, which dos refuses", "[to
   writeExr(at.folder.path() / "sky.exr", {{"", sky}});
   for (const std::string integrator : {"quadrature", "monte-carlo"}) {
     const ProgramResult made =
-        at.run("reference lit.json --model lights --directions 8 --integrator " + integrator + " -o a.exr");
+        at.run("reference lit.json --up z --model lights --directions 8 --integrator " + integrator + " -o a.exr");
     REQUIRE(made.err == "");
     REQUIRE(made.status == 0);
     const Image image = at.exr("a.exr").layers[0].image;

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-const std::string kStudySmoke = "study " + kSmoke + "--tf smoke ";
+const std::string kStudySmoke = "study " + kSmoke + "--grid density --tf smoke --azimuth 0 ";
 // Every axis has two values, all of them small.
 const std::string kTiny =
     kStudySmoke +

@@ -55,4 +55,23 @@ ScreenPlane screenPlane(const Camera& camera);
 /// @throw InvalidArgument  empty bounds, or a camera that cameraFrame refuses
 Camera orbitCamera(const Box& bounds, double azimuth, double elevation, Camera base = {});
 
+/// How to look at a thing from a sphere around it.
+struct OrbitView {
+  double azimuth = 0, elevation = 0;  // rad; at 0 and 0 the eye is where the thing faces
+  glm::dvec3 up{0, 0, 1};             // a unit vector; azimuth turns the eye around it, counter-clockwise from above
+  glm::dvec3 front{0, -1, 0};         // the way the thing faces, a unit vector at right angles to up
+  double zoom = 1;                    // so many times larger; the perspective stays
+  glm::dvec2 pan{0};                  // moves the thing to the right and up, in heights of the picture
+};
+
+/// Does the same for a thing that stands upright in another way, zoomed and moved.
+/// @throw InvalidArgument  as above; up and front are no unit vectors at right angles; zoom <= 0; something is not
+/// finite
+Camera orbitCamera(const Box& bounds, const OrbitView& view, Camera base = {});
+
+/// Returns how many times larger a box can be drawn until one of its corners comes within 4 % of the picture's border.
+/// An orbit leaves room for a sphere around the box, so that a thing keeps its size while it turns; a picture of one
+/// view need not. @throw InvalidArgument  the box is empty, or as cameraFrame
+double fillingZoom(const Camera& camera, const Box& box);
+
 }  // namespace umbrick

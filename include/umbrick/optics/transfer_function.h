@@ -28,7 +28,6 @@ struct Medium {
 ///
 /// Two equal values make a step: the first point holds below it, the second one at it and above. Of more than two equal
 /// values the first and the last count. NaN is no medium.
-/// first and the last count. NaN is no medium.
 class TransferFunction {
  public:
   struct Point {
@@ -57,8 +56,15 @@ class TransferFunction {
   /// an empty range.
   double majorant(const Range& value, const Range& gradient = {0, 0}) const;
 
+  /// The unit of the values, where the function is made for one: "HU", or "HU + 1000" of CTs that store no negative
+  /// numbers. Empty: the function's values are those of the grid, whatever they mean.
+  const std::string& unit() const { return unit_; }
+  TransferFunction withUnit(std::string unit) const;
+  /// Returns the same function of values that are larger by `offset`. @throw InvalidArgument  offset is not finite
+  TransferFunction shifted(double offset) const;
+
   /// Returns the same function with its domain stretched to [low, high] (a window: level -/+ width / 2). A domain of no
-  /// extent, as of a single step, moves to the middle.
+  /// extent, as of a single step, moves to the middle. The new values are the grid's: there is no unit any more.
   /// @throw InvalidArgument  low >= high, or not finite
   TransferFunction windowed(double low, double high) const;
   /// Returns the same function with sigma_t times `factor`. @throw InvalidArgument  factor < 0 or not finite
@@ -72,13 +78,14 @@ class TransferFunction {
  private:
   std::vector<double> values_, gradients_;
   std::vector<Medium> media_;
+  std::string unit_;
 };
 
 /// Reads the project's JSON of a 1D or a 2D function,
 ///   {"points": [{"value": 500, "albedo": [0.8, 0.5, 0.4], "sigma_t": 0.1}, ...]}
 ///   {"values": [...], "gradients": [...], "albedo": [[r, g, b], ...], "sigma_t": [...]}    lattice, value fastest
-/// with the optional fields "description", "window": [low, high] and "sigmaScale"; or a colour map exported by
-/// ParaView, which is an array with one object of "RGBPoints", "Points", "ColorSpace" and so on.
+/// with the optional fields "description", "unit" (of the values), "window": [low, high] and "sigmaScale"; or a colour
+/// map exported by ParaView, which is an array with one object of "RGBPoints", "Points", "ColorSpace" and so on.
 ///
 /// The colours of ParaView are sRGB display values, as it shows them. They are interpolated in the colour space that is
 /// named (CIEDE2000 as Lab) and become linear albedo. Opacity a per ScalarOpacityUnitDistance u (1 when it is missing)
@@ -92,6 +99,8 @@ TransferFunction parseTransferFunction(std::string_view text, const std::string&
 TransferFunction loadTransferFunction(const std::string& nameOrFile);
 /// Returns the names of the presets that are part of the library.
 std::vector<std::string> transferPresets();
+/// Returns the description of a preset or of a file; empty where there is none. @throw IoError  as above
+std::string describeTransferFunction(const std::string& nameOrFile);
 /// Returns the project's JSON of a function, so that parse(print(f)) == f.
 std::string printTransferFunction(const TransferFunction& transfer);
 

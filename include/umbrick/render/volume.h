@@ -6,9 +6,12 @@
 #include <glm/mat4x4.hpp>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "umbrick/brick/bricks.h"
 #include "umbrick/grid/scalar_grid.h"
+#include "umbrick/render/orientation.h"
 #include "umbrick/scene/resolve.h"
 
 namespace umbrick {
@@ -16,9 +19,11 @@ namespace umbrick {
 /// A grid that holds something, with its place in the world.
 class Volume {
  public:
-  /// Reads a grid of a .vdb or .nvdb file.
-  /// @throw IoError          as readScalarGrid
-  /// @throw InvalidArgument  as readScalarGrid; the grid has no active voxel
+  /// Reads a grid of a .vdb or .nvdb file, or any volume that can be converted (the same formats, by the same rules,
+  /// see loadVolume), or the first frame of a numbered sequence. Of a file with several grids and no name given it
+  /// takes "density", or else the first scalar one that holds something.
+  /// @throw IoError          as readScalarGrid and openVolume
+  /// @throw InvalidArgument  as readScalarGrid and loadVolume; the grid has no active voxel
   explicit Volume(const VolumeReference& file);
   /// Takes a grid.
   /// @param name  what messages call it
@@ -31,8 +36,23 @@ class Volume {
   /// Returns the box around the active voxels' centres.
   const Box& worldBounds() const { return worldBounds_; }
   double loadMs() const { return loadMs_; }  // 0 where it was not read from a file
+  const Orientation& orientation() const { return orientation_; }
+  /// What the values are: the unit that the file states ("HU"), empty where it states none.
+  const std::string& valueUnit() const { return valueUnit_; }
+  /// Whether the grid comes from a file of grids that another program wrote, so that nothing is known of its source.
+  bool foreign() const { return foreign_; }
+  /// Returns what was chosen or guessed while the file was opened, a short sentence each.
+  const std::vector<std::string>& notes() const { return notes_; }
+  /// Returns the same reference with what was chosen: the name of the grid, the file of the first frame.
+  const VolumeReference& source() const { return source_; }
 
-  /// Returns the scene with everything that depends on the volume written out, the edge of its bricks included.
+  /// Returns the box of what a transfer function shows: voxels that weaken light by more than a hundredth along the
+  /// diagonal of the volume. Where it shows nothing, the box of all active voxels. Faces of voxels count, not centres.
+  Box visibleBounds(const TransferFunction& transfer) const;
+
+  /// Returns the scene with everything that depends on the volume written out: a transfer function (suggestTransfer()
+  /// where there is none; one that is made for another unit of CT values is shifted), a camera that sees what the
+  /// transfer function shows, the edge of its bricks.
   /// @throw InvalidArgument  as resolveScene and brickInterior
   ResolvedScene resolve(const Scene& scene) const;
 
@@ -48,7 +68,19 @@ class Volume {
   glm::dmat4 indexToWorld_{1};
   Box worldBounds_;
   double loadMs_ = 0;
+  Orientation orientation_;
+  std::string valueUnit_;
+  bool foreign_ = false;
+  std::vector<std::string> notes_;
+  VolumeReference source_;
 };
+
+/// Unit names of CT values, in a transfer function and in the metadata "value_unit".
+inline constexpr std::string_view kHounsfield = "HU";
+inline constexpr std::string_view kShiftedHounsfield = "HU + 1000";
+
+/// Returns a transfer function for values of another unit, where both are units of CT; else the function as it is.
+TransferFunction inUnit(const TransferFunction& transfer, std::string_view unit);
 
 /// Returns a transfer function for a volume of which nothing is known: grey, denser the farther a value is from the
 /// background, on both sides of it, and transparent near it. The densest voxels let light through for a twentieth

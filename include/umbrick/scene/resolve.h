@@ -23,9 +23,12 @@ struct ResolvedScene : SceneSettings {
   friend ResolvedScene resolveScene(const Scene&, const Box&, const glm::dmat4&);
 };
 
+/// Returns the view of an orbit. What is automatic is the usual: z up, and usualFront().
+OrbitView orbitView(const Orbit& orbit);
+
 /// Writes out everything that depends on the volume: an orbit becomes a camera, a spacing in voxels (shortest edge)
 /// becomes world units.
-/// @param worldBounds  of the volume, see orbitCamera
+/// @param worldBounds  of what an orbit looks at, see orbitCamera
 /// @throw InvalidArgument  there is no transfer function, an orbit should look at an empty volume, or as validateScene
 ResolvedScene resolveScene(const Scene& scene, const Box& worldBounds, const glm::dmat4& indexToWorld);
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "umbrick/core/axis.h"
 #include "umbrick/core/camera.h"
 #include "umbrick/core/names.h"
 #include "umbrick/optics/transfer_function.h"
@@ -116,15 +118,36 @@ struct BrickSettings {
 /// A clip plane keeps the half-space dot(xyz, point) + w >= 0, world units.
 using ClipPlane = glm::dvec4;
 
+/// What the bytes of a file without a header mean.
+struct RawLayout {
+  glm::i64vec3 dims{0};  // voxels along x (fastest), y, z
+  std::string type;      // of a voxel: u8, i8, u16, ... f64
+  bool bigEndian = false;
+  std::int64_t headerBytes = 0;   // skipped at the start of the unpacked file
+  std::optional<int> bitsStored;  // of an integer that hold its value; those above are masked off
+  bool operator==(const RawLayout&) const = default;
+};
+
+/// Where voxels come from: a grid of a file of grids, or a volume of any format that can be converted.
 struct VolumeReference {
   std::filesystem::path file;
-  std::string grid;  // empty, "name" or "name[1]"
+  std::string grid;                        // of a file of grids: empty, "name" or "name[1]"
+  std::string series = {};                 // of DICOM: the UID of a series, or its number in the list, from 1
+  std::optional<RawLayout> raw = {};       // of a file without a header
+  std::optional<glm::dvec3> spacing = {};  // world units between voxel centres, of formats that state none
+  std::optional<glm::dvec3> origin = {};   // world position of the first voxel, of the same formats
   bool operator==(const VolumeReference&) const = default;
 };
 
-/// A camera given as angles around the volume; see orbitCamera.
+/// A camera given as angles around what is visible of the volume; see orbitCamera.
 struct Orbit {
   double azimuth = 0, elevation = 0;  // rad
+  /// Which way is up, and which way the thing faces, where the eye is at azimuth 0. What is automatic follows from the
+  /// volume: from the anatomy that its file states, or else from habits of its kind; see orientationOf in
+  /// render/volume.h. An up without a front has the usual one: usualFront().
+  Axis up = Axis::automatic, front = Axis::automatic;
+  double zoom = 1;    // so many times larger
+  glm::dvec2 pan{0};  // to the right and up, in heights of the picture
   bool operator==(const Orbit&) const = default;
 };
 
@@ -147,7 +170,9 @@ struct SceneSettings {
 
 /// A scene as a user writes it. resolveScene() makes a ResolvedScene of it, which is what pictures are made from.
 struct Scene : SceneSettings {
-  std::optional<TransferFunction> transfer;      // window and scale are applied already
+  /// Window and scale are applied already. None: one that fits the volume is made, see suggestTransfer() in
+  /// render/suggest_transfer.h.
+  std::optional<TransferFunction> transfer;
   std::optional<Orbit> orbit = Orbit{};          // when set, eye, lookAt, up and viewHeight follow from the volume
   SpacingUnit spacingUnit = SpacingUnit::voxel;  // of sampling.spacing
   bool operator==(const Scene&) const = default;
@@ -155,12 +180,13 @@ struct Scene : SceneSettings {
 
 /// Reads a scene. A field that the text leaves out keeps its default; an unknown field is an error. File names are
 /// relative to the scene's folder. All fields are optional, and angles are in degrees:
-///   volume     file, grid
+///   volume     file, grid, series, spacing [x, y, z], origin [x, y, z], raw {dims [x, y, z], type ("u8", ...),
+///              endian ("little", "big"), headerBytes, bitsStored}
 ///   camera     projection ("perspective", "orthographic"), size [width, height], fov, near, and either azimuth and
-///              elevation around the volume, or eye, lookAt, up and viewHeight
-///   transfer   name of a preset, name of a file, or the function itself (also ParaView's array);
-///   window [low, high], sigmaScale    applied to it
-///   model      "emission", "cone", "cone-ray", "ambient", "lights"
+///              elevation around the volume, upAxis, frontAxis ("auto", "x", "-x", ...), zoom and pan [right, up], or
+///              eye, lookAt, up and viewHeight
+///   transfer   name of a preset, name of a file, the function itself (also ParaView's array), or "auto", as without
+///   it; window [low, high], sigmaScale    applied to it model      "emission", "cone", "cone-ray", "ambient", "lights"
 ///   method     "dos", "ordinates"
 ///   light      ambient [r, g, b], background [r, g, b], sources [{type, frame ("view", "world"), ...}, ...]; by type,
 ///                "cone"         axis, theta, radiance ([r, g, b], or one number)

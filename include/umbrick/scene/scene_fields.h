@@ -73,8 +73,8 @@ class Choice {
 
 /// The place of a field's value in a scene; monostate where the scene has no such field, for example the azimuth where
 /// the camera is placed by its eye.
-using FieldPlace = std::variant<std::monostate, double*, Angle, int*, std::uint64_t*, bool*, Choice, glm::dvec3*,
-                                std::optional<glm::dvec3>*, PixelSize>;
+using FieldPlace = std::variant<std::monostate, double*, Angle, int*, std::uint64_t*, bool*, Choice, glm::dvec2*,
+                                glm::dvec3*, std::optional<glm::dvec3>*, PixelSize>;
 
 /// The range of a number, or of each component of a vector. Numbers are always finite.
 struct FieldRange {

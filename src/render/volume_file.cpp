@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/volume_file.h"
+
+#include <bit>
+#include <exception>
+
+#include "umbrick/convert/holds_grids.h"
+#include "umbrick/convert/load_volume.h"
+#include "umbrick/core/error.h"
+#include "umbrick/core/names.h"
+#include "umbrick/ingest/frame_sequence.h"
+#include "umbrick/vdb/grid_listing.h"
+#include "umbrick/vdb/read_grid.h"
+
+namespace umbrick {
+namespace {
+namespace fs = std::filesystem;
+
+std::string shortNumber(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", number);
+  return text;
+}
+
+RawOptions rawOptions(const VolumeReference& reference) {
+  const RawLayout& layout = *reference.raw;
+  RawOptions raw;
+  raw.dims = layout.dims;
+  const std::optional<VoxelType> type = voxelTypeFromName(layout.type);
+  if (!type)
+    throw InvalidArgument(
+        "volume.raw.type: expected one of u8, i8, u16, i16, u32, i32, i64, u64, f16, f32 or f64, found '" +
+        layout.type + "'");
+  raw.type = *type;
+  raw.endian = layout.bigEndian ? std::endian::big : std::endian::little;
+  raw.headerBytes = layout.headerBytes;
+  raw.bitsStored = layout.bitsStored;
+  raw.spacing = reference.spacing.value_or(raw.spacing);
+  raw.origin = reference.origin.value_or(raw.origin);
+  return raw;
+}
+
+void readVolume(VolumeFile& file) {
+  const VolumeReference& source = file.source;
+  if (!source.grid.empty())
+    throw InvalidArgument(source.file.string() + ": volume.grid is for files of grids, and this is a volume: found '" +
+                          source.grid + "'");
+  ConvertOptions options;
+  OpenOptions& open = options.source.open;
+  open.series = source.series;
+  if (source.raw) {
+    open.raw = rawOptions(source);
+  } else {
+    open.spacing = source.spacing;
+    open.origin = source.origin;
+  }
+  LoadedVolume loaded = loadVolume(source.file, options);
+  const auto border = loaded.report.background;
+  const bool uniform = loaded.grid.activeBox().empty();
+  if (uniform && border && border->value != 0) {
+    options.build.background = 0.0f;
+    loaded = loadVolume(source.file, options);
+    file.notes.push_back("all of its voxels are " + shortNumber(border->value));
+  } else if (uniform) {
+    throw InvalidArgument(source.file.string() + ": all of its voxels are 0: there is nothing to show");
+  } else if (border && border->value != 0) {
+    file.notes.push_back("beyond its voxels it is taken to be " + shortNumber(border->value) + ", as at its border");
+  }
+  file.grid = std::move(loaded.grid);
+}
+
+// Returns labels of the scalar grids of a file in the order in which they are tried.
+std::vector<std::string> scalarGrids(const GridListing& listing) {
+  std::vector<std::string> labels;
+  for (const GridListing::Row& row : listing.grids)
+    if (row.scalar) labels.insert(row.label == "density" ? labels.begin() : labels.end(), row.label);
+  return labels;
+}
+
+// Reads the first scalar grid that holds something.
+void readSomeGrid(VolumeFile& file, const std::vector<std::string>& labels) {
+  std::vector<std::string> empty;
+  for (const std::string& label : labels) {
+    file.grid = readScalarGrid(file.source.file, label);
+    file.source.grid = label;
+    if (!file.grid.activeBox().empty()) break;
+    empty.push_back(label);
+  }
+  if (empty.size() == labels.size()) return;  // a volume of nothing is refused by whoever takes it
+  std::vector<std::string> others;
+  for (const std::string& label : labels)
+    if (label != file.source.grid) others.push_back(label);
+  file.notes.push_back("grid \"" + file.source.grid + "\" of " + std::to_string(labels.size()) +
+                       " (the others: " + joined(others) + (empty.empty() ? ")" : "; empty: " + joined(empty) + ")"));
+}
+
+void readGrid(VolumeFile& file) {
+  file.foreign = true;
+  const GridListing listing = listGrids(file.source.file);
+  for (auto entry = listing.metadata.beginMeta(); entry != listing.metadata.endMeta(); ++entry)
+    if (entry->first == "creator" && entry->second) file.creator = entry->second->str();
+  const std::vector<std::string> labels = scalarGrids(listing);
+  if (file.source.grid.empty() && labels.size() > 1)
+    readSomeGrid(file, labels);
+  else
+    file.grid = readScalarGrid(file.source.file, file.source.grid);
+}
+
+}  // namespace
+
+VolumeFile readVolumeFile(const VolumeReference& reference) {
+  VolumeFile file;
+  file.source = reference;
+  if (isFramePattern(reference.file)) {
+    const std::vector<NumberedFile> frames = listFrames(reference.file);
+    file.source.file = frames.front().path;
+    file.notes.push_back("frame " + std::to_string(frames.front().number) + ", the first of " +
+                         std::to_string(frames.size()));
+  }
+  if (!file.source.raw && holdsGrids(file.source.file))
+    readGrid(file);
+  else
+    readVolume(file);
+  return file;
+}
+
+}  // namespace umbrick

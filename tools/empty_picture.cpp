@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "empty_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "umbrick/grid/value_survey.h"
+
+namespace umbrick::tools {
+namespace {
+
+enum class Emptiness { none, nothing, everything };
+
+Emptiness findEmptiness(const Image& colour, const ResolvedScene& scene) {
+  constexpr float kStep = 1.0f / 255;
+  const glm::dvec3 behind = scene.background.value_or(glm::dvec3(0));
+  bool nothing = true, everything = !scene.background;
+  for (std::size_t i = 0; i + 3 < colour.pixels.size() && (nothing || everything); i += 4) {
+    const float alpha = colour.pixels[i + 3];
+    everything = everything && alpha >= 1 - 0.5f * kStep;
+    for (std::size_t c = 0; c < 3; ++c)
+      nothing = nothing && std::abs(colour.pixels[i + c] - float(behind[int(c)])) <= kStep;
+    if (!scene.background) nothing = nothing && alpha <= kStep;
+  }
+  return nothing ? Emptiness::nothing : everything ? Emptiness::everything : Emptiness::none;
+}
+
+std::string shortNumber(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", number);
+  return text;
+}
+
+// Returns the intervals of values that a function shows: "from 0.5 to 2 and above 8".
+std::string shownValues(const TransferFunction& transfer) {
+  const std::vector<double>& values = transfer.values();
+  const auto visible = [&](std::size_t i) {
+    for (std::size_t row = 0; row * values.size() < transfer.media().size(); ++row)
+      if (transfer.media()[row * values.size() + i].sigma_t > 0) return true;
+    return false;
+  };
+  std::string text;
+  int pieces = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!visible(i)) continue;
+    std::size_t last = i;
+    while (last + 1 < values.size() && visible(last + 1)) ++last;
+    const bool open = last + 1 == values.size(), below = i == 0;
+    const double from = values[i > 0 ? i - 1 : 0], to = values[std::min(last + 1, values.size() - 1)];
+    i = last;
+    if (++pieces > 3) continue;
+    if (!text.empty()) text += ", ";
+    if (open && below)
+      text += "all values";
+    else if (open)
+      text += "above " + shortNumber(from);
+    else if (below)
+      text += "below " + shortNumber(to);
+    else
+      text += "from " + shortNumber(from) + " to " + shortNumber(to);
+  }
+  if (text.empty()) return "none";
+  return pieces > 3 ? text + ", ..." : text;
+}
+
+}  // namespace
+
+std::optional<std::string> describeEmptyPicture(const Image& colour, const ResolvedScene& scene, const Volume& volume) {
+  const Emptiness found = findEmptiness(colour, scene);
+  if (found == Emptiness::none) return std::nullopt;
+  const ValueSurvey values = surveyValues(volume.grid());
+  std::string text = found == Emptiness::nothing ? "nothing is drawn" : "every pixel is opaque";
+  if (values.voxels == 0) return text + ": the volume has no finite value";
+  text += ": the volume has values from " + shortNumber(values.value.min) + " to " + shortNumber(values.value.max) +
+          " (most from " + shortNumber(values.low) + " to " + shortNumber(values.high) + ")";
+  if (!volume.valueUnit().empty()) text += " in " + volume.valueUnit();
+  text += ", the transfer function shows " + shownValues(scene.transfer);
+  const bool meets =
+      scene.transfer.majorant(values.value, scene.transfer.is2d() ? scene.transfer.gradientDomain() : Range{0, 0}) > 0;
+  if (found == Emptiness::everything)
+    return text + "; try --tf auto, a smaller --sigma-scale, or a camera farther away (--zoom 0.5)";
+  if (!meets) return text + "; try --tf auto, or --window with two of these values";
+  const bool clipped = !scene.clipPlanes.empty() || scene.clipBox.has_value();
+  return text + "; try --tf auto, a larger --sigma-scale" + (clipped ? ", no clipping" : "") +
+         ", or a camera around the volume (no --eye)";
+}
+
+}  // namespace umbrick::tools

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "opened_scene.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "umbrick/core/names.h"
+#include "umbrick/ingest/open_volume.h"
+#include "umbrick/scene/capabilities.h"
+
+namespace umbrick::tools {
+namespace {
+
+// What was chosen: options that say it, and reasons for people.
+struct Choices {
+  std::vector<std::string> options, reasons;
+  bool view = false;  // the direction of the view is among them
+  void add(const std::string& option, const std::string& value) { options.push_back("--" + option + ' ' + value); }
+  // Which way is up and how fine a picture is are told only beside a choice that users may want to change.
+  bool matter() const { return view || !reasons.empty(); }
+};
+
+std::string lineOf(const VolumeReference& volume, const Choices& choices) {
+  std::string line = volume.file.string() + ":";
+  for (const std::string& option : choices.options) line += ' ' + option;
+  const bool both = !choices.options.empty() && !choices.reasons.empty();
+  for (std::size_t i = 0; i < choices.reasons.size(); ++i)
+    line += (i > 0 ? "; " : both ? " (" : " ") + choices.reasons[i];
+  return line + (both ? ")\n" : "\n");
+}
+
+std::string shortText(double number, int digits = 6) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, number);
+  return text;
+}
+
+void chooseTransfer(const SceneOptions& options, OpenedScene& opened, Choices& choices) {
+  Scene& scene = opened.scene;
+  if (scene.transfer) {
+    const TransferFunction fitting = fitted(*scene.transfer, *opened.volume);
+    if (fitting != *scene.transfer)
+      choices.reasons.push_back("the transfer function, made for values in " + scene.transfer->unit() +
+                                ", is shifted to " + fitting.unit());
+    scene.transfer = fitting;
+    return;
+  }
+  const SuggestedTransfer suggested = suggestTransfer(*opened.volume);
+  scene.transfer = suggested.transfer;
+  applyWindow(options, scene);
+  choices.add("tf", "auto");
+  choices.reasons.push_back(suggested.reason);
+}
+
+void chooseView(const SceneOptions& options, bool fromScene, OpenedScene& opened, Choices& choices) {
+  Scene& scene = opened.scene;
+  if (!scene.orbit) return;
+  const Orientation& orientation = opened.volume->orientation();
+  if (options.view) {
+    try {
+      scene.orbit = namedView(*options.view, *scene.orbit, orientation);
+    } catch (const InvalidArgument& error) {
+      throw UsageError("--" + std::string(error.what()));
+    }
+  }
+  const bool up = scene.orbit->up != Axis::automatic, front = scene.orbit->front != Axis::automatic;
+  scene.orbit = settledOrbit(*scene.orbit, orientation);
+  if (!up) {
+    choices.add("up", std::string(nameOf(kAxes, scene.orbit->up)));
+    if (!front && scene.orbit->front != usualFront(scene.orbit->up))
+      choices.add("front", std::string(nameOf(kAxes, scene.orbit->front)));
+    if (orientation.up != Axis::z || orientation.anatomy) choices.reasons.push_back(orientation.reason);
+  }
+  if (!fromScene && !options.has("zoom") && !options.has("azimuth") && !options.has("elevation")) {
+    // A view that nobody has turned fills the picture.
+    const Box bounds = opened.volume->visibleBounds(*scene.transfer);
+    const double zoom = fillingZoom(orbitCamera(bounds, orbitView(*scene.orbit), scene.camera), bounds);
+    scene.orbit->zoom = std::strtod(shortText(zoom, 3).c_str(), nullptr);
+    choices.add("zoom", shortText(zoom, 3));
+  }
+  if (fromScene || options.view || options.has("azimuth") || options.has("elevation")) return;
+  choices.view = true;
+  choices.add("azimuth", shortText(scene.orbit->azimuth * 180 / std::numbers::pi));
+  choices.add("elevation", shortText(scene.orbit->elevation * 180 / std::numbers::pi));
+}
+
+// What an option can do about an error of a reader.
+std::string hintOf(const std::exception& error) {
+  const std::string text = error.what();
+  if (dynamic_cast<const UnknownFormat*>(&error)) return ": give --dims and --type";
+  if (text.find("series") != std::string::npos && text.find("--series") == std::string::npos) return "; give --series";
+  return {};
+}
+
+}  // namespace
+
+std::shared_ptr<const Volume> openVolumeOf(const VolumeReference& reference) {
+  try {
+    return std::make_shared<const Volume>(reference);
+  } catch (const InvalidArgument& error) {
+    try {
+      std::rethrow_if_nested(error);
+    } catch (const InvalidArgument& cause) {
+      throw UsageError(error.what() + hintOf(cause));
+    }
+    throw;
+  }
+}
+
+OpenedScene openScene(const SceneOptions& options, Scene scene) {
+  const bool fromScene = options.input.extension() == ".json";
+  OpenedScene opened{std::move(scene), nullptr};
+  opened.volume = openVolumeOf(opened.scene.volume);
+  Choices choices;
+  choices.reasons = opened.volume->notes();
+  if (opened.scene.volume.grid != opened.volume->source().grid)
+    choices.add("grid", "'" + opened.volume->source().grid + "'");
+  opened.scene.volume = opened.volume->source();
+  chooseTransfer(options, opened, choices);
+  if (!fromScene && !options.has("model") && traitsOf(opened.scene.model).directions) {
+    choices.add("model", modelName(opened.scene.model));
+    if (!options.quality && traitsOf(opened.scene.method).directions) choices.add("quality", "normal");
+  }
+  chooseView(options, fromScene, opened, choices);
+  if (choices.matter()) opened.chosen = lineOf(opened.scene.volume, choices);
+  return opened;
+}
+
+}  // namespace umbrick::tools

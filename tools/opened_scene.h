@@ -1,0 +1,27 @@
+// A scene from the command line together with its volume, and what is chosen where neither says anything.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+
+#include "scene_options.h"
+#include "umbrick/render/suggest_transfer.h"
+#include "umbrick/render/volume.h"
+
+namespace umbrick::tools {
+
+struct OpenedScene {
+  Scene scene;  // with a transfer function, and with the axes of its orbit
+  std::shared_ptr<const Volume> volume;
+  /// What was chosen, as options that repeat it, and why: a line for stderr, or nothing. Is printed once it is clear
+  /// that there will be a picture.
+  std::string chosen = {};
+};
+
+/// Loads the volume of a scene that makeScene() made and completes the scene.
+/// @throw UsageError, IoError, InvalidArgument
+OpenedScene openScene(const SceneOptions& options, Scene scene);
+
+/// Loads a volume; messages name options. @throw UsageError, IoError, InvalidArgument
+std::shared_ptr<const Volume> openVolumeOf(const VolumeReference& reference);
+
+}  // namespace umbrick::tools

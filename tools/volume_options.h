@@ -1,0 +1,34 @@
+// The options that say what a scene's volume is read from: those of convert that a picture needs.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbrick/scene/scene.h"
+
+namespace umbrick::tools {
+
+struct VolumeOptions {
+  std::optional<std::string> grid;
+  std::string series, type, endian = "little";
+  std::vector<std::int64_t> dims;
+  std::int64_t headerBytes = 0;
+  int bitsStored = 0;
+  std::optional<std::vector<double>> spacing, origin;  // three numbers each
+};
+
+void addVolumeOptions(CLI::App& command, VolumeOptions& options);
+
+/// Sets what the options name. @throw UsageError  headerless raw without its layout, or the other way round
+void applyVolumeOptions(const VolumeOptions& options, VolumeReference& volume);
+
+/// Returns the arguments of a program with three numbers behind --spacing or --up put together to one argument. Such an
+/// option takes one value or three, and would else take the name of the input that follows one value for the second.
+std::vector<std::string> joinVectors(std::vector<std::string> arguments);
+/// Reads numbers that are separated by blanks. @return nothing where something else is among them
+std::optional<std::vector<double>> parseNumbers(const std::string& text);
+
+}  // namespace umbrick::tools
