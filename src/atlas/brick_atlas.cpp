@@ -15,15 +15,11 @@
 
 #include "atlas/texel_format.h"
 #include "atlas/texels.h"
+#include "core/mebibytes.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
 namespace {
-
-std::string mebibytes(std::uint64_t bytes) {
-  const double size = static_cast<double>(bytes) / (1 << 20);
-  return std::to_string(static_cast<std::uint64_t>(std::ceil(size))) + " MiB";
-}
 
 bool isUniform(const Brick& brick) { return brick.uniform() && brick.gradient.min == brick.gradient.max; }
 

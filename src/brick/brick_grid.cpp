@@ -228,4 +228,8 @@ std::unique_ptr<Bricks> unbrickedGrid(const ScalarGrid& grid, const BrickOptions
   return bricks;
 }
 
+std::unique_ptr<Bricks> cutGrid(const ScalarGrid& grid, const BrickOptions& options, bool bricked) {
+  return bricked ? brickGrid(grid, options) : unbrickedGrid(grid, options);
+}
+
 }  // namespace umbrick

@@ -12,6 +12,7 @@
 #include "check/result.h"
 #include "check/sampler_precision.h"
 #include "check/slice_check.h"
+#include "core/mebibytes.h"
 #include "umbrick/core/error.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/shade/prepare.h"
@@ -31,11 +32,6 @@ InvariantResult makeResult(int invariant, std::string name, std::string measured
   result.measured = std::move(measured);
   result.limitFrom = std::move(limitFrom);
   return result;
-}
-
-std::string mebibytes(std::uint64_t bytes) {
-  std::string text = std::to_string(static_cast<double>(bytes) / (1 << 20));
-  return text.substr(0, text.find('.') + 2) + " MiB";
 }
 
 // The results of one model.

@@ -74,8 +74,7 @@ ResolvedScene Volume::resolve(const Scene& scene) const {
 }
 
 std::unique_ptr<Bricks> Volume::cut(const ResolvedScene& scene) const {
-  const BrickOptions options = requiredBricks(scene, indexToWorld_, worldBounds_);
-  return scene.bricks.bricked ? brickGrid(grid_, options) : unbrickedGrid(grid_, options);
+  return cutGrid(grid_, requiredBricks(scene, indexToWorld_, worldBounds_), scene.bricks.bricked);
 }
 
 std::unique_ptr<Bricks> Volume::cutForRefinement(const ResolvedScene& scene) const {

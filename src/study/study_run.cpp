@@ -26,10 +26,6 @@ BrickOptions bricksOf(const ScalarGrid& grid, const ResolvedScene& scene) {
   return requiredBricks(scene, grid.indexToWorld(), grid.worldBounds());
 }
 
-std::unique_ptr<Bricks> cut(const ScalarGrid& grid, const ResolvedScene& scene, const BrickOptions& options) {
-  return scene.bricks.bricked ? brickGrid(grid, options) : unbrickedGrid(grid, options);
-}
-
 RenderOptions quietly() {
   RenderOptions options;
   options.countFragments = false;  // only pictures are to be timed
@@ -65,7 +61,7 @@ double visibleExtent(const GlContext& context, const ScalarGrid& grid, const Res
   probe.size = 64;  // so many pixels are enough to know what lies in the picture
   const double voxelEdge = shortestVoxelEdge(grid.indexToWorld()), spacing = 0.5 * voxelEdge;
   const ResolvedScene fine = caseScene(scene, probe, {spacing, voxelEdge});
-  const std::unique_ptr<Bricks> bricks = cut(grid, fine, bricksOf(grid, fine));
+  const std::unique_ptr<Bricks> bricks = cutGrid(grid, bricksOf(grid, fine), fine.bricks.bricked);
   SliceRenderer renderer(context, *bricks, fine, quietly());
   const auto slices = static_cast<double>(renderer.render().stats.slices);
   if (slices == 0)
@@ -170,7 +166,7 @@ bool StudyRun::report(const std::string& step, double share) {
 const Bricks& StudyRun::bricksFor(const ResolvedScene& scene) {
   const BrickOptions options = bricksOf(grid_, scene);
   std::unique_ptr<Bricks>& bricks = bricks_[{options.interior, options.apron}];
-  if (!bricks) bricks = cut(grid_, scene, options);
+  if (!bricks) bricks = cutGrid(grid_, options, scene.bricks.bricked);
   return *bricks;
 }
 

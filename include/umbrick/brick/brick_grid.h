@@ -23,4 +23,7 @@ std::unique_ptr<Bricks> brickGrid(const ScalarGrid& grid, const BrickOptions& op
 /// @throw IoError          as brickGrid
 std::unique_ptr<Bricks> unbrickedGrid(const ScalarGrid& grid, const BrickOptions& options = {});
 
+/// Does either, as a scene asks for it (BrickSettings::bricked). @throw InvalidArgument, IoError  as they do
+std::unique_ptr<Bricks> cutGrid(const ScalarGrid& grid, const BrickOptions& options, bool bricked);
+
 }  // namespace umbrick

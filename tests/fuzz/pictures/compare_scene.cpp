@@ -76,7 +76,7 @@ Rendering render(const GlContext& context, const ScalarGrid& grid, ResolvedScene
   cut.apron = requiredApron(scene, toWorld);
   cut.gradients = scene.transfer.is2d();
   Rendering rendering;
-  rendering.bricks = scene.bricks.bricked ? brickGrid(grid, cut) : unbrickedGrid(grid, cut);
+  rendering.bricks = cutGrid(grid, cut, scene.bricks.bricked);
   rendering.renderer = std::make_unique<SliceRenderer>(context, *rendering.bricks, scene, options, limits);
   Picture picture = rendering.renderer->render();
   rendering.colour = std::move(picture.colour);
