@@ -17,9 +17,9 @@
 
 namespace umbrick {
 
-Volume::Volume(const VolumeReference& file) {
+Volume::Volume(const VolumeReference& file, const std::function<void(double share)>& progress) {
   const Stopwatch load;
-  VolumeFile read = readVolumeFile(file);
+  VolumeFile read = readVolumeFile(file, progress);
   *this = Volume(std::move(read.grid), file.file.string());
   foreign_ = read.foreign && grid_.metadata("source_format").empty();
   orientation_ = orientationOf(grid_, foreign_, read.creator);

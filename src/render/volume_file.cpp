@@ -40,7 +40,7 @@ RawOptions rawOptions(const VolumeReference& reference) {
   return raw;
 }
 
-void readVolume(VolumeFile& file) {
+void readVolume(VolumeFile& file, const LoadProgress& progress) {
   const VolumeReference& source = file.source;
   if (!source.grid.empty())
     throw InvalidArgument(source.file.string() + ": volume.grid is for files of grids, and this is a volume: found '" +
@@ -54,6 +54,7 @@ void readVolume(VolumeFile& file) {
     open.spacing = source.spacing;
     open.origin = source.origin;
   }
+  if (progress) options.progress = [&progress](const ConvertProgress& stage) { progress(stage.share); };
   LoadedVolume loaded = loadVolume(source.file, options);
   const auto border = loaded.report.background;
   const bool uniform = loaded.grid.activeBox().empty();
@@ -78,10 +79,10 @@ std::vector<std::string> scalarGrids(const GridListing& listing) {
 }
 
 // Reads the first scalar grid that holds something.
-void readSomeGrid(VolumeFile& file, const std::vector<std::string>& labels) {
+void readSomeGrid(VolumeFile& file, const std::vector<std::string>& labels, const LoadProgress& progress) {
   std::vector<std::string> empty;
   for (const std::string& label : labels) {
-    file.grid = readScalarGrid(file.source.file, label);
+    file.grid = readScalarGrid(file.source.file, label, progress);
     file.source.grid = label;
     if (!file.grid.activeBox().empty()) break;
     empty.push_back(label);
@@ -94,21 +95,21 @@ void readSomeGrid(VolumeFile& file, const std::vector<std::string>& labels) {
                        " (the others: " + joined(others) + (empty.empty() ? ")" : "; empty: " + joined(empty) + ")"));
 }
 
-void readGrid(VolumeFile& file) {
+void readGrid(VolumeFile& file, const LoadProgress& progress) {
   file.foreign = true;
   const GridListing listing = listGrids(file.source.file);
   for (auto entry = listing.metadata.beginMeta(); entry != listing.metadata.endMeta(); ++entry)
     if (entry->first == "creator" && entry->second) file.creator = entry->second->str();
   const std::vector<std::string> labels = scalarGrids(listing);
   if (file.source.grid.empty() && labels.size() > 1)
-    readSomeGrid(file, labels);
+    readSomeGrid(file, labels, progress);
   else
-    file.grid = readScalarGrid(file.source.file, file.source.grid);
+    file.grid = readScalarGrid(file.source.file, file.source.grid, progress);
 }
 
 }  // namespace
 
-VolumeFile readVolumeFile(const VolumeReference& reference) {
+VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& progress) {
   VolumeFile file;
   file.source = reference;
   if (isFramePattern(reference.file)) {
@@ -118,9 +119,9 @@ VolumeFile readVolumeFile(const VolumeReference& reference) {
                          std::to_string(frames.size()));
   }
   if (!file.source.raw && holdsGrids(file.source.file))
-    readGrid(file);
+    readGrid(file, progress);
   else
-    readVolume(file);
+    readVolume(file, progress);
   return file;
 }
 

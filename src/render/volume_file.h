@@ -1,6 +1,7 @@
 // What a scene's volume is read from.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,9 @@
 #include "umbrick/scene/scene.h"
 
 namespace umbrick {
+
+/// Is called now and then with the share that is loaded; what it throws ends the loading.
+using LoadProgress = std::function<void(double share)>;
 
 struct VolumeFile {
   ScalarGrid grid;
@@ -18,6 +22,6 @@ struct VolumeFile {
 };
 
 /// @throw IoError, InvalidArgument  as Volume(VolumeReference)
-VolumeFile readVolumeFile(const VolumeReference& reference);
+VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& progress = {});
 
 }  // namespace umbrick

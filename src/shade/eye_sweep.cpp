@@ -38,6 +38,7 @@ void EyeSweep::draw(Frame& frame, std::span<const SliceDraw> draws, const GlProg
     frame.fragments.begin();
     frame.polygons.draw(merged.firstIndex, merged.indices);
     frame.fragments.end();
+    frame.progress.reached(draws[next - 1].slice);
     i = next;
   }
   if (!draws.empty()) ++sinceTest_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/frame.h"
 
+#include <algorithm>
 #include <glm/vec4.hpp>
 
 #include "shade/constants.h"
@@ -23,6 +24,23 @@ std::uint64_t FragmentCounter::total() const {
     sum += passed;
   }
   return sum;
+}
+
+void SweepProgress::begin(std::int64_t slices, const glm::ivec2& size) {
+  // So many pixels are drawn in a fraction of a second, for which a driver may be kept waiting: a wait costs little
+  // beside them.
+  constexpr std::int64_t kPixels = std::int64_t{1} << 23;
+  constexpr std::int64_t kMostSlices = 64;
+  slices_ = std::max<std::int64_t>(1, slices);
+  interval_ = std::clamp<std::int64_t>(kPixels / (std::int64_t{size.x} * size.y), 1, kMostSlices);
+  told_ = 0;
+}
+
+void SweepProgress::reached(std::int64_t slice) {
+  if (!report_ || slice < told_ + interval_) return;
+  told_ = slice;
+  gl_.Finish();
+  report_(static_cast<double>(slice) / static_cast<double>(slices_));
 }
 
 ShaderConstants slabConstants(const Frame& frame) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -52,6 +53,21 @@ class PassClock {
   PassTimes times_;
 };
 
+/// Tells how far a picture is, where somebody asks. Only a wait for the driver tells, so it asks after some slices.
+class SweepProgress {
+ public:
+  SweepProgress(const GlFunctions& gl, const std::function<void(double)>& report) : gl_(gl), report_(report) {}
+  void begin(std::int64_t slices, const glm::ivec2& size);
+  /// Is called when the slices before this one have been handed to the driver, whether or not there was something to
+  /// draw on them. @param slice  counted from 0 at the nearest
+  void reached(std::int64_t slice);
+
+ private:
+  const GlFunctions& gl_;
+  const std::function<void(double)>& report_;
+  std::int64_t slices_ = 1, interval_ = 1, told_ = 0;
+};
+
 struct Frame {
   const GlFunctions& gl;
   const ResolvedScene& scene;
@@ -71,6 +87,7 @@ struct Frame {
   double diagonal = 1;         // of the volume's domain, world units; the same however it is cut into bricks
   PassClock clock;
   RenderSample sample;
+  SweepProgress progress;
 
   glm::ivec2 size() const { return {camera.width, camera.height}; }
 };

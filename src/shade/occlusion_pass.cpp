@@ -51,6 +51,7 @@ class OcclusionPass : public SlicePass {
       const std::size_t begin = next;
       while (next < draws.size() && draws[next].slice == slice) ++next;
       drawSlice(frame, slice, std::span(draws).subspan(begin, next - begin));
+      frame.progress.reached(slice);
     }
   }
 

@@ -148,6 +148,14 @@ class SliceRenderer::Implementation {
     drawn_ = true;
   }
 
+  /// Cuts the slices of a picture that is not drawn.
+  void cut(const ResolvedScene& scene) {
+    drawn_ = false;
+    stats_ = {};
+    resetGlState(gl_);
+    prepareFrame(scene, {});
+  }
+
   Picture read(const ResolvedScene& scene) {
     if (!frame_ || !drawn_) throw InvalidArgument("render: nothing was drawn since the scene changed");
     resetGlState(gl_);
@@ -235,7 +243,7 @@ class SliceRenderer::Implementation {
                             modelName(scene.model) + " need ordinates");
     const int most = resident_.context().maxTextureEdge2d();
     if (scene.camera.width > most || scene.camera.height > most)
-      throw InvalidArgument("size: " + std::to_string(scene.camera.width) + " x " +
+      throw InvalidArgument("camera.size: " + std::to_string(scene.camera.width) + " x " +
                             std::to_string(scene.camera.height) + " is beyond the driver's limit of " +
                             std::to_string(most) + " pixels along an edge");
     if (scene.transfer.is2d() && !volume_.hasGradients)
@@ -264,7 +272,8 @@ class SliceRenderer::Implementation {
                          selection_->atlas(), *transfer_, *targets_, *polygons_,
                          FragmentCounter(gl_, options_.countFragments), options_.reverseBricks,
                          shortestVoxelEdge(volume_.indexToWorld), domainDiagonal(volume_),
-                         PassClock(gl_, options_.timePasses), sample});
+                         PassClock(gl_, options_.timePasses), sample, SweepProgress(gl_, options_.progress)});
+    frame_->progress.begin(frame_->slices.count(), frame_->size());
     pass_->plan(*frame_);
     std::vector<const ProxySlices*> sweeps{&frame_->slices};
     if (pass_->occluders()) sweeps.push_back(pass_->occluders());
@@ -337,6 +346,7 @@ Picture SliceRenderer::render(const Camera& camera, const RenderSample& sample) 
 }
 void SliceRenderer::draw(const RenderSample& sample) { implementation_->draw(scene(), sample); }
 Picture SliceRenderer::read() { return implementation_->read(scene()); }
+void SliceRenderer::cut() { implementation_->cut(scene()); }
 Image SliceRenderer::probe(std::int64_t slice) { return implementation_->probe(slice); }
 std::vector<double> SliceRenderer::sliceDepths() const { return implementation_->sliceDepths(); }
 

@@ -37,6 +37,16 @@ MappedFile::~MappedFile() {
   if (!bytes_.empty()) munmap(bytes_.data(), bytes_.size());
 }
 
+std::streamsize MemoryStreamBuffer::xsgetn(char* to, std::streamsize count) {
+  constexpr std::size_t kTellEvery = 1 << 20;
+  const auto position = static_cast<std::size_t>(gptr() - eback());
+  if (told_ && position >= toldAt_ + kTellEvery) {
+    toldAt_ = position;
+    told_(position);
+  }
+  return std::streambuf::xsgetn(to, count);
+}
+
 MemoryStreamBuffer::pos_type MemoryStreamBuffer::seekoff(off_type offset, std::ios_base::seekdir from,
                                                          std::ios_base::openmode) {
   const off_type size = egptr() - eback();

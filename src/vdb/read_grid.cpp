@@ -37,9 +37,8 @@ const VdbFile::Entry& defaultEntry(const VdbFile& file) {
   }
   if (scalars == 1) return *only;
   if (density) return *density;
-  throw InvalidArgument(file.path().string() + ": " +
-                        (scalars == 0 ? "no scalar grid: " : "name a grid (none is called \"density\"): ") +
-                        listed(file));
+  if (scalars == 0) throw InvalidArgument(file.path().string() + ": no scalar grid: " + listed(file));
+  throw SeveralGrids(file.path().string() + ": name a grid (none is called \"density\"): " + listed(file));
 }
 
 const VdbFile::Entry& findEntry(const VdbFile& file, const std::string& selector) {
@@ -99,10 +98,11 @@ ScalarGrid toFloat(const openvdb::GridBase::Ptr& any) {
   return out;
 }
 
-ScalarGrid read(const fs::path& path, const std::string& selector, bool affineOnly) {
+ScalarGrid read(const fs::path& path, const std::string& selector, bool affineOnly,
+                const std::function<void(double)>& progress) {
   VdbFile file(path);
   const VdbFile::Entry& entry = findEntry(file, selector);
-  const openvdb::GridBase::Ptr grid = file.read(entry);
+  const openvdb::GridBase::Ptr grid = file.read(entry, progress);
   if (affineOnly && !grid->transform().isLinear())
     throw InvalidArgument(path.string() + ": grid " + quoted(entry) + ": expected an affine transform, found " +
                           grid->transform().mapType());
@@ -111,10 +111,13 @@ ScalarGrid read(const fs::path& path, const std::string& selector, bool affineOn
 
 }  // namespace
 
-ScalarGrid readScalarGrid(const fs::path& path, const std::string& selector) { return read(path, selector, true); }
+ScalarGrid readScalarGrid(const fs::path& path, const std::string& selector,
+                          const std::function<void(double share)>& progress) {
+  return read(path, selector, true, progress);
+}
 
 ScalarGrid readScalarGridAnyTransform(const fs::path& path, const std::string& selector) {
-  return read(path, selector, false);
+  return read(path, selector, false, {});
 }
 
 GridListing listGrids(const fs::path& path) {

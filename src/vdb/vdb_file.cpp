@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb/vdb_file.h"
 
+#include <algorithm>
 #include <map>
 #include <new>
 
@@ -126,7 +127,22 @@ const VdbFile::Entry* VdbFile::find(const std::string& selector) const {
   return nullptr;
 }
 
-openvdb::GridBase::Ptr VdbFile::read(const Entry& entry) {
+openvdb::GridBase::Ptr VdbFile::read(const Entry& entry, const std::function<void(double)>& progress) {
+  if (progress) {
+    const auto begin = static_cast<double>(entry.descriptor.getGridPos());
+    const double bytes = std::max(1.0, static_cast<double>(entry.fileBytes));
+    buffer_.tell([&progress, begin, bytes](std::size_t position) {
+      progress(std::clamp((static_cast<double>(position) - begin) / bytes, 0.0, 1.0));
+    });
+    try {
+      const openvdb::GridBase::Ptr grid = read(entry);
+      buffer_.tell({});
+      return grid;
+    } catch (...) {
+      buffer_.tell({});
+      throw;
+    }
+  }
   return guarded("grid \"" + entry.label + "\": ", [&] {
     openvdb::GridBase::Ptr grid = entry.loaded;
     if (!nano_.empty()) return grid;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <istream>
 #include <string>
 #include <vector>
@@ -47,9 +48,11 @@ class VdbFile : private openvdb::io::Archive {
   const Entry* find(const std::string& selector) const;
   /// Reads a grid. It has its tree where the voxels are of a type that vdb_check.h knows, else only metadata
   /// and transform.
+  /// @param progress  may be empty; is called now and then with the share of its bytes that is read. What it throws
+  ///   ends the reading.
   /// @return null for a type that OpenVDB does not know
   /// @throw IoError  the file is corrupt
-  openvdb::GridBase::Ptr read(const Entry& entry);
+  openvdb::GridBase::Ptr read(const Entry& entry, const std::function<void(double)>& progress = {});
 
  private:
   template <class Action>

@@ -70,6 +70,7 @@ TEST_CASE("Grids are selected by name, by index, or as the only scalar one", "[g
                                           Contains("\"heat[1]\"") && Contains("\"density\""));
   writeAny(path, {gridOf<openvdb::FloatGrid>("a", 1), gridOf<openvdb::FloatGrid>("b", 2)});
   CHECK_THROWS_WITH(valueOf(""), Contains("name a grid"));
+  CHECK_THROWS_AS(valueOf(""), SeveralGrids);
   writeAny(path, {gridOf<openvdb::FloatGrid>("a", 7), gridOf<openvdb::MaskGrid>("b", true)});
   CHECK(valueOf("") == 7);
 }

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <glm/mat4x4.hpp>
 #include <memory>
 #include <string>
@@ -24,7 +25,8 @@ class Volume {
   /// takes "density", or else the first scalar one that holds something.
   /// @throw IoError          as readScalarGrid and openVolume
   /// @throw InvalidArgument  as readScalarGrid and loadVolume; the grid has no active voxel
-  explicit Volume(const VolumeReference& file);
+  /// @param progress  as for readScalarGrid
+  explicit Volume(const VolumeReference& file, const std::function<void(double share)>& progress = {});
   /// Takes a grid.
   /// @param name  what messages call it
   /// @throw InvalidArgument  the transform is not affine; the grid has no active voxel

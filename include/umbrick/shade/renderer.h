@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <optional>
 #include <vector>
@@ -22,6 +23,9 @@ struct RenderOptions {
   bool countFragments = true;
   bool timePasses = false;     // RenderStats::passes; waiting for each pass makes a picture slower
   bool reverseBricks = false;  // draw the bricks of a slice in the opposite order, which must change nothing
+  /// Called now and then while a picture is drawn, with the share of its slices that is done, in [0, 1]. What it throws
+  /// ends the picture, which then cannot be read; the next draw() begins anew.
+  std::function<void(double share)> progress = {};
 };
 
 /// Where the time of a sweep goes, in ms.

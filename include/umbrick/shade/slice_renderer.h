@@ -57,6 +57,9 @@ class SliceRenderer : public Renderer {
   void draw(const RenderSample& sample = {}) override;
   Picture read() override;
 
+  /// Cuts the slices of the scene and draws none of them: enough for probe() and sliceDepths(), where no picture is
+  /// wanted.
+  void cut();
   /// Returns what slice i of the last picture samples: channel 0 is the interpolated value, grid units, at the middle
   /// of the slab, channel 1 the number of bricks that shade the pixel.
   /// @throw InvalidArgument  there is no such slice
