@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/reference/reference.h"
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 #include "progress.h"
 #include "scene_options.h"
 #include "umbrick/core/pending_file.h"
+#include "umbrick/core/pixel_points.h"
 #include "umbrick/core/stopwatch.h"
 #include "validators.h"
 
@@ -83,6 +85,8 @@ int runReference(ReferenceCommand& command) {
   // If no number of paths is given, as many are traced as the standard error needs.
   if (options.standardError > 0 && command.samples == 0) options.samples = 1'000'000'000;
   if (command.samples > 0) options.samples = command.samples;
+  // Of paths that nobody has counted there are enough for each sample of a pixel to have two.
+  if (command.samples == 0) options.samples = std::max(options.samples, 2 * resolved.sampling.pixelSamples);
   std::cerr << opened.chosen;
   ReferencePicture picture;
   {
@@ -104,6 +108,7 @@ int runReference(ReferenceCommand& command) {
                {{"umbrick.scene", printScene(resolved)},
                 {"umbrick.renderer", "reference"},
                 {"umbrick.reference", describe(options)},
+                {"umbrick.filter", pixelFilter(resolved.sampling.pixelSamples)},
                 {"umbrick.complete", picture.complete ? "true" : "false"},
                 {"umbrick.version", UMBRICK_VERSION}});
   printOutputs(output);
@@ -125,7 +130,8 @@ int runReference(ReferenceCommand& command) {
 Command addReference(CLI::App& app) {
   const auto command = std::make_shared<ReferenceCommand>();
   CLI::App* sub = app.add_subcommand("reference", "Integrate the same model on the CPU, as what to compare with.");
-  command->scene = addSceneOptions(*sub);
+  // Here samples are the paths of a pixel, and those that its area is averaged over have a longer name.
+  command->scene = addSceneOptions(*sub, {{"samples", "pixel-samples"}});
   command->output =
       addPictureOutput(*sub, "float", "V (visibility weighted by opacity) and Z (mean depth, world units)");
   ReferenceOptions& o = command->reference;
@@ -152,7 +158,9 @@ Command addReference(CLI::App& app) {
       ->capture_default_str()
       ->group(group);
   sub->add_option("--samples", command->samples,
-                  "monte-carlo: paths per pixel, at most [256; with --standard-error as many as it takes]")
+                  "monte-carlo: paths per pixel, at most, dealt to its --pixel-samples [256; with --standard-error as "
+                  "many as it "
+                  "takes]")
       ->check(CLI::Range(2, 1000000000))
       ->group(group);
   sub->add_option("--standard-error", o.standardError,

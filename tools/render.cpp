@@ -20,6 +20,7 @@
 #include "scene_options.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
+#include "umbrick/core/pixel_points.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/render/render.h"
 #include "umbrick/scene/capabilities.h"
@@ -119,6 +120,7 @@ void writePicture(const PictureOutput& output, const Picture& picture, const Res
   }
   std::map<std::string, std::string> metadata{{"umbrick.scene", printScene(scene)},
                                               {"umbrick.renderer", context.description()},
+                                              {"umbrick.filter", pixelFilter(scene.sampling.pixelSamples)},
                                               {"umbrick.version", UMBRICK_VERSION}};
   if (!progressive.empty()) metadata["umbrick.progressive"] = progressive;
   writeOutputs(output, layers, metadata);
@@ -134,6 +136,13 @@ std::string describe(const ProgressivePicture& picture) {
          ", systematic error " + rounded(picture.error.systematic) + ", together " + rounded(picture.error.total());
 }
 
+// Returns the scene that a file names: one sample of a pixel's area is each pass, unless all go through its centre.
+ResolvedScene recordedScene(const ProgressivePicture& picture, const ProgressiveOptions& options) {
+  ResolvedScene scene = picture.scene;
+  scene.sampling.pixelSamples = options.pixelArea ? std::clamp(picture.passes, 1, kMostPixelSamples) : 1;
+  return scene;
+}
+
 // Renders samples until there are enough, or time is over, or the picture is accurate enough. The file
 // gets better meanwhile.
 ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& volume, const ResolvedScene& scene,
@@ -145,15 +154,20 @@ ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& vo
   progressive.targetError = command.targetError.value_or(0);
   progressive.refine = command.targetError.has_value();
   progressive.seed = command.seed;
+  const bool given = command.scene->has("samples");
+  progressive.pixelArea = !(given && scene.sampling.pixelSamples == 1);
+  if (given && progressive.pixelArea)
+    std::cerr << "--samples " << scene.sampling.pixelSamples
+              << " has no effect: each pass of a progressive picture is one sample of the area of a pixel\n";
   const StopRequest stop;
   Stopwatch pass, written;
   int told = 0;
   bool first = true;
-  const ProgressivePicture last =
+  ProgressivePicture last =
       renderProgressive(volume, scene, progressive, options, [&](const ProgressivePicture& picture) {
         framesMs.push_back(pass.elapsedMs());
         if (first || written.elapsedMs() > kWriteEveryMs) {
-          writePicture(*command.output, picture.picture, picture.scene, volume.context(),
+          writePicture(*command.output, picture.picture, recordedScene(picture, progressive), volume.context(),
                        printPasses(picture, command.seed).dump());
           written = Stopwatch();
           first = false;
@@ -174,6 +188,7 @@ ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& vo
               << " slabs deep: the estimated error may be several times too low or too high\n";
   if (command.targetError && !last.reachedTarget)
     std::cerr << "the error asked for, " << *command.targetError << ", is not reached\n";
+  last.scene = recordedScene(last, progressive);
   return last;
 }
 
@@ -242,9 +257,10 @@ Command addRender(CLI::App& app) {
       ->capture_default_str()
       ->group("Output");
   const std::string progressive = "Progressive";
-  sub->add_option("--progressive", command->passes,
-                  "ordinates: average so many passes, each of other directions, slices and texels; the picture is "
-                  "written again meanwhile")
+  sub->add_option(
+         "--progressive", command->passes,
+         "ordinates: average so many passes, each of other directions, slices, texels and places in the pixels "
+         "(--samples 1: their centres); the picture is written again meanwhile")
       ->check(CLI::Range(1, 1 << 20))
       ->group(progressive);
   sub->add_option("--max-seconds", command->maxSeconds, "begin no pass later")

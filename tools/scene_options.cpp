@@ -39,7 +39,7 @@ FieldPlace examplePlace(const SceneField& field, Scene& orbited, Scene& placed) 
 class FieldOption {
  public:
   FieldOption(CLI::App& command, SceneOptions& options, const SceneField& field)
-      : command_(command), options_(options), field_(field), name_("--" + std::string(field.option)) {}
+      : command_(command), options_(options), field_(field), name_(options.nameOf(field.option)) {}
 
   CLI::Option* operator()(std::monostate) const { return nullptr; }
   CLI::Option* operator()(const double*) const {
@@ -135,7 +135,7 @@ void validate(const SceneOptions& options, const Scene& scene) {
     const std::string message = error.what();
     const SceneField* field = findSceneField(message.substr(0, message.find(':')));
     if (!field || !options.has(field->option)) throw;
-    throw InvalidArgument("--" + std::string(field->option) + message.substr(message.find(':')));
+    throw InvalidArgument(options.nameOf(field->option) + message.substr(message.find(':')));
   }
 }
 
@@ -255,9 +255,15 @@ void applyClipping(const SceneOptions& options, Scene& scene) {
 
 }  // namespace
 
-std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command) {
+std::string SceneOptions::nameOf(std::string_view option) const {
+  const auto other = renamed.find(option);
+  return "--" + (other == renamed.end() ? std::string(option) : other->second);
+}
+
+std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNames& renamed) {
   const auto options = std::make_shared<SceneOptions>();
   SceneOptions& o = *options;
+  o.renamed = renamed;
   command
       .add_option("input", o.input,
                   "a volume of any format that convert reads, a .vdb or .nvdb, numbered files (frame_%04d.nrrd: the "

@@ -17,6 +17,9 @@
 
 namespace umbrick::tools {
 
+/// Other names of options of the table of scene fields, for a sub-command: {"samples", "pixel-samples"}.
+using OptionNames = std::map<std::string, std::string, std::less<>>;
+
 /// Holds what the command line says of a scene. The rest comes from the scene file, follows from the volume or keeps
 /// its default.
 struct SceneOptions {
@@ -30,12 +33,16 @@ struct SceneOptions {
   bool orthographic = false;
   /// Sets the field of each option of the table of scene fields that was given, by the name of the option.
   std::map<std::string, std::function<void(Scene&)>, std::less<>> fields;
+  /// What options of that table are called where their own name means something else, see addSceneOptions.
+  OptionNames renamed;
 
+  /// Returns the option on the command line for an option of the table: "--theta" for "theta".
+  std::string nameOf(std::string_view option) const;
   bool has(std::string_view option) const { return fields.contains(option); }
 };
 
-/// Adds the options to a sub-command.
-std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command);
+/// Adds the options to a sub-command. @param renamed  options of the table that get another name there
+std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNames& renamed = {});
 /// Adds --strict, for sub-commands that make one picture.
 void addStrictOption(CLI::App& command, bool& strict);
 /// Adds --backend, for sub-commands that draw with OpenGL.

@@ -5,11 +5,12 @@
 #include "shade/constants.glsl"
 layout(binding = kOcclusionUnit) uniform sampler2D occlusion_prev;  // 1 = unoccluded
 uniform vec2 texel_size;         // pixels to occlusion_prev's coordinates
-uniform float previous_scale;    // size of this slice over that of the one before, from the image's centre (Eqs. 12-15)
+uniform float previous_scale;    // size of this slice over that of the one before, from the view axis (Eqs. 12-15)
+uniform vec2 view_axis;          // where the view axis crosses the image, in occlusion_prev's coordinates
 uniform vec4 taps[kTaps];        // xy: displacement in occlusion_prev's coordinates; z: length of the way to it (world)
 
 // Returns where the point straight before the fragment, along the slice normal, lies in the slice before.
-vec2 previousPoint() { return 0.5 + (gl_FragCoord.xy * texel_size - 0.5) * previous_scale; }
+vec2 previousPoint() { return view_axis + (gl_FragCoord.xy * texel_size - view_axis) * previous_scale; }
 
 float visibility(vec2 uv) { return textureLod(occlusion_prev, uv, 0.0).r; }
 

@@ -5,8 +5,8 @@
 #include "shade/constants.glsl"
 layout(binding = kTileStateUnit) uniform sampler2D state_before;
 uniform vec2 reach;    // of each channel, tiles
-uniform vec2 scale;    // how distances from the image's centre change on the way, from 1 to this
-uniform vec2 centre;   // centre of the image, tiles
+uniform vec2 scale;    // how distances from the view axis change on the way, from 1 to this
+uniform vec2 centre;   // where the view axis crosses the image, tiles
 uniform vec2 axis;     // (1, 0) or (0, 1)
 layout(location = 0) out vec2 state;
 

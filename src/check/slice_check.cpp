@@ -217,6 +217,7 @@ void checkSlices(ResidentVolume& resident, const ScalarGrid& grid, const Resolve
   drawn.model = Model::emission;
   drawn.bricks.culling = false;
   drawn.sampling.saturation = 0;
+  drawn.sampling.pixelSamples = 1;  // what is probed are the rays through the centres of pixels
   drawn.clipPlanes.clear();
   drawn.clipBox.reset();
   drawn.camera.nearDistance = 0;

@@ -126,8 +126,8 @@ EyeRays::EyeRays(const Camera& camera, const glm::dmat4& indexToWorld)
       worldToIndex_(glm::inverse(indexToWorld)),
       linear_(worldToIndex_) {}
 
-EyeRays::Ray EyeRays::through(int x, int y) const {
-  const glm::dvec2 p = (glm::dvec2(x, y) + 0.5) * plane_.pixelSize - plane_.halfExtent;
+EyeRays::Ray EyeRays::through(int x, int y, const glm::dvec2& place) const {
+  const glm::dvec2 p = (glm::dvec2(x, y) + place) * plane_.pixelSize - plane_.halfExtent;
   const glm::dvec3 aside = p.x * frame_.right + p.y * frame_.up;
   const bool perspective = camera_.projection == Projection::perspective;
   Ray ray;

@@ -11,7 +11,7 @@
 
 namespace umbrick {
 
-/// Rays through the centres of pixels, in index space; t is the distance from the origin of a ray in world units. Rays
+/// Rays through pixels, in index space; t is the distance from the origin of a ray in world units. Rays
 /// begin at the eye, or on its plane in an orthographic view.
 class EyeRays {
  public:
@@ -22,7 +22,8 @@ class EyeRays {
     glm::dvec3 direction;       // world space, unit length
     double depthPerLength = 1;  // depth along the view axis for each unit of t
   };
-  Ray through(int x, int y) const;
+  /// @param place  in the pixel, in [0, 1]^2; 1/2: its centre
+  Ray through(int x, int y, const glm::dvec2& place) const;
   /// Turns a direction of world space, of unit length, into a direction of index space.
   glm::dvec3 toIndex(const glm::dvec3& direction) const { return linear_ * direction; }
 

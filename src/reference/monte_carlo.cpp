@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace umbrick {
 namespace {
@@ -116,43 +118,60 @@ double MonteCarloPixel::estimateTransmittance(const glm::dvec3& point, const glm
   return transmittance;
 }
 
+// Returns what one path along a ray finds: light, opacity, visibility, depth.
+MonteCarloPixel::Found MonteCarloPixel::trace(const EyeRays::Ray& ray, const Interval& part, Random& random) {
+  ++counts_.eyeRays;
+  const Collision hit = collide(ray.index, part, random);
+  if (!hit.happened) return {};
+  double visibility = 1;
+  glm::dvec3 light = hit.medium.albedo;
+  if (traitsOf(space_.scene.model).occlusion) {
+    const glm::dvec3 towardsEye = traitsOf(space_.scene.model).aroundRay ? -ray.direction : towardsEye_;
+    const LightDirection chosen = chooseLight(towardsEye, random);
+    const double transmittance = estimateTransmittance(ray.index.at(hit.t), chosen.direction, random);
+    light *= transmittance * chosen.radiance;
+    visibility = power_ > 0 ? transmittance * powerOf(chosen.radiance) / power_ : 0;
+  }
+  return {light.x, light.y, light.z, 1, visibility, hit.t * ray.depthPerLength};
+}
+
 std::optional<PixelResult> MonteCarloPixel::integrate(int x, int y) {
-  const EyeRays::Ray ray = space_.rays.through(x, y);
   PixelResult result;
-  const Interval part = space_.region.clip(ray.index, 0);
-  if (part.empty()) return result;
+  std::vector<std::pair<EyeRays::Ray, Interval>> rays;
+  bool meetsMedium = false;
+  for (const glm::dvec2& place : space_.places) {
+    const EyeRays::Ray ray = space_.rays.through(x, y, place);
+    rays.emplace_back(ray, space_.region.clip(ray.index, 0));
+    meetsMedium = meetsMedium || !rays.back().second.empty();
+  }
+  if (!meetsMedium) return result;
   const int width = space_.scene.camera.width;
   Random random(options_.seed,
                 static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width) + static_cast<std::uint64_t>(x));
-  const glm::dvec3 towardsEye =
-      traitsOf(space_.scene.model).aroundRay ? -ray.direction : -cameraFrame(space_.scene.camera).forward;
-  RunningMoments moments;  // light, opacity, visibility, depth
+  RunningMoments moments;
   // An event that n paths did not see has a probability of the order of 1 / n: a pixel whose paths all agree is not
   // known better than that.
   const int least =
       options_.standardError > 0 ? std::max(64, static_cast<int>(std::min(1e9, 1 / options_.standardError))) : 0;
   const bool wanted = options_.standardError > 0;
   result.converged = !wanted;
-  for (int path = 1; path <= options_.samples; ++path) {
-    if (path % 256 == 0 && !goOn_()) return std::nullopt;
-    ++counts_.eyeRays;
-    const Collision hit = collide(ray.index, part, random);
-    std::array<double, 6> found{};
-    if (hit.happened) {
-      double visibility = 1;
-      glm::dvec3 light = hit.medium.albedo;
-      if (traitsOf(space_.scene.model).occlusion) {
-        const LightDirection chosen = chooseLight(towardsEye, random);
-        const double transmittance = estimateTransmittance(ray.index.at(hit.t), chosen.direction, random);
-        light *= transmittance * chosen.radiance;
-        visibility = power_ > 0 ? transmittance * powerOf(chosen.radiance) / power_ : 0;
-      }
-      found = {light.x, light.y, light.z, 1, visibility, hit.t * ray.depthPerLength};
+  // A round is one path along each ray of the pixel. Its mean is one independent sample of the pixel: what the rays
+  // differ by is no error, and does not count as one.
+  constexpr int kLeastRounds = 32;
+  const int round = static_cast<int>(rays.size()), rounds = options_.samples / round;
+  for (int i = 1; i <= rounds; ++i) {
+    const int paths = i * round;
+    if (paths / 256 != (paths - round) / 256 && !goOn_()) return std::nullopt;
+    Found mean{};
+    for (const auto& [ray, part] : rays) {
+      if (part.empty()) continue;
+      const Found found = trace(ray, part, random);
+      for (std::size_t k = 0; k < found.size(); ++k) mean[k] += found[k] / round;
     }
-    moments.add(found);
-    if (!wanted || path < least || path % 16 != 0) continue;
+    moments.add(mean);
+    if (!wanted || paths < least || i < kLeastRounds || i % 16 != 0) continue;
     double largest = 0;
-    for (std::size_t i = 0; i < 4; ++i) largest = std::max(largest, moments.variance(i));
+    for (std::size_t k = 0; k < 4; ++k) largest = std::max(largest, moments.variance(k));
     result.converged = std::sqrt(largest) <= options_.standardError;
     if (result.converged) break;
   }

@@ -1,6 +1,7 @@
 // The unbiased integrator.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <optional>
 
 #include "reference/quadrature.h"
@@ -19,6 +20,7 @@ class MonteCarloPixel {
         dense_(20 / voxelEdge),
         densest_(1e4 / voxelEdge),
         power_(space.lights ? space.lights->power() : 1),
+        towardsEye_(-cameraFrame(space.scene.camera).forward),
         accessor_(space.field.accessor()) {}
 
   /// Integrates one pixel. Returns nothing when the job was stopped meanwhile.
@@ -32,6 +34,9 @@ class MonteCarloPixel {
     Medium medium;
   };
 
+  using Found = std::array<double, 6>;  // light (RGB), opacity, visibility, depth
+
+  Found trace(const EyeRays::Ray& ray, const Interval& part, Random& random);
   template <class Visit>
   void trackBlocks(const IndexRay& ray, const Interval& part, Random& random, const Visit& visit);
   double majorantOf(const FieldBlock& block, const glm::ivec3& cell) const;
@@ -45,7 +50,8 @@ class MonteCarloPixel {
   double dense_;  // 1/world unit: in blocks with a majorant from here on each cell has its own majorant
   // 1/world unit: extinction beyond this counts as this, since tracking takes as many steps as the majorant is large.
   double densest_;
-  double power_;  // sum over all lights
+  double power_;           // sum over all lights
+  glm::dvec3 towardsEye_;  // against the view axis, world space
   Field::Accessor accessor_;
   RayCounts counts_;
 };

@@ -15,6 +15,14 @@ struct PixelResult {
   double depth = 0;        // depth along the view axis, weighted by opacity
   glm::dvec4 variance{0};  // of the means of light (x, y, z) and opacity (w)
   bool converged = true;   // false: the standard error that was asked for was not reached
+
+  /// Adds the result of one ray out of several, which all count for the same `weight`.
+  void add(const PixelResult& ray, double weight) {
+    light += weight * ray.light;
+    opacity += weight * ray.opacity;
+    visibility += weight * ray.visibility;
+    depth += weight * ray.depth;
+  }
 };
 
 /// A function that is asked now and then during a long pixel. It returns false when the job is to stop.

@@ -81,7 +81,17 @@ void QuadraturePixel::aim(const std::vector<LightDirection>& lights) {
 }
 
 std::optional<PixelResult> QuadraturePixel::integrate(int x, int y) {
-  const EyeRays::Ray ray = space_.rays.through(x, y);
+  if (space_.places.size() == 1) return integrate(space_.rays.through(x, y, space_.places.front()));
+  PixelResult mean;
+  for (const glm::dvec2& place : space_.places) {
+    const std::optional<PixelResult> ray = integrate(space_.rays.through(x, y, place));
+    if (!ray) return std::nullopt;
+    mean.add(*ray, 1.0 / static_cast<double>(space_.places.size()));
+  }
+  return mean;
+}
+
+std::optional<PixelResult> QuadraturePixel::integrate(const EyeRays::Ray& ray) {
   PixelResult result;
   const Interval part = space_.region.clip(ray.index, 0);
   if (part.empty()) return result;

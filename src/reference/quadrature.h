@@ -22,6 +22,7 @@ struct ReferenceSpace {
   const ResolvedScene& scene;
   const LightSet* lights;                         // of cone and lights
   const std::vector<LightDirection>& directions;  // of all models but emission and coneRay
+  const std::vector<glm::dvec2>& places;          // in each pixel, through which rays go; at least one
 };
 
 /// Returns light that is the same from all of the solid angle for which the directions stand.
@@ -62,6 +63,7 @@ class QuadraturePixel {
     }
   };
 
+  std::optional<PixelResult> integrate(const EyeRays::Ray& ray);
   void aim(const std::vector<LightDirection>& lights);
   Arriving arrivingAt(const IndexRay& ray, double t);
   Arriving meanArriving(const IndexRay& ray, std::size_t begin, std::size_t end);

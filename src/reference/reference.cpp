@@ -19,6 +19,7 @@
 #include "reference/monte_carlo.h"
 #include "reference/quadrature.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/pixel_points.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/resolve.h"
@@ -40,6 +41,9 @@ void check(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOp
   checkAtLeast("step", options.step, 0.0);
   checkAtLeast("directions", options.directions, 1);
   checkAtLeast("samples", options.samples, 2);
+  if (options.integrator == Integrator::monteCarlo && options.samples < 2 * scene.sampling.pixelSamples)
+    throw InvalidArgument("samples is " + std::to_string(options.samples) + ", must be at least " +
+                          std::to_string(2 * scene.sampling.pixelSamples) + ", two for each sample of a pixel");
   checkAtLeast("standard error", options.standardError, 0.0);
   checkAtLeast("threads", options.threads, 0);
   if (!(options.tolerance > 0 && options.tolerance <= 1))
@@ -183,7 +187,8 @@ ReferencePicture renderReference(const ScalarGrid& grid, const ResolvedScene& sc
   const ConvexRegion region(scene, mediumBox(scene.transfer, field.domain()), indexToWorld, behindEye);
   const LightSet* const given = lights ? &*lights : nullptr;
   const std::vector<LightDirection> directions = directionsOf(scene, options, given);
-  const ReferenceSpace space{field, classifier, rays, region, scene, given, directions};
+  const std::vector<glm::dvec2> places = pixelPoints(scene.sampling.pixelSamples);
+  const ReferenceSpace space{field, classifier, rays, region, scene, given, directions, places};
   const Stopwatch integrate;
   RayCounts counts;
   const double edge = shortestVoxelEdge(indexToWorld);

@@ -134,6 +134,12 @@ const std::vector<SceneField>& table() {
        "transmittance below which a pixel is done; 0: never",
        [](Scene& s) -> FieldPlace { return &s.sampling.saturation; },
        {.low = 0, .high = 1, .highOpen = true}},
+      {"sampling.pixelSamples",
+       "samples",
+       "Sampling",
+       "a pixel: the mean over so many places in its area (box filter), at so many times the cost; 1: its centre",
+       [](Scene& s) -> FieldPlace { return &s.sampling.pixelSamples; },
+       {.low = 1, .high = kMostPixelSamples}},
 
       {"occlusion.theta",
        "theta",

@@ -61,7 +61,7 @@ void setSlabUniforms(GlProgram& program, const Frame& frame, const IndexView& vi
   const glm::dvec3 size(frame.atlas.textureSize());
   const glm::dvec2 pixel = 2.0 * view.halfExtent / glm::dvec2(view.size);
   program.set("screen_scale", glm::vec2(pixel));
-  program.set("screen_offset", glm::vec2(-view.halfExtent));
+  program.set("screen_offset", glm::vec2(view.centre - view.halfExtent));
   program.set("across_x", glm::vec3(view.toIndex[0] / size));
   program.set("across_y", glm::vec3(view.toIndex[1] / size));
   program.set("half_forward", glm::vec3(0.5 * frame.slices.spacing * view.toIndex[2] / size));

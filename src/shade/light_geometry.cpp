@@ -64,6 +64,7 @@ IndexView latticeView(const IndexView& eye, const LightLattice& lattice) {
   view.projection = Projection::orthographic;
   view.halfExtent = 0.5 * lattice.texel * glm::dvec2(lattice.size);
   view.size = lattice.size;
+  view.centre = glm::dvec2(0);
   view.origin -= glm::dvec3(centre, 0);
   view.eyeIndex += centre.x * eye.toIndex[0] + centre.y * eye.toIndex[1];
   return view;

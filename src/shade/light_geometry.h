@@ -54,7 +54,7 @@ void forEachPolygon(const LatticePolygons& polygons, std::int64_t i, const Visit
     Rectangle extent;
     for (std::int32_t v = 0; v < polygon.vertices; ++v) {
       const glm::dvec2 device(slices.vertices[static_cast<std::size_t>(polygon.firstVertex + v)]);
-      extent.include((glm::clamp(device, -1.0, 1.0) * view.halfExtent * scale + centre) / texel);
+      extent.include(((glm::clamp(device, -1.0, 1.0) * view.halfExtent + view.centre) * scale + centre) / texel);
     }
     visit(extent);
   }

@@ -99,7 +99,7 @@ void LightTiles::look(const Frame& frame, std::int64_t slice, const GlTexture& o
   const auto inTiles = [&](double reach) { return static_cast<float>(std::min(std::ceil(reach / kTileEdge), most)); };
   dilate_.set("reach", glm::vec2(inTiles(visible.reach), inTiles(dark.reach)));
   dilate_.set("scale", glm::vec2(1 / visible.scale, dark.scale));
-  dilate_.set("centre", glm::vec2(frame.size()) * (0.5f / kTileEdge));
+  dilate_.set("centre", glm::vec2(frame.view.axisPixel() / double(kTileEdge)));
   dilate(0, 1, {1, 0}, gl);
   dilate(1, 0, {0, 1}, gl);
 

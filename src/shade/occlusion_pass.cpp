@@ -88,7 +88,7 @@ class OcclusionPass : public SlicePass {
       steps_[i] = step(frame, static_cast<std::int64_t>(i));
       steps_[i].deviation = deviation(steps_[i]);
     }
-    regions_ = occlusionRegions(covered_, steps_, frame.size());
+    regions_ = occlusionRegions(covered_, steps_, frame.size(), frame.view.axisPixel());
   }
 
   double deviation(const SliceStep& step) const {
@@ -103,6 +103,7 @@ class OcclusionPass : public SlicePass {
     const glm::dvec2 texel = 1.0 / glm::dvec2(frame.size());
     program.set("texel_size", glm::vec2(texel));
     program.set("previous_scale", static_cast<float>(step.scale));
+    program.set("view_axis", glm::vec2(frame.view.axisPixel() / glm::dvec2(frame.size())));
     const double tangent = std::tan(frame.scene.occlusion.aperture), d = frame.slices.spacing;
     std::vector<glm::vec4> taps;
     for (const glm::dvec2& point : disk_)

@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "shade/picture_mean.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/pixel_points.h"
 #include "umbrick/core/random.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/scene/capabilities.h"
@@ -20,46 +22,6 @@
 namespace umbrick {
 namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kGoldenStep = 0.6180339887498949;  // step of a sequence of single numbers, as kR2Step is of pairs
-
-/// A sum of pictures, from which their mean is taken.
-class Accumulator {
- public:
-  void add(const Picture& picture) {
-    if (count_ == 0) {
-      colour_.assign(picture.colour.pixels.size(), 0);
-      visibility_.assign(picture.visibility.pixels.size(), 0);
-      depth_.assign(picture.depth.pixels.size(), glm::dvec2(0));
-    }
-    for (std::size_t i = 0; i < colour_.size(); ++i) colour_[i] += picture.colour.pixels[i];
-    for (std::size_t i = 0; i < visibility_.size(); ++i) visibility_[i] += picture.visibility.pixels[i];
-    // Depth is a mean weighted by opacity. Where there is a background the picture's alpha no longer tells opacity, so
-    // each depth counts once there, and the samples agree except for where their slices lie.
-    for (std::size_t i = 0; i < depth_.size(); ++i) {
-      const float depth = picture.depth.pixels[i];
-      if (!std::isfinite(depth)) continue;
-      const double weight = std::max(picture.colour.pixels[4 * i + 3], 1e-30f);
-      depth_[i] += glm::dvec2(weight * depth, weight);
-    }
-    ++count_;
-  }
-  double colour(std::size_t i) const { return colour_[i] / count_; }
-  std::size_t values() const { return colour_.size(); }
-  /// Replaces the pixels of a picture of the same size by the means.
-  void store(Picture& picture) const {
-    for (std::size_t i = 0; i < colour_.size(); ++i) picture.colour.pixels[i] = static_cast<float>(colour(i));
-    for (std::size_t i = 0; i < visibility_.size(); ++i)
-      picture.visibility.pixels[i] = static_cast<float>(visibility_[i] / count_);
-    for (std::size_t i = 0; i < depth_.size(); ++i)
-      picture.depth.pixels[i] =
-          depth_[i].y > 0 ? static_cast<float>(depth_[i].x / depth_[i].y) : std::numeric_limits<float>::infinity();
-  }
-
- private:
-  int count_ = 0;
-  std::vector<double> colour_, visibility_;
-  std::vector<glm::dvec2> depth_;  // sum of weighted depths, sum of weights
-};
 
 // Returns the root of the mean of f(i) over R, G and B of all pixels.
 template <class Value>
@@ -95,8 +57,9 @@ class Stream {
       shift_[axis] = random.uniform();
       rounding_[axis] = random.uniform();
     }
+    for (int axis = 0; axis < 2; ++axis) pixel_[axis] = random.uniform();
   }
-  RenderSample sample(const ResolvedScene& scene, int pass) const {
+  RenderSample sample(const ResolvedScene& scene, int pass, bool pixelArea) const {
     const int count = scene.occlusion.ordinates.directions;
     RenderSample sample;
     sample.lights =
@@ -105,13 +68,14 @@ class Stream {
     sample.phase = std::clamp(glm::fract(phase_ + pass * kGoldenStep), 1e-3, 1 - 1e-3);
     sample.latticeShift = glm::fract(shift_ + static_cast<double>(pass) * kR2Step);
     sample.rounding = glm::fract(rounding_ + static_cast<double>(pass) * kR2Step);
+    if (pixelArea) sample.pixel = glm::fract(pixel_ + static_cast<double>(pass) * kR2Step);
     return sample;
   }
 
  private:
   std::uint64_t seed_ = 0;
   double phase_ = 0;
-  glm::dvec2 shift_{0}, rounding_{0};
+  glm::dvec2 shift_{0}, rounding_{0}, pixel_{0};
 };
 
 void check(const ResolvedScene& scene, const ProgressiveOptions& options) {
@@ -166,12 +130,23 @@ double errorOverDifference(double ratio, double texelVoxels) {
   return 1 / std::sqrt(std::abs(std::pow(ratio, least) - 1) * std::abs(ratio - 1));
 }
 
+// Returns the scene of one sample, which has one ray a pixel: the samples are what a pixel is averaged over.
+ResolvedScene onePerPixel(ResolvedScene scene) {
+  scene.sampling.pixelSamples = 1;
+  return scene;
+}
+
 // The samples of one scene, rendered one after another.
 class PassSeries {
  public:
-  PassSeries(ResidentVolume& resident, const ResolvedScene& scene, std::uint64_t seed, const RenderOptions& render)
-      : resident_(resident), scene_(scene), render_(render), fine_(resident, scene, render) {
-    for (int i = 0; i < kStreams; ++i) streams_.emplace_back(seed, static_cast<std::uint64_t>(i));
+  PassSeries(ResidentVolume& resident, const ResolvedScene& scene, const ProgressiveOptions& options,
+             const RenderOptions& render)
+      : resident_(resident),
+        scene_(scene),
+        render_(render),
+        fine_(resident, onePerPixel(scene), render),
+        pixelArea_(options.pixelArea) {
+    for (int i = 0; i < kStreams; ++i) streams_.emplace_back(options.seed, static_cast<std::uint64_t>(i));
   }
 
   const ResolvedScene& scene() const { return scene_; }
@@ -179,7 +154,7 @@ class PassSeries {
   // Renders one more sample. The picture becomes the mean so far.
   void pass(Picture& picture, ErrorEstimate& error) {
     const auto stream = static_cast<std::size_t>(passes_ % kStreams);
-    const RenderSample sample = streams_[stream].sample(scene_, passes_ / kStreams);
+    const RenderSample sample = streams_[stream].sample(scene_, passes_ / kStreams, pixelArea_);
     picture = fine_.render(sample);
     means_[stream].add(picture);
     all_.add(picture);
@@ -191,7 +166,7 @@ class PassSeries {
       const ResolvedScene coarse = coarserScene(scene_);
       const bool fit = fits(resident_.volume(), coarse);
       ratio_ = fit ? 2 : 0.5;
-      other_.emplace(resident_, fit ? coarse : finerScene(scene_), render_);
+      other_.emplace(resident_, onePerPixel(fit ? coarse : finerScene(scene_)), render_);
     }
     // The other picture has the same light; only its slabs and texels differ.
     if (other_) otherMeans_[stream].add(other_->render(sample));
@@ -222,9 +197,10 @@ class PassSeries {
   SliceRenderer fine_;
   std::optional<SliceRenderer> other_;  // renderer with slabs and texels `ratio_` times as large
   double ratio_ = 2;
+  bool pixelArea_;
   std::vector<Stream> streams_;
-  std::array<Accumulator, kStreams> means_, otherMeans_;
-  Accumulator all_;
+  std::array<PictureMean, kStreams> means_, otherMeans_;
+  PictureMean all_;
   int passes_ = 0;
 };
 
@@ -243,7 +219,7 @@ ProgressivePicture renderProgressive(ResidentVolume& resident, const ResolvedSce
   check(scene, options);
   const Stopwatch watch;
   const double finest = shortestVoxelEdge(resident.volume().indexToWorld) / 8;
-  auto series = std::make_unique<PassSeries>(resident, scene, options.seed, render);
+  auto series = std::make_unique<PassSeries>(resident, scene, options, render);
   ProgressivePicture best{.scene = scene}, current{.scene = scene};
   bool refined = false;
   double systematicBefore = kInfinity;  // the systematic error of the coarser scene
@@ -269,7 +245,7 @@ ProgressivePicture renderProgressive(ResidentVolume& resident, const ResolvedSce
     const bool canRefine =
         options.refine && current.scene.sampling.spacing / 2 >= finest && current.error.systematic <= systematicBefore;
     if (inTheWay && canRefine && pass + kStreams < options.passes) {
-      series = std::make_unique<PassSeries>(resident, finerScene(series->scene()), options.seed, render);
+      series = std::make_unique<PassSeries>(resident, finerScene(series->scene()), options, render);
       systematicBefore = current.error.systematic;
       refined = true;
       current.passes = 0;

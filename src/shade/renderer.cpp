@@ -1,7 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/shade/renderer.h"
 
+#include <glm/common.hpp>
+
+#include "shade/picture_mean.h"
+#include "umbrick/core/pixel_points.h"
+
 namespace umbrick {
+namespace {
+
+// Adds what the pictures before took to the statistics of the last one.
+void addWork(RenderStats& last, const RenderStats& before) {
+  last.polygons += before.polygons;
+  last.fragments += before.fragments;
+  last.uploadedBricks += before.uploadedBricks;
+  last.windowUpdates += before.windowUpdates;
+  last.geometryMs += before.geometryMs;
+  last.uploadMs += before.uploadMs;
+  last.sweepMs += before.sweepMs;
+  last.readMs += before.readMs;
+  last.passes.extinctionMs += before.passes.extinctionMs;
+  last.passes.windowsMs += before.passes.windowsMs;
+  last.passes.eyeMs += before.passes.eyeMs;
+}
+
+}  // namespace
 
 void Renderer::setScene(const ResolvedScene& scene) {
   if (scene_ && *scene_ == scene) return;
@@ -48,8 +71,24 @@ void Renderer::setSampling(const SamplingOptions& sampling) {
 }
 
 Picture Renderer::render(const RenderSample& sample) {
-  draw(sample);
-  return read();
+  const std::vector<glm::dvec2> points = pixelPoints(scene().sampling.pixelSamples);
+  if (points.size() == 1) {
+    draw(sample);
+    return read();
+  }
+  PictureMean mean;
+  Picture picture;
+  for (const glm::dvec2& point : points) {
+    RenderSample moved = sample;
+    moved.pixel = glm::fract(point + (sample.pixel - 0.5));
+    draw(moved);
+    const RenderStats before = picture.stats;
+    picture = read();
+    addWork(picture.stats, before);
+    mean.add(picture);
+  }
+  mean.store(picture);
+  return picture;
 }
 
 }  // namespace umbrick

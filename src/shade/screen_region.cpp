@@ -19,11 +19,11 @@ struct Spread {
   double variance = 0, lastRadius = 0;
 
   // Moves the core to where it is seen from one slice farther back (`inwards`) or one slice nearer.
-  void step(const SliceStep& s, bool inwards, const glm::ivec2& size) {
+  void step(const SliceStep& s, bool inwards, const glm::ivec2& size, const glm::dvec2& viewAxis) {
     if (core.empty()) return;
     const double scale = inwards ? 1 / s.scale : s.scale;
     for (int axis = 0; axis < 2; ++axis) {
-      const double centre = 0.5 * size[axis];
+      const double centre = viewAxis[axis];
       // A read beyond the screen gives its edge, so what touches the edge counts as reaching beyond it without end.
       const bool lowEdge = inwards && core.min[axis] <= 0, highEdge = inwards && core.max[axis] >= size[axis];
       const double low = lowEdge ? 0 : centre + (core.min[axis] - centre) * scale;
@@ -73,14 +73,14 @@ void ScreenRegion::intersect(const ScreenRegion& other) {
 }
 
 std::vector<ScreenRegion> occlusionRegions(std::span<const ScreenRegion> covered, std::span<const SliceStep> steps,
-                                           const glm::ivec2& size) {
+                                           const glm::ivec2& size, const glm::dvec2& axis) {
   const std::size_t count = covered.size();
   // Front to back: the pixels that have been darkened so far. A region never shrinks, since a buffer still holds what
   // was written two slices ago.
   std::vector<ScreenRegion> regions(count);
   Spread darkened;
   for (std::size_t i = 0; i < count; ++i) {
-    if (i > 0) darkened.step(steps[i], true, size);
+    if (i > 0) darkened.step(steps[i], true, size, axis);
     darkened.core.include(covered[i]);
     regions[i] = darkened.region(size);
     if (i > 0) regions[i].include(regions[i - 1]);
@@ -90,7 +90,7 @@ std::vector<ScreenRegion> occlusionRegions(std::span<const ScreenRegion> covered
   for (std::size_t i = count; i-- > 0;) {
     regions[i].intersect(wanted.region(size));
     wanted.core.include(covered[i]);
-    wanted.step(steps[i], false, size);
+    wanted.step(steps[i], false, size, axis);
   }
   return regions;
 }

@@ -17,7 +17,7 @@ struct ScreenRegion {
   bool operator==(const ScreenRegion&) const = default;
 };
 
-/// How a slice reads the slice before it: at centre + (pixel - centre) scale, give or take `radius` pixels.
+/// How a slice reads the slice before it: at axis + (pixel - axis) scale, give or take `radius` pixels.
 struct SliceStep {
   double scale = 1;
   double radius = 0;
@@ -32,7 +32,8 @@ inline constexpr double kWalkReach = 4;
 /// carries farther than kWalkReach.
 /// @param covered  for each slice: the pixels that bricks cover
 /// @param steps  for each slice; the first is never used
+/// @param axis  where the view axis crosses the image, pixels
 std::vector<ScreenRegion> occlusionRegions(std::span<const ScreenRegion> covered, std::span<const SliceStep> steps,
-                                           const glm::ivec2& size);
+                                           const glm::ivec2& size, const glm::dvec2& axis);
 
 }  // namespace umbrick

@@ -259,8 +259,9 @@ class SliceRenderer::Implementation {
 
   void prepareFrame(const ResolvedScene& scene, const RenderSample& sample) {
     const Camera& camera = scene.camera;
-    const IndexView view = indexView(camera, volume_.indexToWorld);
-    checkReach(view, scene);
+    IndexView view = indexView(camera, volume_.indexToWorld);
+    checkReach(view, scene);  // rays through other places in the pixels lie between those at the edges of the image
+    view.seeThrough(sample.pixel);
     std::vector<glm::dvec4> planes = viewPlanes(scene, volume_, backgroundVisible_);
     std::vector<glm::dvec4> bounds = viewBounds(scene, volume_, backgroundVisible_, planes);
     const double spacing = scene.sampling.spacing;
@@ -300,9 +301,11 @@ class SliceRenderer::Implementation {
     const Image aux = readTexture(gl_, targets_->aux, width, height);
     picture.visibility = Image(width, height, 1);
     picture.depth = Image(width, height, 1);
+    picture.opacity = Image(width, height, 1);
     for (std::size_t i = 0; i < picture.depth.pixels.size(); ++i) {
       const float* pixel = &aux.pixels[4 * i];
       picture.visibility.pixels[i] = pixel[0];
+      picture.opacity.pixels[i] = std::min(pixel[3], 1.0f);
       picture.depth.pixels[i] = pixel[3] > 0 ? pixel[1] / pixel[3] : std::numeric_limits<float>::infinity();
     }
   }

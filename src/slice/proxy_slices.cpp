@@ -81,8 +81,8 @@ glm::dvec4 widened(glm::dvec4 plane, const IndexView& view, double spacing) {
   const glm::dvec2 across = glm::abs(glm::dvec2(plane));
   const double margin = kPlaneMargin * 2 * view.halfExtent.y / view.size.y * glm::length(across);
   if (view.projection == Projection::perspective) {
-    plane.w +=
-        0.5 * spacing * (std::abs(plane.z) + across.x * view.halfExtent.x + across.y * view.halfExtent.y + margin);
+    const glm::dvec2 reach = view.halfExtent + glm::abs(view.centre);
+    plane.w += 0.5 * spacing * (std::abs(plane.z) + across.x * reach.x + across.y * reach.y + margin);
     plane.z += margin;  // in world units, a pixel grows with depth
   } else {
     plane.w += 0.5 * spacing * std::abs(plane.z) + margin;
@@ -134,7 +134,7 @@ class SliceCutter {
       for (const glm::dvec4& plane : planes_)
         if (polygon.size() >= 3) clip(polygon, scratch, {plane.x, plane.y, plane.z * depth + plane.w});
       if (polygon.size() < 3) continue;
-      emit(polygon, scratch, scale, brick, out);
+      emit(polygon, scratch, scale, view_.centre / view_.halfExtent, brick, out);
     }
   }
 
@@ -152,13 +152,14 @@ class SliceCutter {
     }
   }
 
-  void emit(const Polygon& polygon, Polygon& vertices, const glm::dvec2& scale, std::int32_t brick,
-            SlicePolygons& out) const {
+  // @param scale,middle  of view coordinates to device coordinates
+  void emit(const Polygon& polygon, Polygon& vertices, const glm::dvec2& scale, const glm::dvec2& middle,
+            std::int32_t brick, SlicePolygons& out) const {
     // Vertices are moved to the rasteriser's grid, and neighbours that fall on one point become one.
     const glm::dvec2 toGrid = 0.5 * kSubpixels * glm::dvec2(view_.size);
     vertices.clear();
     for (const glm::dvec2& point : polygon) {
-      const glm::dvec2 snapped = glm::round(point * scale * toGrid);
+      const glm::dvec2 snapped = glm::round(point * scale * toGrid - middle * toGrid);
       if (vertices.empty() || snapped != vertices.back()) vertices.push_back(snapped);
     }
     while (vertices.size() > 1 && vertices.back() == vertices.front()) vertices.pop_back();

@@ -26,7 +26,9 @@ struct ReferenceOptions {
   double tolerance = 1e-4;
   int directions = 256;  // about so many directions over the cone, the sphere or the lights
   // The following three are for Monte Carlo.
-  int samples = 256;  // paths per pixel; if a standard error is asked for, the most paths that a pixel takes
+  /// Paths per pixel; if a standard error is asked for, the most paths that a pixel takes. With several samples a pixel
+  /// each of them has as many paths: so many whole rounds are taken as this allows.
+  int samples = 256;
   /// A pixel takes no more paths when its estimated standard error is below this; 0: every pixel takes all.
   double standardError = 0;
   std::uint64_t seed = 1;
@@ -65,7 +67,9 @@ struct ReferencePicture {
   bool complete = true;  // false: the job was stopped, and pixels that were not done are 0
 };
 
-/// Integrates the ray through each pixel's centre. With T the transmittance,
+/// Integrates the ray through each pixel's centre or, where the scene asks for more samples a pixel
+/// (sampling.pixelSamples), the mean over rays through the places of pixelPoints, which are those that renderers take:
+/// both have the same box filter. V and depth are averaged by opacity. With T the transmittance,
 ///   C = Int T sigma_s V L_a ds + T_end L_b      A = 1 - T_end (1 with a background)
 ///   V = mean over the model's directions of T from the point to where the medium ends, 1 for `emission`
 /// and for `lights` the sum of radiance_k T_k takes the place of V, see LightDirection.

@@ -86,12 +86,16 @@ struct SamplingOptions {
   /// thin fog in many slices is made of: such scenes need 32 bits.
   int bits = 32;
   double saturation = 1e-3;  // transmittance below which a pixel is shaded no more; 0: never
+  /// Rays a pixel: the picture is the mean over so many places in its area (box filter), see pixelPoints. 1: its
+  /// centre.
+  int pixelSamples = 1;
   bool operator==(const SamplingOptions&) const = default;
 };
 
 /// Where segments are chosen automatically, they are no longer than so many voxels (shortest edge).
 inline constexpr double kSegmentVoxels = 0.625;
 inline constexpr int kMostSegments = 8;
+inline constexpr int kMostPixelSamples = 4096;
 /// Returns how many segments of at most kSegmentVoxels a slab needs, at most kMostSegments.
 /// @param slabVoxels  the thickness of a slab
 int segmentsOf(double slabVoxels);
@@ -194,8 +198,8 @@ struct Scene : SceneSettings {
 ///                "directions"   list [{direction, weight, colour}, ...]
 ///                "environment"  file (EXR), up, front, scale; up and front are [0, 1, 0] and [0, 0, 1] in the view,
 ///                               [0, 0, 1] and [0, -1, 0] in the world, the same at azimuth 0 and elevation 0
-///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), segments, bits, saturation
-///              (tableSize, of scenes made by earlier versions, is read and means nothing)
+///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), segments, bits, saturation,
+///              pixelSamples (tableSize, of scenes made by earlier versions, is read and means nothing)
 ///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits, directions, scale
 ///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]
 ///   bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16", "half", "float32"), budgetMiB

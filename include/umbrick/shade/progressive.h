@@ -16,7 +16,8 @@ namespace umbrick {
 struct ErrorEstimate {
   /// The standard error of the mean of the samples so far. It comes from the choice of directions, from where slices
   /// lie and from how paths are rounded. It is estimated from the spread of kStreams means, and infinite before there
-  /// are as many.
+  /// are as many. Where each sample sees pixels through another place, it is the error of their mean over the area,
+  /// too.
   double statistical = 0;
   /// The error that does not average out. It comes from the thickness of slabs, the length of their segments and the
   /// texels of windows. It is estimated from how much pictures of the first kStreams samples differ from those with all
@@ -41,6 +42,9 @@ struct ProgressiveOptions {
   double targetError = 0;  // stop when the estimated total error is no more than this; 0: never
   bool refine = false;     // begin again with slabs and texels half as large, see renderProgressive
   std::uint64_t seed = 1;  // other seeds give other pictures of the same expectation
+  /// Sees pixels through another place in each sample, so that the picture converges to the mean over their area,
+  /// whatever the scene's pixelSamples; else all samples go through the centres of pixels.
+  bool pixelArea = true;
 };
 
 struct ProgressivePicture {
@@ -58,10 +62,10 @@ inline constexpr int kStreams = 4;
 
 /// Renders cone or lights by ordinates again and again and averages the samples, which it may since the picture is
 /// linear in its light. Each sample has the next K directions of a low-discrepancy sequence (lightSamples) and other
-/// places of slices, of the lattice of light and of roundings. Samples of a stream continue one sequence, so that the
-/// error falls faster than with the root of their number, and the streams' spread, which needs no more than that they
-/// are independent, is an honest standard error (replicated quasi-Monte Carlo, Owen 1997). The same seed gives the same
-/// picture. All pictures read the same resident bricks.
+/// places of slices, of the lattice of light, of roundings and, unless pixelArea is false, inside the pixels. Samples
+/// of a stream continue one sequence, so that the error falls faster than with the root of their number, and the
+/// streams' spread, which needs no more than that they are independent, is an honest standard error (replicated
+/// quasi-Monte Carlo, Owen 1997). The same seed gives the same picture. All pictures read the same resident bricks.
 ///
 /// With ProgressiveOptions::refine the series begins again with slabs and texels half as large, down to an eighth of a
 /// voxel, where the systematic error alone is in the way of the target and kStreams samples are left.

@@ -66,12 +66,14 @@ struct RenderSample {
   double phase = 0.5;  // place of the slices, see ProxySlices; 1/2 where less than a slab is between eye and volume
   glm::dvec2 latticeShift{0};  // ordinates: shift of the lattice of the light, texels
   glm::dvec2 rounding{0.5};    // ordinates: what is added to shifts before they are cut to whole texels, in [0, 1)
+  glm::dvec2 pixel{0.5};       // place in each pixel through which it is seen, in [0, 1]^2; 1/2: the centre
 };
 
 struct Picture {
   Image colour;      // linear premultiplied RGBA
   Image visibility;  // 1 channel: V weighted by opacity, so that V / A is the mean visibility along the ray
-  Image depth;  // 1 channel: mean depth along the view axis, world units, weighted by opacity; infinite where A is 0
+  Image depth;    // 1 channel: mean depth along the view axis, world units, weighted by opacity; infinite where A is 0
+  Image opacity;  // 1 channel, made with the two above: A without the background, by which depths are averaged
   RenderStats stats;
 };
 
@@ -98,12 +100,14 @@ class Renderer {
   void setOcclusion(const OcclusionOptions& occlusion);
   void setSampling(const SamplingOptions& sampling);
 
-  /// Draws the scene into the renderer's own buffers.
+  /// Draws the scene into the renderer's own buffers, with one ray a pixel.
   /// @throw GlError, InvalidArgument
   virtual void draw(const RenderSample& sample = {}) = 0;
   /// Returns what was drawn last. @pre draw()
   virtual Picture read() = 0;
-  /// Draws and reads.
+  /// Draws and reads. Where the scene asks for several samples a pixel (sampling.pixelSamples) so many pictures are
+  /// drawn through other places in the pixels, see pixelPoints, and averaged: premultiplied colour and V as they are,
+  /// depth by opacity. Times and counts are then sums over these pictures.
   Picture render(const RenderSample& sample = {});
 
  protected:

@@ -22,6 +22,13 @@ struct IndexView {
   Projection projection = Projection::perspective;
   glm::dvec2 halfExtent;  // half the size of the screen plane, see screenPlane
   glm::ivec2 size;        // of the image, pixels
+  glm::dvec2 centre{0};   // screen point in the middle of the image; where it is not 0 the image plane is shifted
+
+  /// Returns where the view axis crosses the image, pixels.
+  glm::dvec2 axisPixel() const { return (halfExtent - centre) / (2.0 * halfExtent) * glm::dvec2(size); }
+  /// Shifts the image plane so that pixels are seen through another place in them. @param place  in [0, 1]^2; 1/2:
+  /// centre
+  void seeThrough(const glm::dvec2& place) { centre = (place - 0.5) * (2.0 * halfExtent / glm::dvec2(size)); }
 
   glm::dvec3 toView(const glm::dvec3& index) const;
   /// How index coordinates change along the view axes: toIndex[0] is for one world unit to the right, [1] up,

@@ -1,0 +1,26 @@
+// The mean of pictures of one scene.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <glm/vec2.hpp>
+#include <vector>
+
+#include "umbrick/shade/renderer.h"
+
+namespace umbrick {
+
+/// A sum of pictures, from which their mean is taken.
+class PictureMean {
+ public:
+  void add(const Picture& picture);
+  double colour(std::size_t i) const { return colour_[i] / count_; }
+  std::size_t values() const { return colour_.size(); }
+  /// Replaces the pixels of a picture of the same size by the means. Depth is averaged by opacity.
+  void store(Picture& picture) const;
+
+ private:
+  int count_ = 0;
+  std::vector<double> colour_, visibility_, opacity_;
+  std::vector<double> depth_;  // sum of depths weighted by opacity
+};
+
+}  // namespace umbrick
