@@ -1,7 +1,5 @@
 // umbrick check tells whether bricks change anything: it measures the invariants of the renderer on a volume.
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,6 +12,7 @@
 
 #include "command.h"
 #include "opened_scene.h"
+#include "progress.h"
 #include "scene_options.h"
 #include "umbrick/check/invariants.h"
 #include "umbrick/core/error.h"
@@ -21,6 +20,9 @@
 
 namespace umbrick::tools {
 namespace {
+
+// Pictures are small: laws hold for each pixel, and brick faces cross pictures of any size.
+constexpr int kPictureEdge = 96;
 
 struct CheckCommand {
   std::shared_ptr<SceneOptions> scene;
@@ -49,13 +51,25 @@ void printTable(const std::vector<InvariantResult>& results) {
   };
   row(" ", "invariant", "measured", "value", "limit", "");
   for (const InvariantResult& result : results) {
-    row(std::to_string(result.invariant), result.name, result.measured,
-        result.samples > 0 ? printNumber(result.value) : "-", result.samples > 0 ? printNumber(result.limit) : "-",
-        !result.passed       ? "FAILED"
-        : result.samples > 0 ? "ok"
-                             : result.detail);
-    if (!result.passed) std::printf("   %s\n", result.detail.c_str());
+    // What was not finished tells nothing, unless it has failed already.
+    const bool failed = result.samples > 0 && !result.passed, known = result.samples > 0 && (result.complete || failed);
+    row(std::to_string(result.invariant), result.name, result.measured, known ? printNumber(result.value) : "-",
+        known ? printNumber(result.limit) : "-",
+        failed             ? "FAILED"
+        : !result.complete ? (result.samples > 0 ? "not finished" : "not tried")
+        : known            ? "ok"
+                           : result.detail);
+    if (failed) std::printf("   %s\n", result.detail.c_str());
   }
+}
+
+bool isComplete(const std::vector<InvariantResult>& results) {
+  return std::all_of(results.begin(), results.end(), [](const auto& result) { return result.complete; });
+}
+
+bool havePassed(const std::vector<InvariantResult>& results) {
+  return isComplete(results) &&
+         std::all_of(results.begin(), results.end(), [](const auto& result) { return result.passed; });
 }
 
 void printJson(const std::vector<InvariantResult>& results, const ResolvedScene& scene, const GlContext& context,
@@ -63,7 +77,8 @@ void printJson(const std::vector<InvariantResult>& results, const ResolvedScene&
   nlohmann::ordered_json json;
   json["renderer"] = context.description();
   json["seed"] = seed;
-  json["passed"] = std::all_of(results.begin(), results.end(), [](const auto& result) { return result.passed; });
+  json["passed"] = havePassed(results);
+  json["complete"] = isComplete(results);
   // A number that is not finite has no place in JSON.
   const auto number = [](double x) {
     return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json("inf");
@@ -78,35 +93,70 @@ void printJson(const std::vector<InvariantResult>& results, const ResolvedScene&
                                   {"samples", result.samples},
                                   {"excluded", result.excluded},
                                   {"passed", result.passed},
+                                  {"complete", result.complete},
                                   {"detail", result.detail}});
   json["scene"] = nlohmann::ordered_json::parse(printScene(scene));
   std::cout << json.dump(2) << '\n';
 }
 
+// Returns the scene of the emission's pictures, or that of the cone's: each has the sampling that umbrick render would
+// give it.
+Scene makeSceneOf(Model model, const SceneOptions& given) {
+  SceneOptions options = given;
+  if (model == Model::cone) {
+    options.fields["model"] = [](Scene& scene) { scene.model = Model::cone; };
+    options.tableSize.reset();  // of which emission has told already
+  } else {
+    options.quality.reset();
+  }
+  Scene scene = makeScene(options);
+  if (!options.has("size")) scene.camera.width = scene.camera.height = kPictureEdge;
+  return scene;
+}
+
+// Says how many laws a check that was stopped has measured.
+void tellStopped(const std::vector<InvariantResult>& results) {
+  const auto measured =
+      std::count_if(results.begin(), results.end(), [](const auto& result) { return result.complete; });
+  std::cerr << "umbrick: interrupted: " << measured << " of " << results.size()
+            << " invariants are measured, the rest is not\n";
+}
+
 int check(const CheckCommand& command) {
   for (const int edge : command.check.edges)
     if (edge % 8 != 0) throw UsageError("--edges: " + std::to_string(edge) + " is not a multiple of 8");
-  Scene unopened = makeScene(*command.scene);
-  if (!command.scene->has("size")) unopened.camera.width = unopened.camera.height = 256;
-  const OpenedScene opened = openScene(*command.scene, unopened);
-  const Scene& scene = opened.scene;
+  const StopRequest stop;
+  ProgressBar bar("loading " + command.scene->input.filename().string());
+  const OpenedScene opened = openScene(*command.scene, makeSceneOf(Model::emission, *command.scene),
+                                       showShare(bar, stop, "interrupted before anything was checked"));
   const auto& volume = opened.volume;
-  const ResolvedScene resolved = resolveScene(scene, volume->worldBounds(), volume->indexToWorld());
-  const auto context = createContext(command.backend);
-  std::cerr << opened.chosen;
+  const auto resolve = [&](const Scene& scene) {
+    return resolveScene(scene, volume->worldBounds(), volume->indexToWorld());
+  };
+  const ResolvedScene resolved = resolve(opened.scene);
   CheckOptions options = command.check;
-  const bool terminal = isatty(STDERR_FILENO);
-  if (terminal)
-    options.progress = [](const std::string& step, double done) {
-      std::fprintf(stderr, "\r\033[K%3.0f %%  %s", 100 * done, step.c_str());
-    };
+  const Scene lit = makeSceneOf(Model::cone, *command.scene);
+  Scene cone = opened.scene;
+  cone.sampling = lit.sampling;
+  cone.spacingUnit = lit.spacingUnit;
+  cone.occlusion = lit.occlusion;
+  options.cone = resolve(cone);
+  const auto context = createContext(command.backend);
+  bar.clear();
+  std::cerr << opened.chosen;
+  bar.begin("check");
+  options.progress = [&](const std::string& step, double done) {
+    bar.show(done, step);
+    return !stop.requested();
+  };
   const std::vector<InvariantResult> results = checkInvariants(*context, volume->grid(), resolved, options);
-  if (terminal) std::fputs("\r\033[K", stderr);
+  bar.clear();
   if (command.json)
     printJson(results, resolved, *context, options.seed);
   else
     printTable(results);
-  return std::all_of(results.begin(), results.end(), [](const auto& result) { return result.passed; }) ? 0 : 1;
+  if (!isComplete(results)) tellStopped(results);
+  return havePassed(results) ? 0 : 1;
 }
 
 }  // namespace
@@ -119,7 +169,8 @@ Command addCheck(CLI::App& app) {
   // The check decides what is compared: emission and cone, with and without bricks and culling. So these
   // are no options.
   for (const char* option : {"--model", "--unbricked", "--no-culling"}) sub->remove_option(sub->get_option(option));
-  sub->get_option("--size")->description("of the pictures, pixels [256x256]");
+  sub->get_option("--size")->description("of the pictures, pixels [" + std::to_string(kPictureEdge) + "x" +
+                                         std::to_string(kPictureEdge) + "]");
   const std::string group = "Check";
   sub->add_option("--edges", command->check.edges, "of bricks that are compared, voxels, multiples of 8")
       ->check(CLI::Range(8, 256))

@@ -98,9 +98,10 @@ std::string hintOf(const std::exception& error) {
 
 }  // namespace
 
-std::shared_ptr<const Volume> openVolumeOf(const VolumeReference& reference) {
+std::shared_ptr<const Volume> openVolumeOf(const VolumeReference& reference,
+                                           const std::function<void(double)>& progress) {
   try {
-    return std::make_shared<const Volume>(reference);
+    return std::make_shared<const Volume>(reference, progress);
   } catch (const InvalidArgument& error) {
     try {
       std::rethrow_if_nested(error);
@@ -111,10 +112,10 @@ std::shared_ptr<const Volume> openVolumeOf(const VolumeReference& reference) {
   }
 }
 
-OpenedScene openScene(const SceneOptions& options, Scene scene) {
+OpenedScene openScene(const SceneOptions& options, Scene scene, const std::function<void(double)>& progress) {
   const bool fromScene = options.input.extension() == ".json";
   OpenedScene opened{std::move(scene), nullptr};
-  opened.volume = openVolumeOf(opened.scene.volume);
+  opened.volume = openVolumeOf(opened.scene.volume, progress);
   Choices choices;
   choices.reasons = opened.volume->notes();
   if (opened.scene.volume.grid != opened.volume->source().grid)

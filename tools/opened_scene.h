@@ -1,6 +1,7 @@
 // A scene from the command line together with its volume, and what is chosen where neither says anything.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <memory>
 
 #include "scene_options.h"
@@ -18,10 +19,12 @@ struct OpenedScene {
 };
 
 /// Loads the volume of a scene that makeScene() made and completes the scene.
+/// @param progress  as Volume has it
 /// @throw UsageError, IoError, InvalidArgument
-OpenedScene openScene(const SceneOptions& options, Scene scene);
+OpenedScene openScene(const SceneOptions& options, Scene scene, const std::function<void(double)>& progress = {});
 
 /// Loads a volume; messages name options. @throw UsageError, IoError, InvalidArgument
-std::shared_ptr<const Volume> openVolumeOf(const VolumeReference& reference);
+std::shared_ptr<const Volume> openVolumeOf(const VolumeReference& reference,
+                                           const std::function<void(double)>& progress = {});
 
 }  // namespace umbrick::tools

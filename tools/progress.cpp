@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "progress.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 namespace umbrick::tools {
@@ -19,14 +20,11 @@ void requestStop(int number) {
   std::signal(number, SIG_DFL);
 }
 
-std::string minutes(double seconds) {
-  const auto whole = static_cast<long>(std::lround(seconds));
-  char text[32];
-  if (whole >= 3600)
-    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
-  else
-    std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);
-  return text;
+// A line that is longer than this would not be rewritten but repeated.
+std::size_t terminalWidth() {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
 }
 
 }  // namespace
@@ -44,7 +42,8 @@ StopRequest::~StopRequest() {
 
 bool StopRequest::requested() const { return stopRequested != 0; }
 
-ProgressBar::ProgressBar(std::string label) : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar(std::string label)
+    : label_(std::move(label)), pace_(progressStyle(std::getenv("UMBRICK_PROGRESS"), isatty(STDERR_FILENO) == 1)) {}
 
 ProgressBar::~ProgressBar() { clear(); }
 
@@ -56,25 +55,30 @@ void ProgressBar::clear() {
 void ProgressBar::begin(std::string label, double bytes) {
   label_ = std::move(label);
   bytes_ = bytes;
-  start_ = Stopwatch();
-  shownMs_ = -1e9;
+  part_ = Stopwatch();
+  pace_.begin();
 }
 
-void ProgressBar::show(double share) {
-  const double elapsed = start_.elapsedMs();
-  if (!terminal_ || elapsed - shownMs_ < 200) return;
-  shownMs_ = elapsed;
-  drawn_ = true;
-  constexpr int width = 30;
-  const int filled = static_cast<int>(share * width);
-  const std::string bar =
-      std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(width - filled), '.');
-  std::string rate;
-  if (bytes_ > 0 && elapsed > 0) rate = std::to_string(std::lround(share * bytes_ / elapsed / 1000)) + " MB/s  ";
-  const std::string left = share > 0 ? minutes(elapsed / 1000 * (1 - share) / share) + " left" : "";
-  std::fprintf(stderr, "\r\033[K%s [%s] %3.0f %%  %s%s", label_.c_str(), bar.c_str(), 100 * share, rate.c_str(),
-               left.c_str());
+void ProgressBar::show(double share) { show(share, {}); }
+
+void ProgressBar::show(double share, const std::string& step) {
+  if (!pace_.isDue(job_.elapsedMs(), share)) return;
+  std::string text = progressText(pace_.style(), label_, share, part_.elapsedMs(), bytes_);
+  if (!step.empty()) text += "; " + step;
+  if (pace_.style() == ProgressStyle::rewritten) {
+    std::fprintf(stderr, "\r\033[K%s", text.substr(0, terminalWidth() - 1).c_str());
+    drawn_ = true;
+  } else {
+    std::fprintf(stderr, "%s\n", text.c_str());
+  }
   std::fflush(stderr);
+}
+
+std::function<void(double)> showShare(ProgressBar& bar, const StopRequest& stop, std::string interrupted) {
+  return [&bar, &stop, interrupted = std::move(interrupted)](double share) {
+    if (stop.requested()) throw Interrupted(interrupted);
+    bar.show(share);
+  };
 }
 
 }  // namespace umbrick::tools

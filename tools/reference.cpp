@@ -75,7 +75,9 @@ int runReference(ReferenceCommand& command) {
   PictureOutput& output = *command.output;
   checkOutputs(output);
   const StopRequest stop;
-  const OpenedScene opened = openScene(*command.scene, makeScene(*command.scene, {.model = Model::cone}));
+  ProgressBar bar("loading " + command.scene->input.filename().string());
+  const OpenedScene opened = openScene(*command.scene, makeScene(*command.scene, {.model = Model::cone}),
+                                       showShare(bar, stop, "interrupted; nothing was written"));
   const Scene& scene = opened.scene;
   const Volume& volume = *opened.volume;
   const ResolvedScene resolved = volume.resolve(scene);
@@ -87,16 +89,15 @@ int runReference(ReferenceCommand& command) {
   if (command.samples > 0) options.samples = command.samples;
   // Of paths that nobody has counted there are enough for each sample of a pixel to have two.
   if (command.samples == 0) options.samples = std::max(options.samples, 2 * resolved.sampling.pixelSamples);
+  bar.clear();
   std::cerr << opened.chosen;
-  ReferencePicture picture;
-  {
-    ProgressBar bar("reference");
-    options.progress = [&](double share) {
-      bar.show(share);
-      return !stop.requested();
-    };
-    picture = renderReference(volume.grid(), resolved, options);
-  }
+  bar.begin("reference");
+  options.progress = [&](double share) {
+    bar.show(share);
+    return !stop.requested();
+  };
+  const ReferencePicture picture = renderReference(volume.grid(), resolved, options);
+  bar.clear();
   warnOfNonFinite(scene, picture.stats.nonFiniteVoxels);
   std::vector<ImageLayer> layers{{"", picture.colour}};
   if (options.integrator == Integrator::monteCarlo) layers.push_back({"standardError", picture.standardError});

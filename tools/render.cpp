@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -126,6 +127,22 @@ void writePicture(const PictureOutput& output, const Picture& picture, const Res
   writeOutputs(output, layers, metadata);
 }
 
+// What is seen of a picture while it is made, and what is left of it when the user stops it.
+struct RenderWatch {
+  StopRequest stop;
+  ProgressBar bar{"rendering"};
+  std::optional<ProgressivePicture> kept;  // the samples that are done
+};
+
+// Returns the share of a progressive picture that is done, by the number of its samples or by their time, whichever
+// ends it first. An error that is asked for may end it before. @param share  of the present sample
+double shareOfPasses(const RenderCommand& command, const std::optional<ProgressivePicture>& done, double share) {
+  double whole = 0;
+  if (command.passes) whole = ((done ? done->passes : 0) + share) / *command.passes;
+  if (command.maxSeconds && done) whole = std::max(whole, done->seconds / *command.maxSeconds);
+  return std::min(whole, 1.0);
+}
+
 std::string describe(const ProgressivePicture& picture) {
   const auto rounded = [](double number) {
     char text[32];
@@ -146,7 +163,7 @@ ResolvedScene recordedScene(const ProgressivePicture& picture, const Progressive
 // Renders samples until there are enough, or time is over, or the picture is accurate enough. The file
 // gets better meanwhile.
 ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& volume, const ResolvedScene& scene,
-                                const RenderOptions& options, std::vector<double>& framesMs) {
+                                RenderOptions options, RenderWatch& watch, std::vector<double>& framesMs) {
   constexpr double kWriteEveryMs = 1000;
   ProgressiveOptions progressive;
   progressive.passes = command.passes.value_or(1 << 20);
@@ -159,27 +176,42 @@ ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& vo
   if (given && progressive.pixelArea)
     std::cerr << "--samples " << scene.sampling.pixelSamples
               << " has no effect: each pass of a progressive picture is one sample of the area of a pixel\n";
-  const StopRequest stop;
   Stopwatch pass, written;
   int told = 0;
   bool first = true;
-  ProgressivePicture last =
-      renderProgressive(volume, scene, progressive, options, [&](const ProgressivePicture& picture) {
-        framesMs.push_back(pass.elapsedMs());
-        if (first || written.elapsedMs() > kWriteEveryMs) {
-          writePicture(*command.output, picture.picture, recordedScene(picture, progressive), volume.context(),
-                       printPasses(picture, command.seed).dump());
-          written = Stopwatch();
-          first = false;
-        }
-        if (picture.passes < told) told = 0;
-        if (picture.passes >= 2 * told) {
-          std::cerr << describe(picture) << '\n';
-          told = picture.passes;
-        }
-        pass = Stopwatch();
-        return !stop.requested();
-      });
+  options.progress = [&](double share) {
+    watch.bar.show(shareOfPasses(command, watch.kept, share));
+    if (watch.stop.requested()) throw Interrupted("interrupted before the first pass was done; nothing was written");
+  };
+  const auto renderAll = [&] {
+    return renderProgressive(volume, scene, progressive, options, [&](const ProgressivePicture& picture) {
+      framesMs.push_back(pass.elapsedMs());
+      watch.kept = picture;
+      watch.bar.clear();
+      if (first || written.elapsedMs() > kWriteEveryMs) {
+        writePicture(*command.output, picture.picture, recordedScene(picture, progressive), volume.context(),
+                     printPasses(picture, command.seed).dump());
+        written = Stopwatch();
+        first = false;
+      }
+      if (picture.passes < told) told = 0;
+      if (picture.passes >= 2 * told) {
+        std::cerr << describe(picture) << '\n';
+        told = picture.passes;
+      }
+      pass = Stopwatch();
+      return !watch.stop.requested();
+    });
+  };
+  ProgressivePicture last = [&] {
+    try {
+      return renderAll();
+    } catch (const Interrupted&) {
+      if (!watch.kept) throw;
+      return *watch.kept;
+    }
+  }();
+  watch.bar.clear();
   if (last.passes != told) std::cerr << describe(last) << '\n';
   // Errors follow an order only where there are enough slabs to refine.
   constexpr std::int64_t kFewSlabs = 12;
@@ -201,7 +233,10 @@ int render(const RenderCommand& command) {
   if (progressive && !(traitsOf(scene.model).occlusion && traitsOf(scene.method).directions))
     throw UsageError(
         "--progressive, --max-seconds and --target-error need the model cone or lights and the method ordinates");
-  const OpenedScene opened = openScene(*command.scene, scene);
+  RenderWatch watch;
+  const std::string nothing = "interrupted; nothing was written";
+  watch.bar.begin("loading " + scene.volume.file.filename().string());
+  const OpenedScene opened = openScene(*command.scene, scene, showShare(watch.bar, watch.stop, nothing));
   LoadedScene loaded = loadScene(opened, progressive);
   const auto context = createContext(command.backend);
   ResidentVolume volume(*context, *loaded.bricks, atlasOptions(loaded.scene, *loaded.bricks));
@@ -209,21 +244,32 @@ int render(const RenderCommand& command) {
   options.visibilityAndDepth = output.layers;
   options.countFragments = !output.stats.empty();
   options.timePasses = command.timePasses;
+  watch.bar.clear();
   std::cerr << opened.chosen;
+  watch.bar.begin("rendering");
   std::vector<double> framesMs;
   Picture picture;
   std::optional<ProgressivePicture> passes;
   if (progressive) {
-    passes = renderPasses(command, volume, loaded.scene, options, framesMs);
+    passes = renderPasses(command, volume, loaded.scene, options, watch, framesMs);
     picture = passes->picture;
     loaded.scene = passes->scene;
   } else {
+    const auto show = showShare(watch.bar, watch.stop, nothing);
+    // A frame is drawn once for each sample of the area of a pixel, each of which begins at 0.
+    double drawn = 0, last = 0;
+    options.progress = [&](double share) {
+      if (share < last) ++drawn;
+      last = share;
+      show((drawn + share) / (command.frames * loaded.scene.sampling.pixelSamples));
+    };
     const std::unique_ptr<Renderer> renderer = makeRenderer(volume, loaded.scene, options);
     for (int i = 0; i < command.frames; ++i) {
       const Stopwatch frame;
       picture = renderer->render();
       framesMs.push_back(frame.elapsedMs());
     }
+    watch.bar.clear();
   }
   // A format that is asked for by name may round voxels; the automatic choice does not.
   if (loaded.scene.bricks.format != "auto" && picture.stats.formatError > 0)
@@ -240,7 +286,10 @@ int render(const RenderCommand& command) {
   }
   const auto empty = describeEmptyPicture(picture.colour, loaded.scene, *loaded.volume);
   if (empty) std::cerr << *empty << '\n';
-  return (command.targetError && !passes->reachedTarget) || (empty && command.strict) ? 1 : 0;
+  // A picture that is whole by now is written, whenever the user stops; the samples of one that is not are kept.
+  const bool stopped = passes && watch.stop.requested();
+  if (stopped) std::cerr << "umbrick: interrupted after " << passes->passes << " passes; the picture has these\n";
+  return stopped || (command.targetError && !passes->reachedTarget) || (empty && command.strict) ? 1 : 0;
 }
 
 }  // namespace

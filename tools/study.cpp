@@ -91,26 +91,30 @@ int study(const StudyCommand& command) {
   const StudySettings settings = makeSettings(command);
   const Scene unopened = makeScene(*command.scene);
   planStudy(settings, unopened.occlusion.aperture);  // refuses wrong settings before a volume is loaded
-  const OpenedScene opened = openScene(*command.scene, unopened);
+  const StopRequest stop;
+  ProgressBar bar("loading " + command.scene->input.filename().string());
+  const OpenedScene opened =
+      openScene(*command.scene, unopened, showShare(bar, stop, "interrupted before anything was measured"));
+  bar.clear();
   const Scene& scene = opened.scene;
   const Volume& volume = *opened.volume;
   const ResolvedScene resolved = volume.resolve(scene);
   const auto context = createContext(command.backend);
   std::cerr << opened.chosen;
   const PageFolder folder(command.folder);
-  const StopRequest stop;
   StudyOptions options;
   options.earlier = command.earlier;
   options.plotter = gnuplotVersion();  // fails before anything is measured that could not be plotted later
   options.picture = [&](const StudyPicture& p) { writePictures(folder, p, resolved.ambient); };
   const StudyOutcome outcome = [&] {
-    ProgressBar bar("study");
+    bar.begin("study");
     options.progress = [&](const StudyProgress& p) {
-      bar.show(p.share);
+      bar.show(p.share, p.step);
       return !stop.requested();
     };
     StudyOutcome measured = runStudy(*context, volume.grid(), resolved, settings, command.folder, options);
     writePage(measured.study, folder);
+    bar.clear();
     return measured;
   }();
   warnOfNonFinite(scene, outcome.nonFiniteVoxels);

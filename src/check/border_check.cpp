@@ -60,11 +60,12 @@ ScalarGrid piece(const ScalarGrid& grid, const CoordBBox& box, bool roomAround) 
 
 void checkBorder(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
                  const std::function<std::unique_ptr<Bricks>(const ScalarGrid&, const BrickOptions&)>& cut,
-                 InvariantResult& result) {
+                 const CheckSteps& steps, InvariantResult& result) {
   const float background = std::isfinite(grid.grid->background()) ? grid.grid->background() : 0;
   const Leaf* leaf = visibleLeaf(*grid.grid, scene.transfer);
   if (!leaf || !scene.transfer.isTransparent({background, background}, {0, 0})) return;
   for (int residue = 0; residue < 8; ++residue) {
+    steps.within(residue / 8.0);
     const Coord first = leaf->origin().offsetBy(-8 - residue), last = leaf->origin().offsetBy(7 + residue);
     const CoordBBox box(first, last);
     const ScalarGrid alone = piece(grid, box, false);
@@ -75,6 +76,8 @@ void checkBorder(const GlContext& context, const ScalarGrid& grid, const Resolve
     turned.model = Model::emission;
     applyQuality(std::array{Quality::draft, Quality::normal, Quality::high}[static_cast<std::size_t>(residue % 3)],
                  turned);
+    // A pixel is found to be saturated at some slice or other, which is not what is asked here.
+    turned.sampling.saturation = 0;
     turned.bricks.interior = 0;
     turned.sampling.saturation = 0;  // where a full pixel ends depends on the bricks, and is worth up to 1e-3
     turned.camera = Camera{};

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "check/steps.h"
 #include "umbrick/brick/brick_grid.h"
 #include "umbrick/check/invariants.h"
 
@@ -16,6 +17,6 @@ namespace umbrick {
 /// @param cut  makes bricks
 void checkBorder(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
                  const std::function<std::unique_ptr<Bricks>(const ScalarGrid&, const BrickOptions&)>& cut,
-                 InvariantResult& result);
+                 const CheckSteps& steps, InvariantResult& result);
 
 }  // namespace umbrick

@@ -2,9 +2,11 @@
 #include "check/brick_check.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <numeric>
@@ -76,63 +78,76 @@ std::size_t countDifferences(const BrickLayout& layout, const Voxels& brick, con
   return different;
 }
 
+// Calls visit(i) for all i below `count` on all cores, and says now and then how far the step is.
+// @param from, to  shares of the step that are done before and after
+template <class Visit>
+void visitAll(std::size_t count, const CheckSteps& steps, double from, double to, const Visit& visit) {
+  const std::size_t batch = std::max<std::size_t>(16, count / 64);
+  for (std::size_t first = 0; first < count; first += batch) {
+    steps.within(from + (to - from) * static_cast<double>(first) / static_cast<double>(count));
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, std::min(count, first + batch), 1),
+                      [&](const auto& range) {
+                        for (std::size_t i = range.begin(); i != range.end(); ++i) visit(i);
+                      });
+  }
+}
+
+// Adds what was counted in each of the chosen bricks.
+void addCounts(const Bricks& bricks, const std::vector<std::size_t>& chosen, const std::vector<std::size_t>& counts,
+               std::size_t samples, InvariantResult& result) {
+  const auto worst = std::max_element(counts.begin(), counts.end());
+  std::string detail = std::to_string(chosen.size()) + " of " + std::to_string(bricks.bricks.size()) + " bricks of " +
+                       std::to_string(bricks.layout.interior.x);
+  if (worst != counts.end() && *worst > 0)
+    detail +=
+        ", brick at " + printOrigin(bricks.bricks[chosen[static_cast<std::size_t>(worst - counts.begin())]].origin);
+  addMeasurement(result, static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::size_t{0})), 0, samples,
+                 detail);
+}
+
 }  // namespace
 
-void checkAprons(const Bricks& bricks, std::size_t most, unsigned seed, InvariantResult& result) {
+void checkAprons(const Bricks& bricks, std::size_t most, unsigned seed, const CheckSteps& steps,
+                 InvariantResult& result) {
   const BrickLayout& layout = bricks.layout;
   const std::size_t affordable = std::max<std::size_t>(8, kVoxelsRead / (27 * layout.voxels()));
   const std::vector<std::size_t> chosen = chooseBricks(bricks.bricks.size(), std::min(most, affordable), seed);
   std::vector<std::size_t> different(chosen.size(), 0);
   std::atomic<std::size_t> compared{0};
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chosen.size(), 1), [&](const auto& range) {
-    Voxels brick, neighbour;
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const glm::ivec3 origin = bricks.bricks[chosen[i]].origin;
-      brick.read(bricks, origin);
-      std::size_t voxels = 0;
-      for (int direction = 0; direction < 27; ++direction) {
-        const glm::ivec3 towards = glm::ivec3(direction % 3, direction / 3 % 3, direction / 9) - 1;
-        if (towards == glm::ivec3(0)) continue;
-        neighbour.read(bricks, origin + towards * layout.interior);
-        different[i] += countDifferences(layout, brick, neighbour, towards, voxels);
-      }
-      compared += voxels;
+  tbb::enumerable_thread_specific<std::array<Voxels, 2>> scratches;
+  visitAll(chosen.size(), steps, 0, 0.9, [&](std::size_t i) {
+    auto& [brick, neighbour] = scratches.local();
+    const glm::ivec3 origin = bricks.bricks[chosen[i]].origin;
+    brick.read(bricks, origin);
+    std::size_t voxels = 0;
+    for (int direction = 0; direction < 27; ++direction) {
+      const glm::ivec3 towards = glm::ivec3(direction % 3, direction / 3 % 3, direction / 9) - 1;
+      if (towards == glm::ivec3(0)) continue;
+      neighbour.read(bricks, origin + towards * layout.interior);
+      different[i] += countDifferences(layout, brick, neighbour, towards, voxels);
     }
+    compared += voxels;
   });
-  const auto worst = std::max_element(different.begin(), different.end());
-  std::string detail = std::to_string(chosen.size()) + " of " + std::to_string(bricks.bricks.size()) + " bricks of " +
-                       std::to_string(layout.interior.x);
-  if (worst != different.end() && *worst > 0)
-    detail +=
-        ", brick at " + printOrigin(bricks.bricks[chosen[static_cast<std::size_t>(worst - different.begin())]].origin);
-  addMeasurement(result, static_cast<double>(std::accumulate(different.begin(), different.end(), std::size_t{0})), 0,
-                 compared, detail);
+  addCounts(bricks, chosen, different, compared, result);
 }
 
-void checkRanges(const Bricks& bricks, std::size_t most, unsigned seed, InvariantResult& result) {
+void checkRanges(const Bricks& bricks, std::size_t most, unsigned seed, const CheckSteps& steps,
+                 InvariantResult& result) {
   const std::size_t affordable = std::max<std::size_t>(8, kVoxelsRead / bricks.layout.voxels());
   const std::vector<std::size_t> chosen = chooseBricks(bricks.bricks.size(), std::min(most, affordable), seed);
   std::vector<std::size_t> outside(chosen.size(), 0);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chosen.size(), 1), [&](const auto& range) {
-    Voxels voxels;
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const Brick& brick = bricks.bricks[chosen[i]];
-      voxels.read(bricks, brick.origin);
-      const auto count = [](const std::vector<float>& values, const Range& within) {
-        return static_cast<std::size_t>(
-            std::count_if(values.begin(), values.end(), [&](float v) { return !within.contains(v); }));
-      };
-      outside[i] = count(voxels.values, brick.value) + count(voxels.gradients, brick.gradient);
-    }
+  tbb::enumerable_thread_specific<Voxels> scratches;
+  visitAll(chosen.size(), steps, 0.9, 1, [&](std::size_t i) {
+    Voxels& voxels = scratches.local();
+    const Brick& brick = bricks.bricks[chosen[i]];
+    voxels.read(bricks, brick.origin);
+    const auto count = [](const std::vector<float>& values, const Range& within) {
+      return static_cast<std::size_t>(
+          std::count_if(values.begin(), values.end(), [&](float v) { return !within.contains(v); }));
+    };
+    outside[i] = count(voxels.values, brick.value) + count(voxels.gradients, brick.gradient);
   });
-  const auto worst = std::max_element(outside.begin(), outside.end());
-  std::string detail = std::to_string(chosen.size()) + " of " + std::to_string(bricks.bricks.size()) + " bricks of " +
-                       std::to_string(bricks.layout.interior.x);
-  if (worst != outside.end() && *worst > 0)
-    detail +=
-        ", brick at " + printOrigin(bricks.bricks[chosen[static_cast<std::size_t>(worst - outside.begin())]].origin);
-  addMeasurement(result, static_cast<double>(std::accumulate(outside.begin(), outside.end(), std::size_t{0})), 0,
-                 chosen.size() * bricks.layout.voxels(), detail);
+  addCounts(bricks, chosen, outside, chosen.size() * bricks.layout.voxels(), result);
 }
 
 }  // namespace umbrick

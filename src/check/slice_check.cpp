@@ -75,8 +75,7 @@ struct Counts {
 class SliceExpectation {
  public:
   SliceExpectation(const ScalarGrid& grid, const Bricks& bricks, const DrawnCells& cells, const IndexBox& box,
-                   const Camera& camera, double depth, double spacing, const SliceCheckOptions& options,
-                   const RenderStats& stats)
+                   const Camera& camera, double depth, double spacing, double samplerPrecision, const BrickAtlas& atlas)
       : grid_(grid),
         bricks_(bricks),
         cells_(cells),
@@ -88,8 +87,9 @@ class SliceExpectation {
         depth_(depth),
         spacing_(spacing),
         scale_(camera.projection == Projection::perspective ? depth : 1.0),
-        options_(options),
-        stats_(stats),
+        samplerPrecision_(samplerPrecision),
+        textureEdge_(std::max({atlas.textureSize().x, atlas.textureSize().y, atlas.textureSize().z})),
+        formatError_(atlas.formatError()),
         centre_(view_.eyeIndex + depth * view_.toIndex[2]) {}
 
   // Compares rows [first, last) of a probed image. @param stride  of the pixels whose values are compared
@@ -158,11 +158,11 @@ class SliceExpectation {
     const glm::dvec3 at(index.x(), index.y(), index.z());
     double sideways = 0;
     for (int axis = 0; axis < 3; ++axis) sideways = std::max(sideways, std::abs(at[axis] - centre_[axis]));
-    const double limit = coordinateError(stats_.textureEdge, sideways) + options_.samplerPrecision;
+    const double limit = coordinateError(textureEdge_, sideways) + samplerPrecision_;
     counts.limit = std::max(counts.limit, limit);
     // Interpolation rounds in three steps, each of numbers as large as the largest voxel.
     const double largest = std::max(std::abs(bricks_.value.min), std::abs(bricks_.value.max));
-    const double off = std::abs(value - expected) - stats_.formatError - 0x1p-21 * largest;
+    const double off = std::abs(value - expected) - formatError_ - 0x1p-21 * largest;
     if (!(off > 0)) return;
     const double slope = steepest(accessor, at);
     const double displacement = slope > 0 ? off / slope : std::numeric_limits<double>::infinity();
@@ -192,9 +192,10 @@ class SliceExpectation {
   ScreenPlane screen_;
   IndexView view_;
   double depth_, spacing_, scale_;
-  const SliceCheckOptions& options_;
-  const RenderStats& stats_;
-  glm::dvec3 centre_;  // centre of the slice, index coordinates
+  const double samplerPrecision_;  // voxels
+  const int textureEdge_;
+  const double formatError_;  // of the texels that are resident, grid units
+  glm::dvec3 centre_;         // centre of the slice, index coordinates
 };
 
 // Returns a medium that is nowhere seen, or everywhere: then the background's cells are drawn, too.
@@ -209,11 +210,11 @@ std::string printPixel(const glm::ivec2& pixel) {
 
 }  // namespace
 
-void checkSlices(ResidentVolume& resident, const ScalarGrid& grid, const ResolvedScene& scene, const std::string& view,
-                 const SliceCheckOptions& options, const SliceResults& results) {
-  const Bricks& bricks = resident.volume();
+void SliceChecker::check(const ResolvedScene& scene, const std::string& view, bool complete,
+                         const SliceResults& results) {
+  const Bricks& bricks = resident_.volume();
   ResolvedScene drawn = scene;
-  drawn.transfer = constantMedium(options.complete ? 1e-9 : 0, scene.transfer.is2d());
+  drawn.transfer = constantMedium(complete ? 1e-9 : 0, scene.transfer.is2d());
   drawn.model = Model::emission;
   drawn.bricks.culling = false;
   drawn.sampling.saturation = 0;
@@ -221,19 +222,23 @@ void checkSlices(ResidentVolume& resident, const ScalarGrid& grid, const Resolve
   drawn.clipPlanes.clear();
   drawn.clipBox.reset();
   drawn.camera.nearDistance = 0;
-  const DrawnCells cells(bricks, options.complete);
-  SliceRenderer renderer(resident, drawn);
-  const RenderStats stats = renderer.render().stats;
-  const std::vector<double> depths = renderer.sliceDepths();
+  const DrawnCells cells(bricks, complete);
+  if (renderer_)
+    renderer_->setScene(drawn);
+  else
+    renderer_.emplace(resident_, drawn);
+  renderer_->cut();
+  const std::vector<double> depths = renderer_->sliceDepths();
   const auto count = static_cast<std::int64_t>(depths.size());
-  const std::int64_t probes = std::min<std::int64_t>(options.slices, count);
+  const std::int64_t probes = std::min<std::int64_t>(slices_, count);
   const int stride = std::max(1, drawn.camera.width * drawn.camera.height / 8192) | 1;
   for (std::int64_t i = 0; i < probes; ++i) {
     // The first slice is probed, the last one, and others between them.
     const std::int64_t slice = probes > 1 ? i * (count - 1) / (probes - 1) : 0;
-    const Image probe = renderer.probe(slice);
-    const SliceExpectation expected(grid, bricks, cells, mediumBox(drawn.transfer, bricks.domain), drawn.camera,
-                                    depths[static_cast<std::size_t>(slice)], drawn.sampling.spacing, options, stats);
+    const Image probe = renderer_->probe(slice);
+    const SliceExpectation expected(grid_, bricks, cells, mediumBox(drawn.transfer, bricks.domain), drawn.camera,
+                                    depths[static_cast<std::size_t>(slice)], drawn.sampling.spacing, samplerPrecision_,
+                                    resident_.atlas());
     const Counts counts = tbb::parallel_reduce(
         tbb::blocked_range<int>(0, probe.height, 8), Counts{},
         [&](const auto& rows, Counts sum) {

@@ -85,6 +85,10 @@ std::vector<InvariantResult> checkFaulty(const GlContext& context, const BricksF
   CheckOptions options;
   options.edges = {8};
   options.views = {checkViews(grid, scene)[1]};
+  // The cone has the slabs that umbrick check gives it.
+  options.cone = scene;
+  options.cone->sampling.spacing = 2.5;
+  options.cone->sampling.segments = 4;
   options.cut = [&](const ScalarGrid& volume, const BrickOptions& how) {
     auto bricks = std::make_unique<FaultyBricks>(brickGrid(volume, how));
     const BricksFault& ofThese = volume.grid == grid.grid ? fault : pieceFault;
@@ -365,4 +369,56 @@ TEST_CASE("What cannot be checked is reported with the reason", "[check]") {
   CheckOptions options;
   options.edges = {12};
   CHECK_THROWS_WITH(checkInvariants(*context, grid, scene, options), Catch::Contains("multiple of 8"));
+}
+
+// Thick slabs need wide aprons, and those of a view whose slices lie on faces stay there.
+TEST_CASE("All invariants hold where the cone has thicker slabs than emission", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = makeDense({30, 26, 34}, {1, -40, -3});
+  const ResolvedScene scene = sceneFor(grid, softMedium(), 48, 40);
+  CheckOptions options;
+  options.edges = {8, 16};
+  options.probedSlices = 4;
+  options.cone = scene;
+  options.cone->sampling.spacing = 2.5;
+  options.cone->sampling.segments = 4;
+  options.cone->occlusion.ordinates.directions = 6;
+  checkAllHold(*context, grid, scene, options);
+}
+
+TEST_CASE("A check that is stopped tells which invariants it has measured", "[check]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = makeDense({20, 20, 20}, {3, -7, 1});
+  const ResolvedScene scene = sceneFor(grid, softMedium(), 32, 32);
+  CheckOptions options;
+  options.edges = {8};
+  options.probedSlices = 2;
+  options.views = {checkViews(grid, scene)[1]};
+  const auto stoppedAt = [&](const std::string& text) {
+    double last = 0;
+    options.progress = [&](const std::string& step, double done) {
+      CHECK(done >= last);
+      CHECK(done <= 1);
+      last = done;
+      return step.find(text) == std::string::npos;
+    };
+    return checkInvariants(*context, grid, scene, options);
+  };
+
+  for (const InvariantResult& result : stoppedAt("voxels")) {
+    CHECK_FALSE(result.complete);
+    CHECK_FALSE(result.passed);
+    CHECK(result.samples == 0);
+  }
+  const auto half = stoppedAt("cone");
+  INFO(print(half));
+  for (const char* name : {"aprons equal the neighbours' voxels", "every pixel of a slice is shaded",
+                           "the border of pieces of the volume is whole", "bricked equals unbricked, emission"}) {
+    CHECK(find(half, name).complete);
+    CHECK(find(half, name).passed);
+  }
+  CHECK_FALSE(find(half, "bricked equals unbricked, cone").complete);
+  for (const InvariantResult& result : stoppedAt("never said")) CHECK(result.complete);
 }

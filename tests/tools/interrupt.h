@@ -36,7 +36,7 @@ inline ProgramResult interruptProgram(
     const std::function<bool()>& ready = [] { return true; }, const std::string& shell = "sh .run") {
   const auto in = [&](const char* name) { return folder.path() / name; };
   writeBytes(in(".run"), "echo $$ >.pid\nexec '" UMBRICK_PROGRAM "' " + arguments + "\n");
-  const std::string command = "cd '" + folder.path().string() + "' && " + shell + " >.out 2>.err";
+  const std::string command = "cd '" + folder.path().string() + "' && UMBRICK_PROGRESS=none " + shell + " >.out 2>.err";
   std::future<int> run = std::async(std::launch::async, [&] { return std::system(command.c_str()); });
   const auto waitUntil = [&](const std::function<bool()>& condition) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);

@@ -32,10 +32,14 @@ inline ProgramResult takeResult(const TemporaryFolder& folder, int waited) {
   return result;
 }
 
-/// Runs the program. @param arguments  as typed into a shell, in `folder`
-inline ProgramResult runProgram(const TemporaryFolder& folder, const std::string& arguments) {
+/// Runs the program.
+/// @param arguments    as typed into a shell, in `folder`
+/// @param environment  variables; a job says nothing of its progress, however long it takes on a busy machine
+inline ProgramResult runProgram(const TemporaryFolder& folder, const std::string& arguments,
+                                const std::string& environment = "UMBRICK_PROGRESS=none") {
   const std::string at = folder.path().string();
-  const int raw = std::system(("cd '" + at + "' && '" UMBRICK_PROGRAM "' " + arguments + " >.out 2>.err").c_str());
+  const std::string command = "cd '" + at + "' && " + environment + " '" UMBRICK_PROGRAM "' " + arguments;
+  const int raw = std::system((command + " >.out 2>.err").c_str());
   return takeResult(folder, raw);
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,14 +32,17 @@ struct InvariantResult {
   std::string limitFrom;  // where the limit comes from
   std::size_t samples = 0, excluded = 0;
   bool passed = false;
-  std::string detail;  // where it was worst, what was left out and why
+  bool complete = true;  // false: the check was stopped, and `passed` tells of what was measured until then
+  std::string detail;    // where it was worst, what was left out and why
 };
 
 /// A camera to check with, in world units.
 struct CheckView {
   std::string name;
   Camera camera;
-  double spacing = 0;  // distance of slices; 0: the scene's
+  /// 0, or slices are an odd multiple of this apart, the one nearest to the scene's spacing: a view whose slices lie on
+  /// faces keeps them there.
+  double spacing = 0;
 };
 
 /// Returns views of a volume: face-on, diagonal and from inside under perspective; face-on and diagonal in parallel
@@ -47,13 +51,17 @@ struct CheckView {
 std::vector<CheckView> checkViews(const ScalarGrid& grid, const ResolvedScene& resolved);
 
 struct CheckOptions {
+  /// What the pictures of the cone are made from, where that has another sampling than the scene has for emission; its
+  /// volume, medium, camera, clipping and bricks are the scene's.
+  std::optional<ResolvedScene> cone;
   std::vector<int> edges{8, 16, 32, 64};  // interiors to compare; those narrower than the apron are left out
   std::vector<CheckView> views;           // empty: checkViews() and the scene's own camera
   int probedSlices = 24;                  // of each view, spread over the sweep
   std::size_t comparedBricks = 4000;      // most bricks whose aprons and ranges are read
   unsigned seed = 1;                      // for what is chosen at random: bricks
-  /// Called before each step. @param done  share of the steps so far, in [0, 1]
-  std::function<void(const std::string& step, double done)> progress;
+  /// Called before each step and now and then within it. The check stops when it returns false.
+  /// @param done  share of the work so far, in [0, 1]
+  std::function<bool(const std::string& step, double done)> progress;
   /// Cuts the bricks that are checked; empty: brickGrid.
   std::function<std::unique_ptr<Bricks>(const ScalarGrid&, const BrickOptions&)> cut;
 };
@@ -61,6 +69,7 @@ struct CheckOptions {
 /// Measures all invariants. The scene gives medium, sampling, occlusion, clipping, brick edge, texel format and budget.
 /// Emission and cone are rendered, the cone by the scene's method, without background radiance.
 /// @param resolved  see resolveScene
+/// @return all of them, in the order of their numbers, also when the check was stopped
 /// @throw InvalidArgument  as SliceRenderer, checkViews and brickGrid
 /// @throw GlError, IoError
 /// @pre `context` is current

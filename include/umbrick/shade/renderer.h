@@ -23,8 +23,8 @@ struct RenderOptions {
   bool countFragments = true;
   bool timePasses = false;     // RenderStats::passes; waiting for each pass makes a picture slower
   bool reverseBricks = false;  // draw the bricks of a slice in the opposite order, which must change nothing
-  /// Called now and then while a picture is drawn, with the share of its slices that is done, in [0, 1]. What it throws
-  /// ends the picture, which then cannot be read; the next draw() begins anew.
+  /// Called now and then while a sample of a picture is drawn, with the share of its slices that is done, in [0, 1].
+  /// What it throws ends the picture, which then cannot be read; the next draw() begins anew.
   std::function<void(double share)> progress = {};
 };
 
