@@ -89,10 +89,7 @@ Command addConvert(CLI::App& app) {
       "convert",
       "Turn volumes of many formats, a .vdb or a .nvdb into a sparse .vdb or another format; prints what was lost.");
   addConvertOptions(*sub, command);
-  return {sub, [sub, command] {
-            if (sub->count("--grid") > 0) command->options.grid = command->gridName;
-            return asUsage([&] { return run(*command); });
-          }};
+  return {sub, [command] { return asUsage([&] { return run(*command); }); }};
 }
 
 }  // namespace umbrick::tools

@@ -83,8 +83,9 @@ void addGridOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& comman
                  "unit of the values, kept as value_unit in the metadata of the grid; once, or once for each input "
                  "[none]")
       ->allow_extra_args(false);
-  app.add_option("--grid", command->gridName,
-                 "of a .vdb or .nvdb: only this grid, \"name\" or \"name[1]\" [all scalar ones]");
+  app.add_option("--grid", command->options.grids,
+                 "of a .vdb or .nvdb: only this grid, \"name\" or \"name[1]\"; may be repeated [all scalar ones]")
+      ->allow_extra_args(false);
   app.add_option("--series", command->options.source.open.series,
                  "of a DICOM folder: the UID of a series, or its number in the list that is printed [the only one]");
 }

@@ -20,7 +20,6 @@ struct ConvertCommand {
   ConvertOptions options;  // those that the program's options set as they are
   std::string codec;       // "blosc", "zip" or "none"; empty: not given
   std::string quantise;    // "4", "8", "16" or "n"; empty: not given
-  std::string gridName;    // of a file of grids: only this, where it is given
   std::vector<std::int64_t> dims;
   std::string type, endian = "little";
   std::int64_t headerBytes = 0;

@@ -10,9 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "command.h"
 #include "opened_scene.h"
+#include "umbrick/core/error.h"
 #include "umbrick/vdb/summary.h"
 
 namespace umbrick::tools {
@@ -21,6 +23,7 @@ namespace fs = std::filesystem;
 
 struct InfoOptions {
   fs::path input;
+  std::vector<std::string> grids;  // only these; empty: all
   int bins = 16;
   bool json = false, suggestTransfer = false;
   VolumeOptions volume;
@@ -157,17 +160,41 @@ void print(const GridSummary& grid) {
   printHistogram(*grid.values);
 }
 
+// Leaves the grids that were asked for, in the order of the file. @throw InvalidArgument  there is no such grid
+void keepNamed(const InfoOptions& options, FileSummary& file) {
+  if (options.grids.empty()) return;
+  const auto isNamed = [](const GridSummary& grid, const std::string& name) {
+    return grid.label == name || grid.label == name + "[0]";
+  };
+  for (const std::string& name : options.grids)
+    if (std::none_of(file.grids.begin(), file.grids.end(), [&](const auto& grid) { return isNamed(grid, name); })) {
+      std::string names;
+      for (const GridSummary& grid : file.grids) names += (names.empty() ? "\"" : ", \"") + grid.label + '"';
+      throw InvalidArgument(options.input.string() + ": no grid \"" + name + "\": the file has " +
+                            (names.empty() ? "none" : names));
+    }
+  std::erase_if(file.grids, [&](const GridSummary& grid) {
+    return std::none_of(options.grids.begin(), options.grids.end(),
+                        [&](const std::string& name) { return isNamed(grid, name); });
+  });
+}
+
 int info(const InfoOptions& options) {
   if (options.suggestTransfer) {
+    if (options.grids.size() > 1)
+      throw UsageError("--suggest-tf: expected one --grid, found " + std::to_string(options.grids.size()));
     VolumeReference reference;
     reference.file = options.input;
-    applyVolumeOptions(options.volume, reference);
+    VolumeOptions volume = options.volume;
+    if (!options.grids.empty()) volume.grid = options.grids.front();
+    applyVolumeOptions(volume, reference);
     const SuggestedTransfer suggested = suggestTransfer(*openVolumeOf(reference));
     std::cerr << options.input.string() << ": " << suggested.reason << '\n';
     std::cout << printTransferFunction(suggested.transfer) << '\n';
     return 0;
   }
-  const FileSummary file = summariseFile(options.input, options.bins);
+  FileSummary file = summariseFile(options.input, options.bins);
+  keepNamed(options, file);
   if (options.json) {
     std::cout << toJson(options.input, file).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
     return 0;
@@ -193,6 +220,13 @@ Command addInfo(CLI::App& app) {
   command->add_flag("--suggest-tf", options->suggestTransfer,
                     "print the transfer function that --tf auto makes, of a volume of any format");
   addVolumeOptions(*command, options->volume);
+  // Several grids are described, of which a picture would show one.
+  command->remove_option(command->get_option("--grid"));
+  command
+      ->add_option("--grid", options->grids,
+                   "of a file of grids: only this one, \"name\" or \"name[1]\"; may be repeated [all]")
+      ->allow_extra_args(false)
+      ->group("Volume");
   return {command, [options] { return info(*options); }};
 }
 

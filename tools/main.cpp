@@ -7,13 +7,25 @@
 #include <vector>
 
 #include "command.h"
+#include "option_words.h"
 #include "volume_options.h"
 
 namespace {
 using namespace umbrick::tools;
 
+// What is said to who types no more than the name. The exit status is that of wrong usage, since nothing was done.
+constexpr const char* kGreeting =
+    "umbrick " UMBRICK_VERSION
+    ": converts, shows, renders, compares and checks sparse volumes\n"
+    "  umbrick render INPUT -o picture.png   makes a picture of a volume\n"
+    "  umbrick --help                        lists the commands; umbrick render --help says more of one\n";
+
 // Returns the exit status: 0 success, 1 a failed job or comparison, 2 wrong usage.
 int runProgram(int argc, char** argv) {
+  if (argc <= 1) {
+    std::cerr << kGreeting;
+    return 2;
+  }
   CLI::App app{"Sparse volumes: convert, inspect, render, compare, check.", "umbrick"};
   app.set_version_flag("--version", "umbrick " UMBRICK_VERSION);
   app.require_subcommand(1);
@@ -45,7 +57,7 @@ int main(int argc, char** argv) {
     std::cerr << "umbrick: " << error.what() << '\n';
     return 2;
   } catch (const std::exception& error) {
-    std::cerr << "umbrick: " << error.what() << '\n';
+    std::cerr << "umbrick: " << umbrick::tools::inOptionWords(error) << '\n';
     return 1;
   }
 }

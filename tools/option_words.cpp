@@ -8,12 +8,15 @@
 
 #include "umbrick/ingest/dicom_volume.h"
 #include "umbrick/ingest/open_volume.h"
+#include "umbrick/scene/scene_fields.h"
+#include "umbrick/vdb/read_grid.h"
 
 namespace umbrick::tools {
 namespace {
 
 // The fields of ConvertOptions that the library's messages name, longer ones before those that they begin with.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kWords{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kWords{{
+    {"options.grids", "--grid"},
     {"options.isosurface", "--isosurface"},
     {"options.names", "--name"},
     {"options.units", "--unit"},
@@ -47,6 +50,17 @@ std::string inOptionWords(const OptionsError& error) {
     for (std::size_t at = 0; (at = text.find(field, at)) != std::string::npos; at += option.size())
       text.replace(at, field.size(), option);
   return text + hint(error);
+}
+
+std::string inOptionWords(const std::exception& error) {
+  std::string text = error.what();
+  const std::size_t end = text.find(':');
+  const SceneField* field = end == std::string::npos ? nullptr : findSceneField(text.substr(0, end));
+  // A field that an option sets by its name needs no more words.
+  if (field && !field->option.empty() && text.substr(0, end) == field->path)
+    text.insert(end, " (--" + std::string(field->option) + ")");
+  if (dynamic_cast<const SeveralGrids*>(&error)) text += "; give --grid";
+  return text;
 }
 
 }  // namespace umbrick::tools

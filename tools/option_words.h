@@ -1,6 +1,7 @@
 // The words of the library's options, in those of the command line.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <exception>
 #include <string>
 
 #include "command.h"
@@ -11,6 +12,10 @@ namespace umbrick::tools {
 /// What the program says of options that do not fit: "x.nvdb: --codec is for .vdb" of "x.nvdb: output.codec is for
 /// .vdb".
 std::string inOptionWords(const OptionsError& error);
+
+/// What the program says of any other error: the message, with the option that sets the field which it begins with
+/// ("bricks.budgetMiB (--memory-budget): ..."), and the option that helps.
+std::string inOptionWords(const std::exception& error);
 
 /// Does a job of the library. What it says of options becomes wrong usage. @throw UsageError
 template <class Job>

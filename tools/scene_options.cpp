@@ -209,7 +209,7 @@ void applyQuality(const SceneOptions& options, bool fromScene, Scene& scene) {
     if (options.has(option)) options.fields.find(option)->second(scene);
   const bool lit = traitsOf(scene.model).directions, byDirections = traitsOf(scene.method).directions;
   if (options.quality && (!lit || (options.has("method") && !byDirections)))
-    throw UsageError("--quality: is for the models cone and lights by the method ordinates");
+    throw UsageError("--quality: is for the models cone and lights by the method ordinates; give --model cone");
   if (options.quality)
     umbrick::applyQuality(parseName(kQualities, *options.quality, "--quality"), scene);
   else if (lit && byDirections && !fromScene)

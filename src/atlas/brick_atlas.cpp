@@ -52,7 +52,7 @@ void BrickAtlas::checkLimits(int maxEdge) {
                           std::to_string(edge.z) + " voxels does not fit a 3D texture, whose edge is at most " +
                           std::to_string(maxEdge) + " texels");
   if (options_.budgetBytes < slotBytes())
-    throw InvalidArgument("bricks: one takes " + mebibytes(slotBytes()) + ", the memory budget is " +
+    throw InvalidArgument("bricks.budgetMiB: one brick takes " + mebibytes(slotBytes()) + ", the memory budget is " +
                           mebibytes(options_.budgetBytes));
 }
 
@@ -218,7 +218,7 @@ void BrickAtlas::evict(std::size_t slots) {
   for (std::size_t slot = 0; slot < slots_; ++slot)
     if (users_[slot] > 0 && requiredAt_[slot] < requests_) idle.push_back(static_cast<std::int32_t>(slot));
   if (idle.size() < slots)
-    throw InvalidArgument("bricks: one slice needs more than the " + std::to_string(slots_) + " bricks (" +
+    throw InvalidArgument("bricks.budgetMiB: one slice needs more than the " + std::to_string(slots_) + " bricks (" +
                           mebibytes(slots_ * slotBytes()) + ") that the memory budget holds");
   std::stable_sort(idle.begin(), idle.end(), [&](std::int32_t a, std::int32_t b) {
     return requiredAt_[static_cast<std::size_t>(a)] < requiredAt_[static_cast<std::size_t>(b)];

@@ -38,7 +38,14 @@ void selectGrids(GridJob& job) {
     report.grids.back().input = job.input;
     report.grids.back().label = label;
   };
-  if (job.options.grid) return select(*job.options.grid);
+  for (const std::string& grid : job.options.grids) {
+    for (const ConvertedGrid& row : report.grids)
+      if (row.label == grid)
+        throw OptionsError(job.input.string() + ": options.grids: expected each grid once, found \"" + grid +
+                           "\" twice");
+    select(grid);
+  }
+  if (!job.options.grids.empty()) return;
   std::string others;
   for (const GridListing::Row& row : job.listing.grids)
     if (row.scalar) {
@@ -61,7 +68,7 @@ void filtering(const fs::path& input, const Filter& filter) try {
 }
 
 ScalarGrid readMask(const SourceOptions& source) {
-  if (holdsGrids(source.mask)) return readScalarGrid(source.mask);
+  if (holdsGrids(source.mask)) return readMaskGrid(source.mask);
   BuildOptions asItIs;
   asItIs.name = source.mask.string();
   return {buildGrid(*openMask(source), asItIs).grid, asItIs.name};
@@ -130,6 +137,9 @@ void readGrids(GridJob& job) {
 }
 
 ConvertReport writeGridJob(GridJob& job, const fs::path& output) {
+  std::vector<std::string> labels;
+  for (const ConvertedGrid& row : job.report.grids) labels.push_back(row.label);
+  checkGridCount(output, labels);
   BuildOptions options = job.options.build;
   options.progress = beginPass(job.options.progress, ConvertStage::converting, job.input);
   std::vector<openvdb::FloatGrid::ConstPtr> grids;

@@ -24,7 +24,8 @@ bool holdGrids(const std::vector<fs::path>& inputs, const SourceOptions& source)
   for (const fs::path& input : inputs) {
     if (!holdsGrids(input)) continue;
     if (inputs.size() == 1) return true;
-    throw OptionsError(input.string() + ": expected volumes where there are several inputs, found a file of grids");
+    throw OptionsError(input.string() +
+                       ": expected volumes where there are several inputs, found a file of grids; convert it alone");
   }
   return false;
 }

@@ -8,6 +8,7 @@
 #include "convert/pass.h"
 #include "convert/replace_by_isosurface.h"
 #include "convert/write_output.h"
+#include "umbrick/convert/options_error.h"
 #include "umbrick/grid/float_grid.h"
 #include "umbrick/vdb/read_back.h"
 
@@ -49,6 +50,8 @@ void verify(VolumeJob& job, std::size_t place, const fs::path& written, const fs
 }  // namespace
 
 std::vector<VolumeJob> volumeJobs(const std::vector<fs::path>& inputs, const ConvertOptions& options) {
+  if (!options.grids.empty() && !inputs.empty())
+    throw OptionsError(inputs.front().string() + ": options.grids is for files of grids: a volume has one");
   const std::vector<std::string> names = gridNames(inputs, options);
   const std::vector<std::string> units = gridUnits(inputs.size(), options.units);
   std::vector<VolumeJob> jobs(inputs.size());

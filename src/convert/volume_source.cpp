@@ -35,12 +35,16 @@ std::unique_ptr<VoxelSource> openMask(const SourceOptions& options) {
   return openInput(options.mask, options.openMask);
 }
 
+ScalarGrid readMaskGrid(const fs::path& mask) try { return readScalarGrid(mask); } catch (const SeveralGrids& error) {
+  throw InvalidArgument(std::string(error.what()) + "; a mask is the only scalar grid of its file, or called density");
+}
+
 std::unique_ptr<VoxelSource> openFiltered(const fs::path& input, const SourceOptions& options, float background,
                                           ReadNotes& notes) {
   auto source = openInput(input, options.open);
   if (!options.mask.empty()) {
     auto mask = holdsGrids(options.mask)
-                    ? gridSource(options.mask.string(), readScalarGrid(options.mask).grid, source->info().dims)
+                    ? gridSource(options.mask.string(), readMaskGrid(options.mask).grid, source->info().dims)
                     : openMask(options);
     source = maskSource(std::move(source), std::move(mask), background, &notes.leftOut);
   }

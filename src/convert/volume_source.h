@@ -8,6 +8,7 @@
 
 #include "umbrick/convert/convert_options.h"
 #include "umbrick/grid/resample.h"
+#include "umbrick/grid/scalar_grid.h"
 #include "umbrick/grid/source_filters.h"
 #include "umbrick/ingest/voxel_source.h"
 
@@ -26,6 +27,9 @@ std::unique_ptr<VoxelSource> openFiltered(const std::filesystem::path& input, co
 
 /// Opens the mask, which is a volume.
 std::unique_ptr<VoxelSource> openMask(const SourceOptions& options);
+
+/// Reads the mask where it is a file of grids. @throw InvalidArgument  it has several, none of which is called density
+ScalarGrid readMaskGrid(const std::filesystem::path& mask);
 
 /// Finds the value that most of the border of the volume has.
 BorderMode findBackground(const std::filesystem::path& input, const SourceOptions& options);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/write_output.h"
 
+#include <algorithm>
 #include <string>
 #include <system_error>
 
@@ -37,14 +38,25 @@ void checkOutput(const fs::path& path, const OutputOptions& options, const std::
   }
 }
 
+void checkGridCount(const fs::path& path, const std::vector<std::string>& labels) {
+  if (!isDense(path) || labels.size() == 1) return;
+  constexpr std::size_t kMostNamed = 5;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(labels.size(), kMostNamed); ++i)
+    names += (i == 0 ? "\"" : ", \"") + labels[i] + '"';
+  throw OptionsError(path.string() + ": expected one grid for " + path.extension().string() + ", found " +
+                     std::to_string(labels.size()) + "; name one with options.grids: " + names +
+                     (labels.size() > kMostNamed ? ", ..." : ""));
+}
+
 std::int64_t writeOutput(const fs::path& path, const OutputOptions& output,
                          const std::vector<openvdb::FloatGrid::ConstPtr>& grids, openvdb::MetaMap metadata,
                          std::optional<VoxelType> type, const NanoCheck& check) {
   const WrittenCheck exact = [&](const fs::path& written) { check(written, {}); };
   if (isDense(path)) {
-    if (grids.size() != 1)
-      throw OptionsError(path.string() + ": expected one grid for " + path.extension().string() + ", found " +
-                         std::to_string(grids.size()));
+    std::vector<std::string> labels;
+    for (const auto& grid : grids) labels.push_back(grid->getName());
+    checkGridCount(path, labels);
     DenseOptions dense;
     dense.type = type;
     writeDense(path, *grids.front(), dense, exact);

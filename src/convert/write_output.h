@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "umbrick/convert/output_options.h"
@@ -11,6 +12,9 @@
 #include "umbrick/vdb/write_volume.h"
 
 namespace umbrick {
+
+/// Refuses several grids for a format that holds one. @throw OptionsError  names some of them
+void checkGridCount(const std::filesystem::path& output, const std::vector<std::string>& labels);
 
 /// @param type   of the voxels of the source, for the dense formats
 /// @param check  is given the file before it takes its name, and the errors of grids that are quantised, else none

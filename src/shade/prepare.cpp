@@ -57,7 +57,7 @@ int requiredApron(const ResolvedScene& resolved, const glm::dmat4& indexToWorld)
   const double wanted = std::ceil(0.5 + reach - 1e-9);
   const int most = resolved.bricks.interior > 0 ? resolved.bricks.interior : kMostInterior;
   if (!(wanted <= most))
-    throw InvalidArgument("sampling: slices " + std::to_string(resolved.sampling.spacing) + " apart reach " +
+    throw InvalidArgument("sampling.spacing: slices " + std::to_string(resolved.sampling.spacing) + " apart reach " +
                           std::to_string(static_cast<long long>(std::min(wanted, 9e15))) +
                           " voxels beyond a brick, more than its edge of " + std::to_string(most));
   return std::max(1, static_cast<int>(wanted));

@@ -62,7 +62,7 @@ TEST_CASE("One grid of a file is masked and cropped by its indices", "[convert]"
   const TemporaryFolder folder;
   const auto input = writeThree(folder);
   ConvertOptions options;
-  options.grid = "ramp";
+  options.grids = {"ramp"};
   options.source.mask = folder.path() / "mask.vdb";
   options.source.crop = IndexBox{{0, 0, 0}, {9, 9, 9}};
   const auto mask = openvdb::FloatGrid::create(0);

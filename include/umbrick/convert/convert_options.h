@@ -37,7 +37,7 @@ struct ConvertOptions {
   /// take the stems of their file names: "head" for scans/head.nii.gz. Grids of a file keep their names.
   std::vector<std::string> names = {};
   std::vector<std::string> units = {};   // of the values, as metadata "value_unit": none, one for all, or one each
-  std::optional<std::string> grid = {};  // of a file of grids only this, "name" or "name[1]"; else all scalar ones
+  std::vector<std::string> grids = {};   // of a file of grids only these, "name" or "name[1]"; else all scalar ones
   std::optional<IsosurfaceOptions> isosurface = {};  // writes level sets in place of the grids
   OutputOptions output = {};
   /// Reads the file back before it takes its name, and compares it with the input.
