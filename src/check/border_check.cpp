@@ -79,7 +79,6 @@ void checkBorder(const GlContext& context, const ScalarGrid& grid, const Resolve
     // A pixel is found to be saturated at some slice or other, which is not what is asked here.
     turned.sampling.saturation = 0;
     turned.bricks.interior = 0;
-    turned.sampling.saturation = 0;  // where a full pixel ends depends on the bricks, and is worth up to 1e-3
     turned.camera = Camera{};
     turned.camera.width = turned.camera.height = 64;
     turned.camera.projection = residue % 2 == 0 ? Projection::orthographic : Projection::perspective;
