@@ -149,4 +149,10 @@ TEST_CASE("A volume is known by its bytes", "[report]") {
   CHECK(identity.bytes == 9);
   CHECK(identity.crc32 == 0xcbf43926);  // the check value of CRC-32
   CHECK_THAT(complaint<IoError>([&] { identifyVolume(folder.path() / "none"); }), Contains("none: cannot read"));
+  // A folder is its files, one behind the other, and a dataset is its file.
+  std::filesystem::create_directory(folder.path() / "series");
+  writeBytes(folder.path() / "series" / "b", "6789");
+  writeBytes(folder.path() / "series" / "a", "12345");
+  CHECK(identifyVolume(folder.path() / "series").crc32 == 0xcbf43926);
+  CHECK(identifyVolume(folder.path() / "check:/density").crc32 == 0xcbf43926);
 }

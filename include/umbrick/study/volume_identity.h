@@ -7,13 +7,15 @@
 
 namespace umbrick {
 
-/// A volume is known by the bytes of its file, so that a file which has moved is still the same volume.
+/// A volume is known by the bytes of its file, or of the files of its folder, so that one which has moved is still the
+/// same volume.
 struct VolumeIdentity {
   std::string file;         // absolute path
-  std::uint64_t bytes = 0;  // length of the file
-  std::uint32_t crc32 = 0;  // of all its bytes, as zlib and PNG compute it
+  std::uint64_t bytes = 0;  // length of the file, or of all files
+  std::uint32_t crc32 = 0;  // of all these bytes, as zlib and PNG compute it
 };
-/// Reads the whole file once. @throw IoError  it cannot be read
-VolumeIdentity identifyVolume(const std::filesystem::path& file);
+/// Reads everything once. Files of a folder are taken in the order of their names.
+/// @param volume  a file, a folder, or a dataset of a file (run.h5:/density)  @throw IoError  it cannot be read
+VolumeIdentity identifyVolume(const std::filesystem::path& volume);
 
 }  // namespace umbrick
