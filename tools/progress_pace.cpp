@@ -70,7 +70,7 @@ std::string progressText(ProgressStyle style, const std::string& label, double s
   } else {
     text += ": " + std::string(percent).substr(std::string(percent).find_first_not_of(' '));
   }
-  if (bytes > 0 && elapsedMs > 0)
+  if (bytes > 0 && elapsedMs > 0 && share > 0)
     text += ", " + std::to_string(std::lround(share * bytes / elapsedMs / 1000)) + " MB/s";
   // Before a hundredth is done, an estimate would be off by too much.
   if (share >= 0.01) text += ", " + minutes(elapsedMs / 1000 * (1 - share) / share) + " left";

@@ -245,12 +245,16 @@ int render(const RenderCommand& command) {
   options.countFragments = !output.stats.empty();
   options.timePasses = command.timePasses;
   watch.bar.clear();
-  std::cerr << opened.chosen;
-  watch.bar.begin("rendering");
   std::vector<double> framesMs;
   Picture picture;
   std::optional<ProgressivePicture> passes;
+  // Once a renderer accepts the scene, there will be a picture.
+  const auto begin = [&] {
+    std::cerr << opened.chosen;
+    watch.bar.begin("rendering");
+  };
   if (progressive) {
+    begin();
     passes = renderPasses(command, volume, loaded.scene, options, watch, framesMs);
     picture = passes->picture;
     loaded.scene = passes->scene;
@@ -264,10 +268,13 @@ int render(const RenderCommand& command) {
       show((drawn + share) / (command.frames * loaded.scene.sampling.pixelSamples));
     };
     const std::unique_ptr<Renderer> renderer = makeRenderer(volume, loaded.scene, options);
+    begin();
     for (int i = 0; i < command.frames; ++i) {
       const Stopwatch frame;
       picture = renderer->render();
       framesMs.push_back(frame.elapsedMs());
+      // A picture of few slices tells nothing by itself. The last one is written, whenever the user stops.
+      if (i + 1 < command.frames) show((i + 1.0) / command.frames);
     }
     watch.bar.clear();
   }

@@ -13,7 +13,7 @@ using Catch::Contains;
 using Json = nlohmann::json;
 
 namespace {
-const std::string kBall = "ball.vdb --tf ball.json --azimuth 0 --up z --size 24x20 --spacing 0.1 --spacing-unit world ";
+const std::string kBall = "ball.vdb --tf ball.json --model emission --azimuth 0 --up z --size 24x20 --spacing 0.1 --spacing-unit world ";
 }
 
 TEST_CASE("Renderer and reference average over the same places, and their files say so", "[tools]") {

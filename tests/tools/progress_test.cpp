@@ -61,6 +61,7 @@ TEST_CASE("Progress is a share, a rate where bytes are known, and the time left"
   CHECK(progressText(ProgressStyle::lines, "check", 0.1, 1'000'000, 0) == "check: 10 %, 2:30:00 left");
   // Nothing is done yet, so that nothing is known.
   CHECK(progressText(ProgressStyle::lines, "rendering", 0, 20'000, 0) == "rendering: 0 %");
+  CHECK(progressText(ProgressStyle::lines, "reading", 0, 20'000, 4e8) == "reading: 0 %");
   CHECK(progressText(ProgressStyle::rewritten, "rendering", 0.5, 1'000, 0) ==
         "rendering [###############...............]  50 %, 0:01 left");
   CHECK_THAT(progressText(ProgressStyle::lines, "rendering", 1.5, 1'000, 0), Contains("100 %, 0:00 left"));

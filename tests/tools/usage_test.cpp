@@ -47,8 +47,8 @@ TEST_CASE("Several grids of a file are converted and described by their names", 
   writeGridsOf(folder);
   const auto namesIn = [&](const std::string& arguments) {
     std::vector<std::string> names;
-    for (const auto& grid : nlohmann::json::parse(runProgram(folder, "info --json " + arguments).out).at("grids"))
-      names.push_back(grid.at("name"));
+    const auto file = nlohmann::json::parse(runProgram(folder, "info --json " + arguments).out);
+    for (const auto& grid : file.at("grids")) names.push_back(grid.at("name"));
     return names;
   };
   using Names = std::vector<std::string>;
