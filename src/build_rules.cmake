@@ -95,6 +95,17 @@ function(umbrick_room)
   endif()
 endfunction()
 
+# A source that the build writes becomes part of a library.
+function(umbrick_add_generated target name output)
+  # A target of its own, since the library is declared in another folder than the rule that writes the source.
+  add_custom_target(umbrick_${name} DEPENDS ${output})
+  set_source_files_properties(${output} TARGET_DIRECTORY ${target} PROPERTIES GENERATED TRUE)
+  add_dependencies(${target} umbrick_${name})
+  target_sources(${target} PRIVATE ${output})
+  umbrick_without_openvdb(${target} ${output})
+  set_source_files_properties(${output} TARGET_DIRECTORY ${target} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 # Text files that become part of a library: umbrick_embed(umbrick_render shaderText BASE ... FILES ...) writes a .cpp
 # that defines
 #   std::string_view umbrick::FUNCTION(std::string_view name)   the text of one file, empty if there is none
@@ -111,13 +122,22 @@ function(umbrick_embed target function)
             -P ${PROJECT_SOURCE_DIR}/src/embed.cmake
     DEPENDS ${paths} ${PROJECT_SOURCE_DIR}/src/embed.cmake
     VERBATIM)
-  # A target of its own, since the library is declared in another folder than this rule.
-  add_custom_target(umbrick_${function} DEPENDS ${output})
-  set_source_files_properties(${output} TARGET_DIRECTORY ${target} PROPERTIES GENERATED TRUE)
-  add_dependencies(${target} umbrick_${function})
-  target_sources(${target} PRIVATE ${output})
-  umbrick_without_openvdb(${target} ${output})
-  set_source_files_properties(${output} TARGET_DIRECTORY ${target} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  umbrick_add_generated(${target} ${function} ${output})
+endfunction()
+
+# A file of bytes that becomes part of a library: umbrick_embed_bytes(umbrick_render labelFont FILE /.../Vera.ttf) writes a
+# .cpp that defines
+#   std::span<const unsigned char> umbrick::FUNCTION()
+function(umbrick_embed_bytes target function)
+  cmake_parse_arguments(EMBED "" "FILE" "" ${ARGN})
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
+  add_custom_command(
+    OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} -DFUNCTION=${function} -DINPUT=${EMBED_FILE} -DOUTPUT=${output}
+            -P ${PROJECT_SOURCE_DIR}/src/embed_bytes.cmake
+    DEPENDS ${EMBED_FILE} ${PROJECT_SOURCE_DIR}/src/embed_bytes.cmake
+    VERBATIM)
+  umbrick_add_generated(${target} ${function} ${output})
 endfunction()
 
 # A library without a CMake package: sets PREFIX_INCLUDE_DIR and PREFIX_LIBRARY, or says which Debian package has it.

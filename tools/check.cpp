@@ -125,6 +125,7 @@ void tellStopped(const std::vector<InvariantResult>& results) {
 int check(const CheckCommand& command) {
   for (const int edge : command.check.edges)
     if (edge % 8 != 0) throw UsageError("--edges: " + std::to_string(edge) + " is not a multiple of 8");
+  refuseBackdrop(*command.scene);
   const StopRequest stop;
   ProgressBar bar("loading " + command.scene->input.filename().string());
   const OpenedScene opened = openScene(*command.scene, makeSceneOf(Model::emission, *command.scene),

@@ -4,10 +4,12 @@
 #include <exception>
 #include <iostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.h"
 #include "option_words.h"
+#include "scene_options.h"
 #include "volume_options.h"
 
 namespace {
@@ -19,6 +21,16 @@ constexpr const char* kGreeting =
     ": converts, shows, renders, compares and checks sparse volumes\n"
     "  umbrick render INPUT -o picture.png   makes a picture of a volume\n"
     "  umbrick --help                        lists the commands; umbrick render --help says more of one\n";
+
+// Returns the command line with a background's name in place of its three numbers, for the sub-commands that have such.
+std::vector<std::string> spelledOut(std::vector<std::string> words, const std::vector<Command>& commands) {
+  for (const auto& [command, run] : commands) {
+    if (words.empty() || command->get_name() != words.front()) continue;
+    const CLI::Option* background = command->get_option_no_throw("--background");
+    if (background && background->get_expected_min() == 3) return spellOutBackground(std::move(words));
+  }
+  return words;
+}
 
 // Returns the exit status: 0 success, 1 a failed job or comparison, 2 wrong usage.
 int runProgram(int argc, char** argv) {
@@ -39,6 +51,7 @@ int runProgram(int argc, char** argv) {
   try {
     std::vector<std::string> arguments(argv + 1, argv + argc);
     if (!arguments.empty() && arguments.front() != "convert") arguments = joinVectors(std::move(arguments));
+    arguments = spelledOut(std::move(arguments), commands);
     std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
     app.parse(std::move(arguments));
   } catch (const CLI::ParseError& error) {

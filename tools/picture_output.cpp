@@ -7,9 +7,12 @@
 #include "command.h"
 #include "umbrick/core/pending_file.h"
 #include "umbrick/image/png.h"
+#include "validators.h"
 
 namespace umbrick::tools {
 namespace {
+constexpr std::string_view kAllAnnotations = "all";
+
 bool isExr(const std::filesystem::path& path) { return path.extension() == ".exr"; }
 
 // Prints how many colours a file of half-floats cuts off.
@@ -23,6 +26,14 @@ void tellClipped(const std::filesystem::path& path, const std::vector<ImageLayer
               << " values are above 65504, the most that half-floats hold, and are cut off there; --exr-pixel float "
                  "keeps them\n";
 }
+
+// Returns the picture in display values, with all that is drawn over it.
+Image decorated(const Image& picture, const Look& look, const std::optional<Annotations>& annotations) {
+  Image shown = displayed(picture, look);
+  if (annotations) annotate(shown, *annotations);
+  return shown;
+}
+
 }  // namespace
 
 std::shared_ptr<PictureOutput> addPictureOutput(CLI::App& command, const std::string& exrPixel,
@@ -42,11 +53,29 @@ std::shared_ptr<PictureOutput> addPictureOutput(CLI::App& command, const std::st
       ->capture_default_str()
       ->group(group);
   command.add_flag("--layers", output->layers, "add to the EXR: " + layers)->group(group);
-  command.add_option("--tone-map", output->toneMap, "of the PNG: none, reinhard or filmic")
+  command
+      .add_option("--exposure", output->exposure,
+                  "of the PNG, stops: radiance times 2^stops, before the tone curve; never of an EXR")
+      ->check(numberIn(-kMostStops, kMostStops, "-100 to 100"))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--tone,--tone-map", output->toneMap,
+                  "curve of the PNG: none (above 1 is cut off), reinhard or filmic (ACES fit of Narkowicz 2015)")
       ->check(CLI::IsMember(listNames(kToneMaps)))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--exposure", output->exposure, "of the PNG, stops")->capture_default_str()->group(group);
+  std::vector<std::string> annotations = listNames(kAnnotations);
+  annotations.emplace_back(kAllAnnotations);
+  command
+      .add_option("--annotate", output->annotate,
+                  "draw into the PNG, separated by commas: triad (axes x, y, z), scale (bar), colours (of the transfer "
+                  "function), or all")
+      ->type_size(1)
+      ->allow_extra_args(false)
+      ->delimiter(',')
+      ->check(CLI::IsMember(annotations))
+      ->group(group);
   command.add_option("--stats", output->stats, "write times, counts and the scene as JSON")->group(group);
   return output;
 }
@@ -73,6 +102,31 @@ void checkOutputs(const PictureOutput& output) {
   if (!output.stats.empty()) PendingFile probe(output.stats);
 }
 
+Look PictureOutput::look() const { return {parseName(kToneMaps, toneMap, "--tone"), exposure, backdrop}; }
+
+VolumeUnits unitsOf(const ScalarGrid& grid) { return {grid.metadata("length_unit"), grid.metadata("value_unit")}; }
+
+void prepareLook(PictureOutput& output, Backdrop backdrop, const ResolvedScene& scene, const VolumeUnits& units) {
+  output.backdrop = backdrop;
+  std::vector<Annotation> wanted;
+  for (const std::string& name : output.annotate) {
+    for (const auto& [one, annotation] : kAnnotations)
+      if (name == one || name == kAllAnnotations) wanted.push_back(annotation);
+  }
+  if (!wanted.empty()) output.annotations = annotationsOf(scene, wanted, units, output.look());
+  if (output.look() == Look{} && wanted.empty()) return;
+  if (std::all_of(output.files.begin(), output.files.end(), isExr)) {
+    std::cerr << "exposure, tone, gradient and annotations are of a PNG only, and no PNG is asked for\n";
+  } else if (output.annotations) {
+    // A picture may be written many times: what it has no room for is said once, before.
+    Image blank(scene.camera.width, scene.camera.height, 4);
+    const std::vector<std::string> leftOut = annotate(blank, *output.annotations);
+    if (!leftOut.empty())
+      std::cerr << "a picture of " << scene.camera.width << " x " << scene.camera.height
+                << " has no room for these annotations, which are left out: " << joined(leftOut) << '\n';
+  }
+}
+
 void printOutputs(const PictureOutput& output) {
   for (const std::filesystem::path& path : output.files) std::cout << path.string() << '\n';
 }
@@ -88,10 +142,15 @@ void writeOutputs(const PictureOutput& output, const std::vector<ImageLayer>& la
       writeExr(path, layers, options);
     } else {
       PngOptions options;
-      options.toneMap = parseName(kToneMaps, output.toneMap, "--tone-map");
-      options.exposure = static_cast<float>(output.exposure);
       if (const auto scene = metadata.find("umbrick.scene"); scene != metadata.end()) options.metadata.insert(*scene);
-      writePng(path, layers.front().image, options);
+      const Look look = output.look();
+      if (look.backdrop == Backdrop::none && !output.annotations) {
+        options.toneMap = look.toneMap;
+        options.exposure = look.exposure;
+        writePng(path, layers.front().image, options);
+      } else {
+        writePng(path, decorated(layers.front().image, look, output.annotations), options);
+      }
     }
   }
 }

@@ -5,10 +5,14 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "umbrick/grid/scalar_grid.h"
+#include "umbrick/image/display.h"
 #include "umbrick/image/exr.h"
+#include "umbrick/scene/annotations.h"
 
 namespace umbrick::tools {
 
@@ -17,7 +21,12 @@ struct PictureOutput {
   std::filesystem::path stats;  // empty: none
   std::string exrPixel, toneMap = "none";
   double exposure = 0;
+  std::vector<std::string> annotate;            // names of annotations, or all
+  Backdrop backdrop = Backdrop::none;           // of the PNG
+  std::optional<Annotations> annotations = {};  // set once the scene is known, see prepareLook
   bool layers = false;
+
+  Look look() const;
 };
 
 /// Adds the options to a sub-command.
@@ -31,6 +40,12 @@ void checkApart(const std::vector<std::filesystem::path>& files);
 
 /// Checks that the files can be written, before the picture is made, which can take long. @throw UsageError, IoError
 void checkOutputs(const PictureOutput& output);
+
+/// Decides what is drawn into a PNG besides the picture, once the scene is known, and says what has no effect.
+/// @param backdrop  of the scene's options, see SceneOptions
+void prepareLook(PictureOutput& output, Backdrop backdrop, const ResolvedScene& scene, const VolumeUnits& units);
+/// Returns the units that a grid names.
+VolumeUnits unitsOf(const ScalarGrid& grid);
 
 /// Writes the picture.
 /// @param layers    of EXR files, the colour first

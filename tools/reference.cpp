@@ -81,6 +81,7 @@ int runReference(ReferenceCommand& command) {
   const Scene& scene = opened.scene;
   const Volume& volume = *opened.volume;
   const ResolvedScene resolved = volume.resolve(scene);
+  prepareLook(output, command.scene->backdrop, resolved, unitsOf(volume.grid()));
   ReferenceOptions& options = command.reference;
   options.integrator = parseName(kIntegrators, command.integrator, "--integrator");
   options.skipEmpty = !command.noSkipping;

@@ -49,12 +49,16 @@ struct LoadedScene {
   ResolvedScene scene;
   double loadMs = 0, brickMs = 0;
   std::shared_ptr<const Volume> volume;
+  VolumeUnits units = {};
   std::unique_ptr<Bricks> bricks = {};
 };
 
 LoadedScene loadScene(const OpenedScene& opened, bool refined) {
   const Volume& volume = *opened.volume;
-  LoadedScene loaded{.scene = volume.resolve(opened.scene), .loadMs = volume.loadMs(), .volume = opened.volume};
+  LoadedScene loaded{.scene = volume.resolve(opened.scene),
+                     .loadMs = volume.loadMs(),
+                     .volume = opened.volume,
+                     .units = unitsOf(volume.grid())};
   const Stopwatch brick;
   loaded.bricks = refined ? volume.cutForRefinement(loaded.scene) : volume.cut(loaded.scene);
   loaded.brickMs = brick.elapsedMs();
@@ -238,6 +242,7 @@ int render(const RenderCommand& command) {
   watch.bar.begin("loading " + scene.volume.file.filename().string());
   const OpenedScene opened = openScene(*command.scene, scene, showShare(watch.bar, watch.stop, nothing));
   LoadedScene loaded = loadScene(opened, progressive);
+  prepareLook(*command.output, command.scene->backdrop, loaded.scene, loaded.units);
   const auto context = createContext(command.backend);
   ResidentVolume volume(*context, *loaded.bricks, atlasOptions(loaded.scene, *loaded.bricks));
   RenderOptions options;

@@ -26,6 +26,28 @@ glm::ivec2 parseSize(const std::string& text) {
   return size;
 }
 
+// A background as the command line gives it.
+struct NamedColour {
+  std::optional<glm::dvec3> radiance;
+  Backdrop backdrop = Backdrop::none;
+};
+
+// Parses three numbers, or a name three times over, see spellOutBackground.
+NamedColour parseColour(const std::string& option, const std::vector<std::string>& words) {
+  if (words[0] == words[1] && words[1] == words[2]) {
+    if (words[0] == "white") return {glm::dvec3(1)};
+    if (words[0] == "black") return {glm::dvec3(0)};
+    if (words[0] == "gradient") return {std::nullopt, Backdrop::gradient};
+  }
+  glm::dvec3 colour(0);
+  for (int i = 0; i < 3; ++i) {
+    const std::string& word = words[static_cast<std::size_t>(i)];
+    if (!CLI::detail::lexical_cast(word, colour[i]))
+      throw UsageError(option + ": expected white, black, gradient or three numbers, found '" + word + "'");
+  }
+  return {colour};
+}
+
 // --- the table of fields as options ---
 
 // Returns a place of the field's kind, in a scene that has it.
@@ -79,10 +101,20 @@ class FieldOption {
         ->expected(3);
   }
   CLI::Option* operator()(const std::optional<glm::dvec3>*) const {
-    return add<std::vector<double>>([](const FieldPlace& place, const std::vector<double>& value) {
-             *std::get<std::optional<glm::dvec3>*>(place) = toVector(value);
-           })
-        ->expected(3);
+    return command_
+        .add_option_function<std::vector<std::string>>(
+            name_,
+            [this_ = *this](const std::vector<std::string>& words) {
+              const NamedColour colour = parseColour(this_.name_, words);
+              this_.options_.backdrop = colour.backdrop;
+              this_.setter([colour](const FieldPlace& place) {
+                *std::get<std::optional<glm::dvec3>*>(place) = colour.radiance;
+              })();
+            },
+            helpText(field_) + "; or a name: white, black, or gradient (in a PNG alone, behind what is transparent)")
+        ->type_name("FLOAT")
+        ->expected(3)
+        ->allow_extra_args(false);
   }
   CLI::Option* operator()(const PixelSize&) const {
     return add<std::string>([](const FieldPlace& place, const std::string& value) {
@@ -255,6 +287,25 @@ void applyClipping(const SceneOptions& options, Scene& scene) {
 
 }  // namespace
 
+std::vector<std::string> spellOutBackground(std::vector<std::string> arguments) {
+  const auto isNumber = [](const std::string& word) {
+    double number = 0;
+    return CLI::detail::lexical_cast(word, number);
+  };
+  const std::string option = "--background";
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i].rfind(option + "=", 0) == 0) {
+      arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1, arguments[i].substr(option.size() + 1));
+      arguments[i] = option;
+    }
+    if (arguments[i] != option || i + 1 == arguments.size()) continue;
+    const std::string word = arguments[i + 1];
+    if (isNumber(word) || word.empty() || word[0] == '-') continue;
+    arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1, 2, word);
+  }
+  return arguments;
+}
+
 std::string SceneOptions::nameOf(std::string_view option) const {
   const auto other = renamed.find(option);
   return "--" + (other == renamed.end() ? std::string(option) : other->second);
@@ -373,6 +424,11 @@ void applyWindow(const SceneOptions& options, Scene& scene) {
   if (!scene.transfer) return;
   if (options.window) scene.transfer = scene.transfer->windowed((*options.window)[0], (*options.window)[1]);
   if (options.sigmaScale) scene.transfer = scene.transfer->scaled(*options.sigmaScale);
+}
+
+void refuseBackdrop(const SceneOptions& options) {
+  if (options.backdrop != Backdrop::none)
+    throw UsageError("--background gradient: is of a PNG, which this command does not write");
 }
 
 void warnOfNonFinite(const Scene& scene, std::uint64_t voxels) {

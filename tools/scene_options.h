@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "umbrick/gl/context.h"
+#include "umbrick/image/display.h"
 #include "umbrick/scene/scene.h"
 #include "volume_options.h"
 
@@ -31,6 +32,7 @@ struct SceneOptions {
   std::optional<double> sigmaScale;
   std::optional<int> tableSize;
   bool orthographic = false;
+  Backdrop backdrop = Backdrop::none;  // --background gradient, which a PNG has in place of the scene's background
   /// Sets the field of each option of the table of scene fields that was given, by the name of the option.
   std::map<std::string, std::function<void(Scene&)>, std::less<>> fields;
   /// What options of that table are called where their own name means something else, see addSceneOptions.
@@ -45,6 +47,9 @@ struct SceneOptions {
 std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNames& renamed = {});
 /// Adds --strict, for sub-commands that make one picture.
 void addStrictOption(CLI::App& command, bool& strict);
+/// Writes the name of a background three times: an option has a fixed number of values, and a background has three
+/// numbers. @param arguments  of the command line
+std::vector<std::string> spellOutBackground(std::vector<std::string> arguments);
 /// Adds --backend, for sub-commands that draw with OpenGL.
 void addBackendOption(CLI::App& command, std::string& backend);
 /// Makes the context of that name.
@@ -61,6 +66,9 @@ Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults = {})
 
 /// Applies --window and --sigma-scale, where the scene has a transfer function.
 void applyWindow(const SceneOptions& options, Scene& scene);
+
+/// Refuses a backdrop, for sub-commands that write no PNG. @throw UsageError
+void refuseBackdrop(const SceneOptions& options);
 
 /// Prints one line to stderr, if there are such voxels.
 void warnOfNonFinite(const Scene& scene, std::uint64_t voxels);

@@ -89,6 +89,7 @@ StudySettings makeSettings(const StudyCommand& command) {
 
 int study(const StudyCommand& command) {
   const StudySettings settings = makeSettings(command);
+  refuseBackdrop(*command.scene);
   const Scene unopened = makeScene(*command.scene);
   planStudy(settings, unopened.occlusion.aperture);  // refuses wrong settings before a volume is loaded
   const StopRequest stop;

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <cstring>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <vector>
@@ -29,20 +28,6 @@ struct CloseFile {
 };
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
-glm::dvec3 mapped(const glm::dvec3& colour, ToneMap toneMap) {
-  switch (toneMap) {
-    case ToneMap::none:
-      return colour;
-    case ToneMap::reinhard:
-      return colour / (1 + glm::dot(colour, glm::dvec3(0.2126, 0.7152, 0.0722)));
-    // The filmic curve is a fit of the ACES reference curve, Narkowicz 2015, "ACES Filmic Tone Mapping Curve", without
-    // its exposure of 0.6.
-    case ToneMap::filmic:
-      return colour * (2.51 * colour + 0.03) / (colour * (2.43 * colour + 0.59) + 0.14);
-  }
-  return colour;
-}
-
 std::uint8_t byteOf(double share) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0))); }
 
 double finiteOr0(float value) { return std::isnan(value) ? 0 : std::clamp<double>(value, 0, 1e30); }
@@ -51,15 +36,15 @@ double finiteOr0(float value) { return std::isnan(value) ? 0 : std::clamp<double
 std::vector<std::uint8_t> encoded(const Image& image, const PngOptions& options) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(image.pixels.size());
-  const double scale = std::exp2(options.exposure);
+  const double scale = exposureFactor(options.exposure);
   for (int y = image.height - 1; y >= 0; --y)
     for (int x = 0; x < image.width; ++x) {
       const float* p = image.at(x, y);
       const double alpha = std::min(1.0, finiteOr0(p[3]));
       glm::dvec3 colour{0};
       if (alpha > 0)
-        colour =
-            mapped(glm::dvec3(finiteOr0(p[0]), finiteOr0(p[1]), finiteOr0(p[2])) * (scale / alpha), options.toneMap);
+        colour = toneMapped(glm::dvec3(finiteOr0(p[0]), finiteOr0(p[1]), finiteOr0(p[2])) * (scale / alpha),
+                            options.toneMap);
       for (int c = 0; c < 3; ++c) bytes.push_back(byteOf(linearToSrgb(std::min(1.0, colour[c]))));
       bytes.push_back(byteOf(alpha));
     }

@@ -118,18 +118,21 @@ TEST_CASE("A sheet thinner than a pixel has the opacity of the share that it cov
   CHECK(errors[1] < 0.1 * errors[0]);
 }
 
-// Occlusion of dos is known on the screen, so that at the edges of the picture, beyond which it is unoccluded, another
-// place of the pixels is another picture. Elsewhere a shift by whole pixels only renames them.
+// A shift by whole pixels only renames them. The picture is wide enough for the medium, and for how far it darkens what
+// is beside it, not to reach its edges: dos knows occlusion on the screen alone.
 TEST_CASE("A picture through a place one pixel away is the same picture one pixel away", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
-  for (const Camera& camera : blobCameras())
+  for (Camera camera : blobCameras()) {
+    camera.fov = 1.4;
+    camera.viewHeight = 60;
     for (const auto& [model, method] : {std::pair{Model::emission, Method::ordinates},
                                         {Model::cone, Method::dos},
                                         {Model::cone, Method::ordinates}}) {
       ResolvedScene scene = plainScene(ramp(0.4), camera, 0.8);
       scene.model = model;
       scene.method = method;
+      scene.occlusion.aperture = 0.5;
       scene.occlusion.ordinates.directions = 4;
       const FieldBricks volume = fieldFor(scene, blobs, kBlock);
       SliceRenderer renderer(*context, volume, scene, kLayers);
@@ -145,6 +148,7 @@ TEST_CASE("A picture through a place one pixel away is the same picture one pixe
       CHECK(shiftedDifference(moved.visibility, plain.visibility, 1, -1) < 2e-5);
       CHECK(maxDifference(moved.colour, plain.colour) > 0.01);
     }
+  }
 }
 
 TEST_CASE("Several samples are the mean of their pictures, and one is the picture through the centres", "[shade][gl]") {
@@ -224,10 +228,12 @@ TEST_CASE("Area means agree with the reference, layers too, with and without a b
       }
       INFO("colour apart by " << apart[0] << " and " << apart[1]);
       CHECK(apart[1] < 1.2 * apart[0] + 1e-4);  // errors of slabs do not grow by averaging
-      CHECK(apart[1] < 3e-3);
+      CHECK(apart[1] < 5e-4);
     }
 }
 
+// All pixels of a pass share their place, so that one picture may be off by twice what it is off on average: over 200
+// seeds and edges of all directions that is 0.21, 0.067 and 0.030 for 4, 16 and 64 passes. Here are four of each.
 TEST_CASE("A progressive picture tends to the mean over pixels, or stays at their centres", "[shade][gl]") {
   const auto context = testContext();
   if (!context) return;
@@ -235,30 +241,38 @@ TEST_CASE("A progressive picture tends to the mean over pixels, or stays at thei
   scene.method = Method::ordinates;
   scene.model = Model::lights;
   scene.lights = {{LightFrame::view, ListedLight{{{{0.5, -0.3, 0.7}, 1, glm::dvec3(1)}}}}};
-  const HalfPlane edge = edgesThrough(kSize, 3)[2];
-  scene.clipPlanes.push_back(planeSeenAs(edge, scene.camera));
   const FieldBricks volume = solidVolume(coarserScene(scene));
-  std::vector<double> passes, errors;
-  const auto keep = [&](const ProgressivePicture& picture) {
-    if (picture.passes != 4 && picture.passes != 16 && picture.passes != 64) return true;
-    passes.push_back(picture.passes);
-    const Image& colour = picture.picture.colour;
-    errors.push_back(coverageError(edge, kSize, [&](int x, int y) { return colour.at(x, y)[3]; }));
-    return true;
-  };
-  // A scene that names a number of samples is no other: each pass is one.
-  scene.sampling.pixelSamples = 8;
-  const ProgressivePicture area = renderProgressive(*context, volume, scene, {.passes = 64}, kLayers, keep);
-  CHECK(area.scene == scene);
+  ResidentVolume resident(*context, volume, atlasOptions(scene, volume));
+  const std::vector<double> passes{4, 16, 64};
+  std::vector<double> squares(3);
+  ResolvedScene cut = scene;
+  const std::vector<HalfPlane> edges = edgesThrough(kSize, 4);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    cut = scene;
+    cut.clipPlanes.push_back(planeSeenAs(edges[i], scene.camera));
+    // A scene that names a number of samples is no other: each pass is one.
+    cut.sampling.pixelSamples = 8;
+    const ProgressivePicture area =
+        renderProgressive(resident, cut, {.passes = 64, .seed = i + 1}, {}, [&](const ProgressivePicture& picture) {
+          const Image& colour = picture.picture.colour;
+          for (std::size_t n = 0; n < 3; ++n)
+            if (picture.passes == passes[n])
+              squares[n] +=
+                  std::pow(coverageError(edges[i], kSize, [&](int x, int y) { return colour.at(x, y)[3]; }), 2);
+          return true;
+        });
+    CHECK(area.scene == cut);
+  }
+  std::vector<double> errors;
+  for (const double square : squares) errors.push_back(std::sqrt(square / static_cast<double>(edges.size())));
   const double order = observedOrder(passes, errors);
-  INFO("order " << order << ", errors " << errors.front() << " to " << errors.back());
+  INFO("order " << order << ", errors " << errors[0] << ", " << errors[1] << ", " << errors[2]);
   CHECK(order < -0.5);
-  CHECK(errors.back() < 0.04);
+  CHECK(errors.back() < 0.06);
 
-  scene.sampling.pixelSamples = 1;
-  const ProgressivePicture centres =
-      renderProgressive(*context, volume, scene, {.passes = 4, .pixelArea = false}, kLayers);
-  const Image plain = renderPicture(*context, volume, scene).colour;
+  cut.sampling.pixelSamples = 1;
+  const ProgressivePicture centres = renderProgressive(resident, cut, {.passes = 4, .pixelArea = false});
+  const Image plain = SliceRenderer(resident, cut).render().colour;
   for (std::size_t i = 3; i < plain.pixels.size(); i += 4)
     CHECK(centres.picture.colour.pixels[i] == Approx(plain.pixels[i]).margin(1e-5));
 }

@@ -324,8 +324,9 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
   const ScalarGrid grid = courtyard();
   const ResolvedScene scene = smallScene(10, 16);
   const auto volume = bricksForPasses(grid, scene);
-  const ProgressivePicture coarse = renderProgressive(*context, *volume, scene, {.passes = 4});
-  ProgressiveOptions options{.passes = 60, .targetError = 0.75 * coarse.error.systematic, .refine = true};
+  const ProgressivePicture coarse = renderProgressive(*context, *volume, scene, {.passes = 4, .pixelArea = false});
+  ProgressiveOptions options{
+      .passes = 60, .targetError = 0.75 * coarse.error.systematic, .refine = true, .pixelArea = false};
   std::vector<double> spacings;
   const ProgressivePicture fine =
       renderProgressive(*context, *volume, scene, options, {}, [&](const ProgressivePicture& picture) {
@@ -347,7 +348,8 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
   CHECK(fine.scene.sampling.spacing == spacings.back());
   // The picture is one of the scene that it says. Its bricks were resident already, at other places of the texture,
   // whose coordinates are single precision.
-  const ProgressivePicture again = renderProgressive(*context, *volume, fine.scene, {.passes = fine.passes});
+  const ProgressivePicture again =
+      renderProgressive(*context, *volume, fine.scene, {.passes = fine.passes, .pixelArea = false});
   CHECK(maxDifference(again.picture.colour, fine.picture.colour) < 2e-5);
   CHECK(again.error.systematic < coarse.error.systematic);
 

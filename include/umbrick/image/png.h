@@ -5,28 +5,20 @@
 #include <map>
 #include <string>
 
-#include "umbrick/core/names.h"
 #include "umbrick/image/image.h"
+#include "umbrick/image/tone.h"
 
 namespace umbrick {
 
-enum class ToneMap {
-  none,      // values above 1 are clamped
-  reinhard,  // c / (1 + luminance)
-  filmic,    // a fit of the ACES curve; the source is named where it is implemented
-};
-inline constexpr Name<ToneMap> kToneMaps[]{
-    {"none", ToneMap::none}, {"reinhard", ToneMap::reinhard}, {"filmic", ToneMap::filmic}};
-
 struct PngOptions {
   ToneMap toneMap = ToneMap::none;
-  float exposure = 0;                           // stops: colour is multiplied by 2^exposure before tone mapping
+  double exposure = 0;                          // stops: colour is multiplied by 2^exposure before tone mapping
   std::map<std::string, std::string> metadata;  // tEXt entries
 };
 
 /// Writes an image of 4 channels (linear premultiplied RGBA), whole or not at all. Tone mapping acts on the colour over
 /// its own alpha: it is un-premultiplied, mapped, encoded with the sRGB curve (IEC 61966-2-1) and stored beside alpha.
-/// @throw InvalidArgument  not 4 channels
+/// @throw InvalidArgument  not 4 channels; an exposure that exposureFactor refuses
 /// @throw IoError          the file could not be written
 void writePng(const std::filesystem::path& path, const Image& image, const PngOptions& options = {});
 
