@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
+#include "umbrick/image/text.h"
 #include "umbrick/optics/transfer_function.h"
 
 namespace umbrick::tools {
@@ -27,9 +29,27 @@ void drawFunction(Image& image, int top, const TransferFunction& transfer) {
     const Medium medium = transfer(value, gradient);
     const int height = most > 0 ? static_cast<int>(std::lround(kCurve * medium.sigma_t / most)) : 0;
     for (int y = 0; y < kCurve; ++y)
-      setPixel(image, kMargin + x, top + y, y >= kCurve - height ? medium.albedo : glm::dvec3(0.9));
+      setPixel(image, kMargin + x, top + y, y >= kCurve - height ? medium.albedo : glm::dvec3(0.12));
     for (int y = 0; y < kRamp; ++y) setPixel(image, kMargin + x, top + kCurve + 4 + y, medium.albedo);
   }
+}
+
+// Writes black letters over white. @param x,y  where the line begins, on its base line, from the upper left corner
+void drawText(Image& image, int x, int y, const std::string& text) {
+  constexpr double kEm = 13;
+  const TextMask mask = textMask(text, kEm);
+  for (int row = 0; row < mask.coverage.height; ++row)
+    for (int column = 0; column < mask.coverage.width; ++column) {
+      const int to = x + mask.left + column, up = y - mask.bottom - row;
+      if (to < 0 || to >= image.width || up < 0 || up >= image.height) continue;
+      setPixel(image, to, up, glm::dvec3(1 - double(*mask.coverage.at(column, row))));
+    }
+}
+
+std::string shortNumber(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", number);
+  return text;
 }
 
 }  // namespace
@@ -38,8 +58,15 @@ Image drawTransferSheet(const std::vector<std::string>& presets) {
   constexpr int kRow = kGap + kCurve + 4 + kRamp;
   Image image(kWidth + 2 * kMargin, static_cast<int>(presets.size()) * kRow + kMargin, 4);
   std::fill(image.pixels.begin(), image.pixels.end(), 1.0f);
-  for (std::size_t i = 0; i < presets.size(); ++i)
-    drawFunction(image, static_cast<int>(i) * kRow + kGap, loadTransferFunction(presets[i]));
+  for (std::size_t i = 0; i < presets.size(); ++i) {
+    const TransferFunction transfer = loadTransferFunction(presets[i]);
+    const int top = static_cast<int>(i) * kRow + kGap;
+    drawFunction(image, top, transfer);
+    const Range domain = transfer.valueDomain();
+    drawText(image, kMargin, top - 6,
+             presets[i] + ": " + shortNumber(domain.min) + " to " + shortNumber(domain.max) +
+                 (transfer.unit().empty() ? "" : ", " + transfer.unit()));
+  }
   return image;
 }
 

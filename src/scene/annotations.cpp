@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
+#include <string_view>
 
 #include "umbrick/core/srgb.h"
 
@@ -33,19 +34,23 @@ Medium mediumAt(const TransferFunction& transfer, double value) {
   return densest;
 }
 
+// Tells whether a letter is a side of a patient.
+bool isSide(char letter) { return std::string_view("LRAPSI").find(letter) != std::string_view::npos; }
+
 }  // namespace
 
-std::vector<TriadAxis> worldTriad(const Camera& camera) {
+std::vector<TriadAxis> worldTriad(const Camera& camera, const std::string& space) {
   const CameraFrame frame = cameraFrame(camera);
   // Red, green and blue, light enough to be told apart on a dark rim.
   const glm::dvec3 colours[]{fromSrgb(1, 0.42, 0.36), fromSrgb(0.45, 0.88, 0.40), fromSrgb(0.48, 0.68, 1)};
   const char* const labels[]{"x", "y", "z"};
+  const bool patient = space.size() == 3 && std::all_of(space.begin(), space.end(), isSide);
   std::vector<TriadAxis> axes;
   for (int i = 0; i < 3; ++i) {
     TriadAxis axis;
     axis.end = {frame.right[i], frame.up[i]};
     axis.depth = frame.forward[i];
-    axis.label = labels[i];
+    axis.label = patient ? std::string(1, space[static_cast<std::size_t>(i)]) : labels[i];
     axis.colour = colours[i];
     axes.push_back(axis);
   }
@@ -97,7 +102,7 @@ Annotations annotationsOf(const ResolvedScene& scene, const std::vector<Annotati
                           const Look& look) {
   Annotations annotations;
   for (const Annotation annotation : wanted) {
-    if (annotation == Annotation::triad) annotations.triad = worldTriad(scene.camera);
+    if (annotation == Annotation::triad) annotations.triad = worldTriad(scene.camera, units.space);
     if (annotation == Annotation::scale) annotations.scale = scaleBar(scene.camera, units.length);
     if (annotation == Annotation::colours) annotations.colours = colourBar(scene, units.value, look);
   }

@@ -123,9 +123,18 @@ TEST_CASE("A step, a constant, nothing and two dimensions have a colour bar, too
 TEST_CASE("Only annotations that are asked for are there", "[scene]") {
   const ResolvedScene scene = sceneOf(homogeneous({1, 1, 1}, 1));
   CHECK(annotationsOf(scene, {}, {}, {}).empty());
-  const Annotations two = annotationsOf(scene, {Annotation::scale, Annotation::colours}, {"mm", "HU"}, {});
+  const Annotations two = annotationsOf(scene, {Annotation::scale, Annotation::colours}, {"mm", "HU", ""}, {});
   CHECK(two.triad.empty());
   CHECK(two.scale);
   CHECK(two.colours);
   CHECK(annotationsOf(scene, {Annotation::triad}, {}, {}).triad.size() == 3);
+}
+
+TEST_CASE("The triad of a patient has the letters of its sides", "[scene]") {
+  const std::vector<TriadAxis> axes = worldTriad(Camera{}, "LPS");
+  REQUIRE(axes.size() == 3);
+  CHECK(axes[0].label + axes[1].label + axes[2].label == "LPS");
+  // What is no space of a patient has the names of the axes.
+  CHECK(worldTriad(Camera{}, "LPX")[0].label == "x");
+  CHECK(worldTriad(Camera{}, "scanner-xyz")[2].label == "z");
 }

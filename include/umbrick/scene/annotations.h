@@ -14,10 +14,13 @@ namespace umbrick {
 struct VolumeUnits {
   std::string length;  // of the world: "mm"
   std::string value;   // of the grid: "HU"
+  std::string space;   // where the axes of the world point to in a patient: "LPS"
 };
 
 /// Returns the axes x, y and z of the world as the camera sees their directions: parallel, also under perspective.
-std::vector<TriadAxis> worldTriad(const Camera& camera);
+/// @param space  three letters out of L or R, A or P, S or I, each for the end of an axis: then the arms have these
+///   letters in place of x, y and z
+std::vector<TriadAxis> worldTriad(const Camera& camera, const std::string& space = {});
 
 /// Returns how many pixels a world unit takes across the view, in the plane through the point that is looked at.
 double pixelsPerUnit(const Camera& camera);
