@@ -56,7 +56,8 @@ void BrickAtlas::checkLimits(int maxEdge) {
                           mebibytes(options_.budgetBytes));
 }
 
-std::size_t BrickAtlas::slotsFor(std::span<const std::int32_t> bricks) const {
+std::size_t BrickAtlas::slotsFor(std::span<const std::int32_t> bricks, SlotSharing sharing) const {
+  if (sharing == SlotSharing::apart) return bricks.size();
   std::set<UniformKey> values;
   std::size_t slots = 0;
   for (const std::int32_t index : bricks) {
@@ -136,6 +137,7 @@ void BrickAtlas::reserve(std::size_t wanted) {
   textures_ = std::move(textures);
   plan_ = plan;
   slots_ = slots;
+  ++generation_;
 }
 
 // An atlas of no slot, so that whatever fails next finds it whole.
@@ -148,6 +150,7 @@ void BrickAtlas::clear() {
   uniform_.clear();
   slots_ = 0;
   plan_ = {};
+  ++generation_;
 }
 
 BrickAtlas::Slot BrickAtlas::place(std::int32_t slot, const glm::ivec3& slotGrid) const {
@@ -166,19 +169,35 @@ std::uint64_t BrickAtlas::textureBytes() const {
          texelFormat(format_, volume_.hasGradients).bytes;
 }
 
-void BrickAtlas::require(std::span<const std::int32_t> bricks) {
+bool BrickAtlas::mayShare(std::int32_t brick, SlotSharing sharing) const {
+  return sharing == SlotSharing::shared && isUniform(bricks_[static_cast<std::size_t>(brick)]);
+}
+
+// Takes a brick out of a slot that it shares, and lets no other brick into one that it has for itself.
+void BrickAtlas::setApart(std::int32_t brick) {
+  const Brick& one = bricks_[static_cast<std::size_t>(brick)];
+  if (!isUniform(one) || !isResident(brick)) return;
+  if (users_[static_cast<std::size_t>(slotNumber(brick))] > 1) return release(brick);
+  const auto shared = uniform_.find({one.value.min, one.gradient.min});
+  if (shared != uniform_.end() && shared->second == slotNumber(brick)) uniform_.erase(shared);
+}
+
+void BrickAtlas::require(std::span<const std::int32_t> bricks, SlotSharing sharing) {
   ++requests_;
+  if (sharing == SlotSharing::apart)
+    for (const std::int32_t brick : bricks) setApart(brick);
   std::vector<std::int32_t> missing;
   std::set<UniformKey> missingValues;
   std::size_t wanted = 0;
   for (const std::int32_t brick : bricks) {
     const Brick& one = bricks_[static_cast<std::size_t>(brick)];
     const UniformKey key{one.value.min, one.gradient.min};
-    const auto shared = isUniform(one) ? uniform_.find(key) : uniform_.end();
+    const bool mayShareSlot = mayShare(brick, sharing);
+    const auto shared = mayShareSlot ? uniform_.find(key) : uniform_.end();
     if (isResident(brick) || shared != uniform_.end()) {
       const std::int32_t slot = isResident(brick) ? slotOf_[static_cast<std::size_t>(brick)] : shared->second;
       requiredAt_[static_cast<std::size_t>(slot)] = requests_;
-    } else if (!isUniform(one) || missingValues.insert(key).second) {
+    } else if (!mayShareSlot || missingValues.insert(key).second) {
       ++wanted;
     }
     if (!isResident(brick)) missing.push_back(brick);
@@ -189,14 +208,15 @@ void BrickAtlas::require(std::span<const std::int32_t> bricks) {
     if (isResident(brick)) continue;  // listed twice
     const Brick& one = bricks_[static_cast<std::size_t>(brick)];
     const UniformKey key{one.value.min, one.gradient.min};
-    const auto shared = isUniform(one) ? uniform_.find(key) : uniform_.end();
+    const bool mayShareSlot = mayShare(brick, sharing);
+    const auto shared = mayShareSlot ? uniform_.find(key) : uniform_.end();
     std::int32_t slot;
     if (shared != uniform_.end()) {
       slot = shared->second;
     } else {
       slot = free_.back();
       free_.pop_back();
-      if (isUniform(one)) uniform_[key] = slot;
+      if (mayShareSlot) uniform_[key] = slot;
       uploads.emplace_back(brick, slot);
     }
     slotOf_[static_cast<std::size_t>(brick)] = slot;
@@ -235,7 +255,8 @@ void BrickAtlas::release(std::int32_t brick) {
   if (slot < 0) return;
   if (--users_[static_cast<std::size_t>(slot)] == 0) {
     const Brick& held = bricks_[static_cast<std::size_t>(brick)];
-    if (isUniform(held)) uniform_.erase({held.value.min, held.gradient.min});
+    const auto shared = uniform_.find({held.value.min, held.gradient.min});
+    if (isUniform(held) && shared != uniform_.end() && shared->second == slot) uniform_.erase(shared);
     free_.push_back(slot);
   }
   slot = -1;

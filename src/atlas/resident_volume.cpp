@@ -23,8 +23,8 @@ std::span<const std::int32_t> ResidentVolume::background() {
   return background_;
 }
 
-BrickSelection::BrickSelection(BrickAtlas& atlas, std::vector<std::int32_t> bricks)
-    : atlas_(&atlas), bricks_(std::move(bricks)), slots_(atlas.slotsFor(bricks_)) {
+BrickSelection::BrickSelection(BrickAtlas& atlas, std::vector<std::int32_t> bricks, SlotSharing sharing)
+    : atlas_(&atlas), bricks_(std::move(bricks)), sharing_(sharing), slots_(atlas.slotsFor(bricks_, sharing)) {
   origins_.reserve(bricks_.size());
   for (const std::int32_t brick : bricks_) origins_.push_back(atlas.bricks()[static_cast<std::size_t>(brick)].origin);
 }
@@ -38,7 +38,7 @@ void BrickSelection::require(std::span<const std::int32_t> positions) {
   std::vector<std::int32_t> wanted;
   wanted.reserve(positions.size());
   for (const std::int32_t position : positions) wanted.push_back(bricks_[static_cast<std::size_t>(position)]);
-  atlas_->require(wanted);
+  atlas_->require(wanted, sharing_);
 }
 
 std::shared_ptr<ResidentVolume> ResidentVolumes::get(const Bricks& volume, const AtlasOptions& options) {

@@ -23,6 +23,10 @@ struct AtlasOptions {
   int maxTextureEdge = 0;                                    // texels; 0 takes what the driver allows
 };
 
+/// Whether bricks of one value may share a slot. They may not where something lies beside each slot that differs from
+/// brick to brick, such as light.
+enum class SlotSharing { shared, apart };
+
 /// How texels are turned into grid values: value = offset + texel * scale, where a texel is what a shader reads.
 struct TexelScale {
   double scale = 1, offset = 0;
@@ -66,7 +70,7 @@ class BrickAtlas {
   BrickAtlas& operator=(const BrickAtlas&) = delete;
 
   /// Returns how many slots these bricks take.
-  std::size_t slotsFor(std::span<const std::int32_t> bricks) const;
+  std::size_t slotsFor(std::span<const std::int32_t> bricks, SlotSharing sharing = SlotSharing::shared) const;
   /// Makes room for so many slots, or for as many as the budget allows.
   /// @throw GlError
   void reserve(std::size_t slots);
@@ -74,8 +78,9 @@ class BrickAtlas {
   void append(const std::vector<Brick>& bricks);
 
   /// Makes bricks resident, those that are not yet. Others stay as long as there is room.
+  /// @param sharing  apart: afterwards none of them has the same slot as another brick
   /// @throw InvalidArgument  more slots are needed than the budget allows: names both sizes
-  void require(std::span<const std::int32_t> bricks);
+  void require(std::span<const std::int32_t> bricks, SlotSharing sharing = SlotSharing::shared);
   /// Gives the slot of a brick back.
   void release(std::int32_t brick);
 
@@ -89,6 +94,10 @@ class BrickAtlas {
   const std::vector<Brick>& bricks() const { return bricks_; }
   const BrickLayout& layout() const { return volume_.layout; }
   std::size_t slots() const { return slots_; }
+  /// Returns the number of a brick's slot, below slots(); the brick must be resident.
+  std::int32_t slotNumber(std::int32_t brick) const { return slotOf_[static_cast<std::size_t>(brick)]; }
+  /// Returns a number that grows whenever the textures are made anew and slots lie elsewhere in them.
+  std::uint64_t generation() const { return generation_; }
   bool holdsAll() const { return slots_ >= slotsForAll_; }
   std::uint64_t textureBytes() const;
   std::uint64_t uploadedBricks() const { return uploaded_; }
@@ -105,6 +114,8 @@ class BrickAtlas {
   Plan planTextures(std::size_t slots) const;
   void clear();
   void evict(std::size_t slots);
+  bool mayShare(std::int32_t brick, SlotSharing sharing) const;
+  void setApart(std::int32_t brick);
   std::uint64_t slotBytes() const;
   Slot place(std::int32_t slot, const glm::ivec3& slotGrid) const;
   void upload(std::span<const std::pair<std::int32_t, std::int32_t>> brickAndSlot);
@@ -125,7 +136,7 @@ class BrickAtlas {
   std::uint64_t requests_ = 0;                  // calls of require()
   std::vector<std::int32_t> free_;              // slots
   std::map<UniformKey, std::int32_t> uniform_;  // slots of bricks of one value
-  std::uint64_t uploaded_ = 0;
+  std::uint64_t uploaded_ = 0, generation_ = 0;
   double formatError_ = 0;
 };
 

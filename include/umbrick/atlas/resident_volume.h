@@ -45,7 +45,7 @@ class ResidentVolume {
 class BrickSelection {
  public:
   /// @param bricks  the atlas's numbers
-  BrickSelection(BrickAtlas& atlas, std::vector<std::int32_t> bricks);
+  BrickSelection(BrickAtlas& atlas, std::vector<std::int32_t> bricks, SlotSharing sharing = SlotSharing::shared);
 
   std::size_t size() const { return bricks_.size(); }
   /// Slots that they take.
@@ -54,6 +54,10 @@ class BrickSelection {
   std::span<const glm::ivec3> origins() const { return origins_; }
   BrickAtlas::Slot slot(std::int32_t position) const {
     return atlas_->slot(bricks_[static_cast<std::size_t>(position)]);
+  }
+  /// Number of a brick's slot; the brick must be resident.
+  std::int32_t slotNumber(std::int32_t position) const {
+    return atlas_->slotNumber(bricks_[static_cast<std::size_t>(position)]);
   }
   const BrickAtlas& atlas() const { return *atlas_; }
 
@@ -66,6 +70,7 @@ class BrickSelection {
   BrickAtlas* atlas_;
   std::vector<std::int32_t> bricks_;
   std::vector<glm::ivec3> origins_;
+  SlotSharing sharing_;
   std::size_t slots_;
 };
 
