@@ -15,6 +15,7 @@ namespace umbrick {
 struct LightDirection {
   glm::dvec3 direction;  // towards the light, unit length, world
   glm::dvec3 radiance;   // weight times colour; for `cone` all components are the weight, and the weights sum to 1
+  bool operator==(const LightDirection&) const = default;
 };
 
 /// Returns about `count` directions for the light of a scene whose model is cone or lights. They are the same for the

@@ -1,0 +1,87 @@
+// The light that reaches each voxel of the visible bricks, as a sparse volume beside them.
+//
+// A light volume has no slices of the view: what draws a picture reads the light with one more trilinear fetch.
+// Directions are sorted by the axis and the sign of their largest component in index space into up to six sweeps. A
+// sweep goes through the voxels slice by slice along its axis. Every direction carries the optical depths of its paths
+// in a plane lattice of one path for each voxel:
+//
+//     light of direction k                 U = X - m slope_k    path U is at X on slice m; slope_k: |components| <= 1
+//        \    \    \    \                  D_k(U) += tau        tau: of the path between two slices
+//     ----x----x----x----x--- slice m      L(X)   += w_k exp(-D_k)
+//          \    \    \    \                                     X lies between four paths, U between four voxels:
+//     ------x----x----x----x- slice m+1                         both are interpolated with weights constant on a slice
+//
+// So a lattice is shifted and never resampled: optical depths do not blur on the way, and empty space changes nothing.
+// Only rows of voxels in or next to visible bricks are visited.
+//
+// Compared with Fattal 2009, Participating Media Illumination Using Light Propagation Maps,
+// doi:10.1145/1477926.1477933: his maps are 2D sets of rays detached from the grid, too, so that light neither blurs
+// nor runs along the axes. They carry radiance of several scattering events, store the place of each ray, and leave
+// light in the cells that a ray crosses. Here light is attenuated only (single scattering), the rays of a map are
+// parallel, so that no place is stored and all weights on a slice are the same numbers, and a voxel takes the mean of
+// the rays around it. The grid is sparse, and optical depth between two slices is exact for values that run linearly.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "umbrick/brick/bricks.h"
+#include "umbrick/optics/transfer_function.h"
+#include "umbrick/scene/lights.h"
+
+namespace umbrick {
+
+/// All that light depends on besides the voxels.
+struct LightMedium {
+  TransferFunction transfer;
+  std::vector<LightDirection> directions;
+  /// The medium lies where dot(xyz, index) + w >= 0 for all of these, index coordinates. Beyond a plane that cuts
+  /// through medium light goes on growing as it fell within, for two voxels: so it is smooth where it is read.
+  std::vector<glm::dvec4> planes;
+  std::vector<glm::ivec3> cells;  // first owned voxels of the bricks in which something is visible
+  bool operator==(const LightMedium&) const = default;
+};
+
+struct LightStats {
+  int directions = 0, sweeps = 0;
+  std::uint64_t updates = 0;  // path texels that were taken through a slice
+  std::uint64_t bytes = 0;    // of host memory, while light is computed
+  double ms = 0;
+};
+
+/// Holds the light of one medium.
+class LightVolume {
+ public:
+  /// @param volume  outlives this
+  explicit LightVolume(const Bricks& volume);
+  ~LightVolume();
+
+  /// Computes the light where anything has changed since the last call. @return whether it was computed
+  /// @param mostBytes  of host memory
+  /// @throw InvalidArgument  more memory would be needed: the message says how much
+  bool update(const LightMedium& medium, std::uint64_t mostBytes);
+
+  /// Tells whether the directions' radiances differ in more than brightness, so that there are three channels.
+  bool coloured() const;
+  int channels() const { return coloured() ? 3 : 1; }
+  /// Returns what arrives where nothing is in the way: the sum of the radiances.
+  glm::dvec3 whole() const;
+  const LightStats& stats() const;
+
+  /// Reads the light of the brick at `origin` with its apron, edge() voxels along each axis, x fastest, as shares of
+  /// whole(). It is 0 at voxels without medium next to them, where nobody reads it.
+  /// @param light  channels() numbers a voxel
+  /// @throw InvalidArgument  not one of the cells, or a span of the wrong size
+  void read(const glm::ivec3& origin, std::span<float> light) const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace umbrick
