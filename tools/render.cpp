@@ -89,7 +89,12 @@ nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& pict
   json["fragments_shaded"] = stats.fragments;
   json["bytes"] = {
       {"brick_textures", stats.textureBytes}, {"buffers", stats.bufferBytes}, {"peak_memory", peakMemoryBytes()}};
-  if (stats.directions > 0)
+  if (stats.directions > 0 && occlusionMethod(loaded.scene) == Method::lightVolume)
+    json["light"] = {{"directions", stats.directions},
+                     {"ms", stats.lightMs},
+                     {"bytes", stats.windowBytes},
+                     {"updates", stats.windowUpdates}};
+  else if (stats.directions > 0)
     json["windows"] = {{"directions", stats.directions},
                        {"texel_world", stats.windowTexel},
                        {"bytes", stats.windowBytes},
@@ -236,7 +241,10 @@ int render(const RenderCommand& command) {
   if (progressive && command.frames > 1) throw UsageError("--frames and --progressive exclude each other");
   if (progressive && !(traitsOf(scene.model).occlusion && traitsOf(scene.method).directions))
     throw UsageError(
-        "--progressive, --max-seconds and --target-error need the model cone or lights and the method ordinates");
+        "--progressive, --max-seconds and --target-error need the model cone or lights and the method ordinates or "
+        "light-volume");
+  if (command.targetError && scene.method == Method::lightVolume)
+    throw UsageError("--target-error: needs --method ordinates, whose windows can be refined");
   RenderWatch watch;
   const std::string nothing = "interrupted; nothing was written";
   watch.bar.begin("loading " + scene.volume.file.filename().string());
@@ -318,10 +326,10 @@ Command addRender(CLI::App& app) {
       ->capture_default_str()
       ->group("Output");
   const std::string progressive = "Progressive";
-  sub->add_option(
-         "--progressive", command->passes,
-         "ordinates: average so many passes, each of other directions, slices, texels and places in the pixels "
-         "(--samples 1: their centres); the picture is written again meanwhile")
+  sub->add_option("--progressive", command->passes,
+                  "ordinates and light-volume: average so many passes, each of other directions, slices, texels and "
+                  "places in the pixels "
+                  "(--samples 1: their centres); the picture is written again meanwhile")
       ->check(CLI::Range(1, 1 << 20))
       ->group(progressive);
   sub->add_option("--max-seconds", command->maxSeconds, "begin no pass later")

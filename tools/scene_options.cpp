@@ -241,7 +241,8 @@ void applyQuality(const SceneOptions& options, bool fromScene, Scene& scene) {
     if (options.has(option)) options.fields.find(option)->second(scene);
   const bool lit = traitsOf(scene.model).directions, byDirections = traitsOf(scene.method).directions;
   if (options.quality && (!lit || (options.has("method") && !byDirections)))
-    throw UsageError("--quality: is for the models cone and lights by the method ordinates; give --model cone");
+    throw UsageError(
+        "--quality: is for the models cone and lights by the methods ordinates and light-volume; give --model cone");
   if (options.quality)
     umbrick::applyQuality(parseName(kQualities, *options.quality, "--quality"), scene);
   else if (lit && byDirections && !fromScene)
@@ -267,12 +268,19 @@ void readSpacing(const std::string& text, SceneOptions& options) {
     throw CLI::ValidationError("--spacing", "expected a distance of slices, or three numbers, found '" + text + "'");
 }
 
-// Refuses an option that only the other method looks at, since it shows that the user expects that method.
+std::string methodsOf(const SceneField& field) {
+  std::string names;
+  for (const Method method : field.onlyOf) names += (names.empty() ? "" : " or ") + methodName(method);
+  return names;
+}
+
+// Refuses an option that only the other methods look at, since it shows that the user expects that method.
 void checkMethodOptions(const SceneOptions& options, Method method) {
   for (const SceneField& field : sceneFields())
-    if (field.onlyOf && *field.onlyOf != method && options.has(field.option))
-      throw UsageError("--" + std::string(field.option) + ": is for --method " + methodName(*field.onlyOf) +
-                       ", found " + methodName(method));
+    if (!field.onlyOf.empty() && std::ranges::find(field.onlyOf, method) == field.onlyOf.end() &&
+        options.has(field.option))
+      throw UsageError("--" + std::string(field.option) + ": is for --method " + methodsOf(field) + ", found " +
+                       methodName(method));
 }
 
 void applyClipping(const SceneOptions& options, Scene& scene) {

@@ -14,6 +14,7 @@ const int kEyeUnit = 3;                // the eye buffer so far
 const int kTileStateUnit = 3;          // tiles of the image, see tile_state.frag
 const int kCoveredByUnit = 4;          // also one texel for each tile of the image
 const int kExtinctionUnit = 5;         // optical depth of slabs on the light's lattice
+const int kLightUnit = 6;              // light at voxels, beside the atlas
 const int kVisibilityUnit = 8;         // the light that arrives
 const int kVisibilityWeightUnit = 9;   // how much of that counts, see window_step.comp
 

@@ -29,6 +29,10 @@ constexpr MethodTraits kMethodTraits[]{
      .meaning = "a transmittance for each of a set of directions",
      .sources = true,
      .directions = true},
+    {.method = Method::lightVolume,
+     .meaning = "light at every voxel, computed before the picture is drawn",
+     .sources = true,
+     .directions = true},
 };
 
 }  // namespace

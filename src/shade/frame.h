@@ -124,6 +124,8 @@ class SlicePass {
 std::unique_ptr<SlicePass> makeEmissionPass();
 std::unique_ptr<SlicePass> makeOcclusionPass();
 std::unique_ptr<SlicePass> makeOrdinatesPass();
+/// @param volume  outlives the pass
+std::unique_ptr<SlicePass> makeLightVolumePass(const Bricks& volume);
 
 /// Excludes saturated pixels from everything that is drawn later.
 class SaturationTest {

@@ -80,8 +80,11 @@ class Stream {
 
 void check(const ResolvedScene& scene, const ProgressiveOptions& options) {
   if (!traitsOf(scene.model).directions || !traitsOf(scene.method).directions)
-    throw InvalidArgument("progressive: needs the model cone or lights and the method ordinates, found " +
-                          modelName(scene.model) + " and " + methodName(scene.method));
+    throw InvalidArgument(
+        "progressive: needs the model cone or lights and the method ordinates or light-volume, found " +
+        modelName(scene.model) + " and " + methodName(scene.method));
+  if (options.targetError > 0 && scene.method == Method::lightVolume)
+    throw InvalidArgument("progressive: a target error needs the method ordinates, whose windows can be refined");
   if (options.passes < 1)
     throw InvalidArgument("progressive: passes is " + std::to_string(options.passes) + ", must be 1 or more");
   if (options.targetError > 0 && options.passes < kStreams)
@@ -160,7 +163,9 @@ class PassSeries {
     all_.add(picture);
     if (passes_ == 0) {
       // From now on the automatic texel is that of the first picture, so that twice and half of it are what they say.
-      scene_.occlusion.ordinates.scale = shortestVoxelEdge(resident_.volume().indexToWorld) / picture.stats.windowTexel;
+      if (scene_.method == Method::ordinates)
+        scene_.occlusion.ordinates.scale =
+            shortestVoxelEdge(resident_.volume().indexToWorld) / picture.stats.windowTexel;
       // Coarser pictures cost an eighth and finer ones eight times as much, but finer ones can be made from bricks
       // with any apron.
       const ResolvedScene coarse = coarserScene(scene_);
@@ -178,7 +183,8 @@ class PassSeries {
             momentsOf([&](std::size_t k) { return otherMeans_[k].colour(i) - means_[k].colour(i); });
         return moments.mean * moments.mean - moments.variance;
       });
-      error.systematic = errorOverDifference(ratio_, 1 / scene_.occlusion.ordinates.scale) * difference;
+      const double texel = scene_.method == Method::ordinates ? 1 / scene_.occlusion.ordinates.scale : 1;
+      error.systematic = errorOverDifference(ratio_, texel) * difference;
       other_.reset();
     }
     all_.store(picture);

@@ -37,6 +37,11 @@ std::vector<std::int32_t> visibleBricks(ResidentVolume& resident, const Transfer
   return visible;
 }
 
+// Light lies beside the slots of bricks, so that no two may share one.
+SlotSharing sharingOf(const ResolvedScene& scene) {
+  return occlusionMethod(scene) == Method::lightVolume ? SlotSharing::apart : SlotSharing::shared;
+}
+
 // The parts of the renderer that must be made anew after a change of the scene. Camera, clip planes, lights, theta and
 // the like ask for nothing: they are looked at when a picture is drawn.
 struct Dirty {
@@ -49,7 +54,7 @@ struct Dirty {
   Dirty(const ResolvedScene& before, const ResolvedScene& after)
       : lookup(before.transfer != after.transfer || before.sampling.spacing != after.sampling.spacing ||
                before.sampling.quadrature != after.sampling.quadrature),
-        selection(lookup || before.bricks.culling != after.bricks.culling),
+        selection(lookup || before.bricks.culling != after.bricks.culling || sharingOf(before) != sharingOf(after)),
         targets(targetsOf(before) != targetsOf(after)),
         pass(occlusionMethod(before) != occlusionMethod(after)) {}
 
@@ -65,9 +70,10 @@ struct Dirty {
   }
 };
 
-std::unique_ptr<SlicePass> makePass(const ResolvedScene& scene) {
+std::unique_ptr<SlicePass> makePass(const ResolvedScene& scene, const Bricks& volume) {
   const std::optional<Method> method = occlusionMethod(scene);
   if (!method) return makeEmissionPass();
+  if (*method == Method::lightVolume) return makeLightVolumePass(volume);
   return *method == Method::dos ? makeOcclusionPass() : makeOrdinatesPass();
 }
 
@@ -93,7 +99,8 @@ class SliceRenderer::Implementation {
     if (dirty.selection) {
       const Range background{volume_.background, volume_.background};
       backgroundVisible = !volume_.domain.empty() && transfer.isVisible(background, {0, 0});
-      selection.emplace(resident_.atlas(), visibleBricks(resident_, transfer, next.bricks.culling, backgroundVisible));
+      selection.emplace(resident_.atlas(), visibleBricks(resident_, transfer, next.bricks.culling, backgroundVisible),
+                        sharingOf(next));
       fits = selection->reserve();
     }
     std::optional<RenderTargets> targets;
@@ -106,7 +113,7 @@ class SliceRenderer::Implementation {
       options.aux = options_.visibilityAndDepth;
       targets.emplace(gl_, options);
     }
-    std::unique_ptr<SlicePass> pass = dirty.pass ? makePass(next) : nullptr;
+    std::unique_ptr<SlicePass> pass = dirty.pass ? makePass(next, volume_) : nullptr;
     frame_.reset();  // it refers to what is replaced
     if (lookup) transfer_.emplace(std::move(*lookup));
     if (selection) selection_.emplace(std::move(*selection));
@@ -240,7 +247,7 @@ class SliceRenderer::Implementation {
                             " is integrated by the reference alone; slices render emission, cone and lights");
     if (!supports(scene.method, scene.model))
       throw InvalidArgument("method: " + methodName(scene.method) + " knows one cone around the view axis; " +
-                            modelName(scene.model) + " need ordinates");
+                            modelName(scene.model) + " need ordinates or a light volume");
     const int most = resident_.context().maxTextureEdge2d();
     if (scene.camera.width > most || scene.camera.height > most)
       throw InvalidArgument("camera.size: " + std::to_string(scene.camera.width) + " x " +

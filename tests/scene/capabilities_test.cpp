@@ -32,11 +32,13 @@ TEST_CASE("Every model and every method has the traits that it is asked for", "[
   }
 }
 
-TEST_CASE("Light sources are for ordinates alone", "[scene]") {
+TEST_CASE("Light sources are for methods of directions", "[scene]") {
   CHECK_FALSE(traitsOf(Method::dos).sources);
   CHECK_FALSE(traitsOf(Method::dos).directions);
   CHECK(traitsOf(Method::ordinates).sources);
   CHECK(traitsOf(Method::ordinates).directions);
+  CHECK(traitsOf(Method::lightVolume).sources);
+  CHECK(traitsOf(Method::lightVolume).directions);
   for (const auto& [name, model] : kModels) {
     CAPTURE(name);
     CHECK(traitsOf(model).sources == (model == Model::lights));
@@ -44,11 +46,10 @@ TEST_CASE("Light sources are for ordinates alone", "[scene]") {
 }
 
 TEST_CASE("A method supports the models that the slice renderer accepts with it", "[scene]") {
-  const std::set<std::pair<Method, Model>> accepted{{Method::dos, Model::emission},
-                                                    {Method::dos, Model::cone},
-                                                    {Method::ordinates, Model::emission},
-                                                    {Method::ordinates, Model::cone},
-                                                    {Method::ordinates, Model::lights}};
+  const std::set<std::pair<Method, Model>> accepted{
+      {Method::dos, Model::emission},     {Method::dos, Model::cone},          {Method::ordinates, Model::emission},
+      {Method::ordinates, Model::cone},   {Method::ordinates, Model::lights},  {Method::lightVolume, Model::emission},
+      {Method::lightVolume, Model::cone}, {Method::lightVolume, Model::lights}};
   for (const auto& [methodName, method] : kMethods)
     for (const auto& [modelName, model] : kModels) {
       CAPTURE(methodName, modelName);

@@ -440,7 +440,8 @@ TEST_CASE("Options of samples that make no sense are refused", "[shade][gl]") {
   emission.model = Model::emission;
   dos.method = Method::dos;
   ambient.model = Model::ambient;
-  const std::string needs = "progressive: needs the model cone or lights and the method ordinates, found ";
+  const std::string needs =
+      "progressive: needs the model cone or lights and the method ordinates or light-volume, found ";
   CHECK(refused(emission, {}) == needs + "emission and ordinates");
   CHECK(refused(dos, {}) == needs + "cone and dos");
   CHECK(refused(ambient, {}) == needs + "ambient and ordinates");

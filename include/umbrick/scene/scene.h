@@ -34,9 +34,11 @@ inline std::string modelName(Model model) { return std::string(nameOf(kModels, m
 
 /// How the share V is computed. `dos` is directional occlusion shading, Schott et al. 2009,
 /// doi:10.1111/j.1467-8659.2009.01464.x. `ordinates` is a set of directions, each with a transmittance of its own that
-/// is carried along its paths.
-enum class Method { dos, ordinates };
-inline constexpr Name<Method> kMethods[]{{"dos", Method::dos}, {"ordinates", Method::ordinates}};
+/// is carried along its paths through the slices. `light-volume` takes the same directions through the voxels instead,
+/// before the picture is drawn, so that slices read how much light reaches a voxel.
+enum class Method { dos, ordinates, lightVolume };
+inline constexpr Name<Method> kMethods[]{
+    {"dos", Method::dos}, {"ordinates", Method::ordinates}, {"light-volume", Method::lightVolume}};
 inline std::string methodName(Method method) { return std::string(nameOf(kMethods, method)); }
 
 /// How a slab between two slices is integrated.
@@ -56,11 +58,11 @@ struct DosOptions {
   bool operator==(const DosOptions&) const = default;
 };
 
-/// Options of the method `ordinates`.
+/// Options of the methods `ordinates` and `light-volume`.
 struct OrdinatesOptions {
   int directions = 16;  // K: about so many over the cone or over the lights
-  /// Window texels per voxel edge. 0 stands for texels as large as the larger of slab and voxel, or as 1/2048 of the
-  /// volume's diagonal where that is larger.
+  /// Of ordinates: window texels per voxel edge. 0 stands for texels as large as the larger of slab and voxel, or as
+  /// 1/2048 of the volume's diagonal where that is larger.
   double scale = 0;
   bool operator==(const OrdinatesOptions&) const = default;
 };
@@ -191,7 +193,7 @@ struct Scene : SceneSettings {
 ///              eye, lookAt, up and viewHeight
 ///   transfer   name of a preset, name of a file, the function itself (also ParaView's array), or "auto", as without
 ///   it; window [low, high], sigmaScale    applied to it model      "emission", "cone", "cone-ray", "ambient", "lights"
-///   method     "dos", "ordinates"
+///   method     "dos", "ordinates", "light-volume"
 ///   light      ambient [r, g, b], background [r, g, b], sources [{type, frame ("view", "world"), ...}, ...]; by type,
 ///                "cone"         axis, theta, radiance ([r, g, b], or one number)
 ///                "directional"  direction, softAngle (of theta's kind), radiance: the same, and printed as a cone

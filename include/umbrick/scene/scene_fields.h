@@ -94,8 +94,8 @@ struct SceneField {
   std::string_view help;   // what the field is, with its unit: "n: n x n samples over the cone's footprint"
   FieldPlace (*place)(Scene&);
   FieldRange range = {};
-  std::optional<Method> onlyOf = {};  // the only method of occlusion that looks at the field; none: all
-  std::string_view otherwise = {};    // what help says instead of a default: ": chosen by itself"
+  std::vector<Method> onlyOf = {};  // the only methods of occlusion that look at the field; none: all
+  std::string_view otherwise = {};  // what help says instead of a default: ": chosen by itself"
 
   /// Returns the section, such as "occlusion" for "occlusion.footprint"; empty for a field of the scene itself.
   std::string_view section() const;

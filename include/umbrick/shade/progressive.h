@@ -31,6 +31,8 @@ struct ErrorEstimate {
   /// too dark by almost as much with slabs of 2.5 voxels as with 10. For volumes that are few slabs deep the estimate
   /// tells little, since errors then follow no order: it was from a sixth of the true error to 2.6 times of it, in
   /// volumes of four to eight slabs.
+  /// Of light volumes only slabs are taken twice as large: what the spacing of voxels does to their light is not known
+  /// from it, so that no target error can be asked for.
   /// It is infinite before kStreams samples.
   double systematic = 0;
   double total() const;  // root of the sum of squares
@@ -60,19 +62,21 @@ struct ProgressivePicture {
 /// Sample i belongs to stream i modulo this number.
 inline constexpr int kStreams = 4;
 
-/// Renders cone or lights by ordinates again and again and averages the samples, which it may since the picture is
-/// linear in its light. Each sample has the next K directions of a low-discrepancy sequence (lightSamples) and other
-/// places of slices, of the lattice of light, of roundings and, unless pixelArea is false, inside the pixels. Samples
-/// of a stream continue one sequence, so that the error falls faster than with the root of their number, and the
-/// streams' spread, which needs no more than that they are independent, is an honest standard error (replicated
-/// quasi-Monte Carlo, Owen 1997). The same seed gives the same picture. All pictures read the same resident bricks.
+/// Renders cone or lights by ordinates or light volumes again and again and averages the samples, which it may since
+/// the picture is linear in its light. Each sample has the next K directions of a low-discrepancy sequence
+/// (lightSamples) and other places of slices, of the lattice of light, of roundings and, unless pixelArea is false,
+/// inside the pixels. Samples of a stream continue one sequence, so that the error falls faster than with the root of
+/// their number, and the streams' spread, which needs no more than that they are independent, is an honest standard
+/// error (replicated quasi-Monte Carlo, Owen 1997). The same seed gives the same picture. All pictures read the same
+/// resident bricks.
 ///
 /// With ProgressiveOptions::refine the series begins again with slabs and texels half as large, down to an eighth of a
 /// voxel, where the systematic error alone is in the way of the target and kStreams samples are left.
 /// @param volume  bricks with the apron of coarserScene(scene). Where slabs twice as thick reach beyond the apron, the
 ///   systematic error comes from the difference to slabs half as thick, at eight times the cost of the first samples.
 /// @param onPass  called after every sample with the picture so far; false stops
-/// @throw InvalidArgument  a model or a method without directions; an option out of range; as SliceRenderer
+/// @throw InvalidArgument  a model or a method without directions; a target error for light volumes; an option out of
+///   range; as SliceRenderer
 ProgressivePicture renderProgressive(ResidentVolume& volume, const ResolvedScene& scene,
                                      const ProgressiveOptions& options, const RenderOptions& render = {},
                                      const std::function<bool(const ProgressivePicture&)>& onPass = {});

@@ -47,16 +47,19 @@ struct RenderStats {
   int textures = 0;                  // number of textures that hold bricks
   int textureEdge = 0;               // longest edge of those textures, texels
   std::uint64_t bufferBytes = 0;     // of the buffers for eye, occlusion, depth and layers
-  int directions = 0;                // ordinates: number of directions of the light
+  int directions = 0;                // ordinates, light-volume: number of directions of the light
   double windowTexel = 0;            // ordinates: edge of a texel of the windows, world units
-  std::uint64_t windowBytes = 0;     // ordinates: of the windows and of what light is computed on, part of bufferBytes
-  std::uint64_t windowUpdates = 0;   // ordinates: texels of windows that light was taken through slices in
-  PassTimes passes;                  // only when asked for
-  double formatError = 0;            // largest |voxel - texel|, grid units
-  double geometryMs = 0;             // to cut slices into polygons
-  double uploadMs = 0;               // to bring bricks and polygons to textures and buffers
-  double sweepMs = 0;                // to draw, until the last fragment is done
-  double readMs = 0;                 // to bring the picture back to memory
+  // ordinates: of the windows and of what light is computed on, part of bufferBytes; light-volume: of the textures of
+  // light, part of textureBytes
+  std::uint64_t windowBytes = 0;
+  std::uint64_t windowUpdates = 0;  // ordinates, light-volume: texels that light was taken through slices in
+  double lightMs = 0;               // light-volume: to compute light on the CPU; 0 where it was there already
+  PassTimes passes;                 // only when asked for
+  double formatError = 0;           // largest |voxel - texel|, grid units
+  double geometryMs = 0;            // to cut slices into polygons
+  double uploadMs = 0;              // to bring bricks and polygons to textures and buffers
+  double sweepMs = 0;               // to draw, until the last fragment is done
+  double readMs = 0;                // to bring the picture back to memory
 };
 
 /// The choices that are free for a picture. Pictures of other samples have other errors, so that the mean of several
