@@ -13,7 +13,8 @@ using Catch::Contains;
 using Json = nlohmann::json;
 
 namespace {
-const std::string kBall = "ball.vdb --tf ball.json --model emission --azimuth 0 --up z --size 24x20 --spacing 0.1 --spacing-unit world ";
+const std::string kBall =
+    "ball.vdb --tf ball.json --model emission --azimuth 0 --up z --size 24x20 --spacing 0.1 --spacing-unit world ";
 }
 
 TEST_CASE("Renderer and reference average over the same places, and their files say so", "[tools]") {
@@ -47,7 +48,9 @@ TEST_CASE("Renderer and reference average over the same places, and their files 
 TEST_CASE("The passes of a progressive picture are its samples of the pixels' area", "[tools]") {
   if (!testContext()) return;
   const BallWorkplace at;
-  const std::string cone = "render " + kBall + "--model cone --directions 2 --spacing 1 --progressive 5 ";
+  const std::string cone =
+      "render ball.vdb --tf ball.json --azimuth 0 --up z --size 24x20 --model cone --directions 2 --spacing 1 "
+      "--progressive 5 ";
   REQUIRE(at.run(cone + "-o a.exr --stats a.json").status == 0);
   CHECK(at.exr("a.exr").metadata.at("umbrick.filter") == "box, 5 samples a pixel");
   CHECK(at.json("a.json")["scene"]["sampling"]["pixelSamples"] == 5);

@@ -89,8 +89,9 @@ TEST_CASE("The reference lights a scene by its sources, which dos refuses", "[to
   CHECK_THAT(at.run("reference " + kScene + "--model lights -o c.exr").err, Contains("light.sources: is empty"));
   const ProgramResult sliced = at.run("render lit.json --model lights --method dos -o c.exr");
   CHECK(sliced.status == 1);
-  CHECK_THAT(sliced.err, Contains("method (--method): dos knows one cone around the view axis; lights need ordinates or "
-                                  "a light volume"));
+  CHECK_THAT(sliced.err,
+             Contains("method (--method): dos knows one cone around the view axis; lights need ordinates or "
+                      "a light volume"));
 }
 
 TEST_CASE("A standard error is reached, or the pixels that do not reach it are counted", "[tools]") {

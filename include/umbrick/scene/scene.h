@@ -191,8 +191,9 @@ struct Scene : SceneSettings {
 ///   camera     projection ("perspective", "orthographic"), size [width, height], fov, near, and either azimuth and
 ///              elevation around the volume, upAxis, frontAxis ("auto", "x", "-x", ...), zoom and pan [right, up], or
 ///              eye, lookAt, up and viewHeight
-///   transfer   name of a preset, name of a file, the function itself (also ParaView's array), or "auto", as without
-///   it; window [low, high], sigmaScale    applied to it model      "emission", "cone", "cone-ray", "ambient", "lights"
+///   transfer   name of a preset, name of a file, the function itself (also ParaView's array), or "auto", as without it
+///   window [low, high], sigmaScale    applied to it
+///   model      "emission", "cone", "cone-ray", "ambient", "lights"
 ///   method     "dos", "ordinates", "light-volume"
 ///   light      ambient [r, g, b], background [r, g, b], sources [{type, frame ("view", "world"), ...}, ...]; by type,
 ///                "cone"         axis, theta, radiance ([r, g, b], or one number)
