@@ -1,9 +1,11 @@
 // Pictures in one call: the front door for programs that need no more.
 //
 //   umbrick::Scene scene;
-//   scene.volume.file = "head.vdb";
-//   scene.transfer = umbrick::loadTransferFunction("ct-bone");
+//   scene.volume.file = "head.nii.gz";  // or any other volume, or a file of grids
+//   scene.model = umbrick::Model::cone;
 //   umbrick::writePng("head.png", umbrick::renderScene(scene).colour);
+//
+// Without a transfer function one that fits the volume is suggested (suggest_transfer.h).
 //
 // A program that draws a volume more than once keeps the parts: a Volume (volume.h), its Bricks, a ResidentVolume
 // (atlas/resident_volume.h) and a Renderer (techniques.h), whose scene is changed by setters.
