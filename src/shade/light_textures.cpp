@@ -16,12 +16,12 @@ void LightTextures::makeTextures(const GlFunctions& gl, const BrickAtlas& atlas,
   held_.assign(atlas.slots(), {});
   const glm::ivec3 size = atlas.textureSize();
   for (int i = 0; i < atlas.textureCount(); ++i)
-    textures_.push_back(makeTexture3d(gl, channels == 3 ? GL_RGBA16F : GL_R16F, size.x, size.y, size.z));
+    textures_.push_back(makeTexture3d(gl, channels == 3 ? GL_RGBA32F : GL_R32F, size.x, size.y, size.z));
   atlas_ = &atlas;
   generation_ = atlas.generation();
   channels_ = channels;
   bytes_ = static_cast<std::uint64_t>(atlas.textureCount()) * static_cast<std::uint64_t>(size.x) *
-           static_cast<std::uint64_t>(size.y) * static_cast<std::uint64_t>(size.z) * (channels == 3 ? 8u : 2u);
+           static_cast<std::uint64_t>(size.y) * static_cast<std::uint64_t>(size.z) * (channels == 3 ? 16u : 4u);
 }
 
 void LightTextures::require(const GlFunctions& gl, const BrickSelection& bricks, const LightVolume& light,

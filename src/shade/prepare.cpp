@@ -9,6 +9,7 @@
 #include <string>
 
 #include "umbrick/core/error.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/resolve.h"
 #include "umbrick/slice/proxy_slices.h"
 
@@ -31,6 +32,13 @@ AtlasOptions atlasOptions(const ResolvedScene& scene, const Bricks& volume, cons
   AtlasOptions options;
   options.format = parseVoxelFormat(scene.bricks.format, volume);
   options.budgetBytes = limits.budgetBytes > 0 ? limits.budgetBytes : scene.bricks.budgetMiB << 20;
+  // A light volume lies in textures of their own beside those of the bricks, in 32 bits a voxel.
+  if (limits.budgetBytes == 0 && occlusionMethod(scene) == Method::lightVolume) {
+    const std::uint64_t bytes = options.format == VoxelFormat::unorm8    ? 1
+                                : options.format == VoxelFormat::float32 ? 4
+                                                                         : 2;
+    options.budgetBytes = options.budgetBytes * bytes / (bytes + 4);
+  }
   options.maxTextureBytes = limits.maxTextureBytes;
   options.maxTextureEdge = limits.maxTextureEdge;
   return options;

@@ -123,9 +123,8 @@ TEST_CASE("Bricks and memory change no picture of a light volume", "[shade][ligh
     scene.bricks.interior = interior;
     const auto bricks = bricksFor(grid, scene);
     const Picture bricked = renderPicture(*context, *bricks, scene, kLayers);
-    // Half floats hold light to 2^-12.
-    CHECK(maxDifference(whole.colour, bricked.colour) < 5e-4);
-    CHECK(maxDifference(whole.visibility, bricked.visibility) < 5e-4);
+    CHECK(maxDifference(whole.colour, bricked.colour) < 1e-4);
+    CHECK(maxDifference(whole.visibility, bricked.visibility) < 1e-4);
     // So many that one slice fits; the light of a brick travels with it.
     AtlasLimits limits;
     limits.budgetBytes = bricks->layout.voxels() * 2 * (interior == 8 ? 190 : 50);
