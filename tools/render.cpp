@@ -236,13 +236,15 @@ ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& vo
 int render(const RenderCommand& command) {
   const PictureOutput& output = *command.output;
   checkOutputs(output);
-  const Scene scene = makeScene(*command.scene, {.model = Model::cone});
+  Scene scene = makeScene(*command.scene, {.model = Model::cone});
   const bool progressive = command.passes || command.maxSeconds || command.targetError;
   if (progressive && command.frames > 1) throw UsageError("--frames and --progressive exclude each other");
   if (progressive && !(traitsOf(scene.model).occlusion && traitsOf(scene.method).directions))
     throw UsageError(
         "--progressive, --max-seconds and --target-error need the model cone or lights and the method ordinates or "
         "light-volume");
+  // Ordinates alone can be refined, so that a target takes them unless the user names a method.
+  if (command.targetError && !command.scene->has("method")) scene.method = Method::ordinates;
   if (command.targetError && scene.method == Method::lightVolume)
     throw UsageError("--target-error: needs --method ordinates, whose windows can be refined");
   RenderWatch watch;

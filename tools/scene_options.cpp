@@ -359,7 +359,7 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNam
   addFieldOptions(command, o, "Light");
   command
       .add_option("--quality", o.quality,
-                  "draft, normal or high: ordinates with spacing, segments and directions that go together; options "
+                  "draft, normal or high: a method with spacing, segments and directions that go together; options "
                   "that name one of them win [of a .vdb: normal]")
       ->check(CLI::IsMember(listNames(kQualities)))
       ->group("Light");

@@ -9,12 +9,14 @@ namespace {
 
 struct QualityRow {
   Quality quality;
+  Method method;
   double spacing;  // voxels
   int segments, directions;
 };
 // The segments of `draft` have twice the usual length.
-constexpr QualityRow kQualityRows[]{
-    {Quality::draft, 5, 4, 6}, {Quality::normal, 2.5, 4, 16}, {Quality::high, 1.25, 2, 32}};
+constexpr QualityRow kQualityRows[]{{Quality::draft, Method::ordinates, 5, 4, 6},
+                                    {Quality::normal, Method::lightVolume, 2.5, 4, 16},
+                                    {Quality::high, Method::lightVolume, 1.25, 2, 32}};
 
 }  // namespace
 
@@ -29,7 +31,7 @@ void applyQuality(Quality quality, Scene& scene) {
   scene.spacingUnit = SpacingUnit::voxel;
   scene.sampling.spacing = row.spacing;
   scene.sampling.segments = row.segments;
-  scene.method = Method::ordinates;
+  scene.method = row.method;
   scene.occlusion.ordinates = {.directions = row.directions, .scale = 0};
 }
 

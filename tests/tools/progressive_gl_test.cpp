@@ -126,9 +126,12 @@ TEST_CASE("Samples of a scene without directions are refused in one line and lea
   check("--model cone --target-error nan", 1, "target error are 0.000000 and nan, must be 0 or more");
   check("--model cone --progressive 4 --seed -1", 2, "--seed");
   check("--model cone --quality best", 2, "--quality");
-  // These options belong to the other method.
+  // These options belong to other methods.
   for (const std::string option : {"--footprint 5", "--algorithm 2", "--passes 2", "--no-perspective-correction"})
-    check("--model cone " + option, 2, option.substr(0, option.find(' ')) + ": is for --method dos, found ordinates");
+    check("--model cone " + option, 2,
+          option.substr(0, option.find(' ')) + ": is for --method dos, found light-volume");
+  check("--model cone --occlusion-scale 1", 2, "--occlusion-scale: is for --method ordinates, found light-volume");
+  check("--model cone --method light-volume --target-error 0.1", 2, "--target-error: needs --method ordinates");
   check("--model cone --method dos --occlusion-scale 1", 2, "--occlusion-scale: is for --method ordinates, found dos");
 }
 
@@ -136,8 +139,8 @@ TEST_CASE("A quality sets what goes together, and single options overrule it", "
   if (!testContext()) return;
   const BallWorkplace at;
   // Spacing is in world units in a header; here this makes no difference, since voxels are of unit size.
-  const Json draft{5.0, "world", 4, 6, 0.0, "ordinates"}, normal{2.5, "world", 4, 16, 0.0, "ordinates"},
-      high{1.25, "world", 2, 32, 0.0, "ordinates"};
+  const Json draft{5.0, "world", 4, 6, 0.0, "ordinates"}, normal{2.5, "world", 4, 16, 0.0, "light-volume"},
+      high{1.25, "world", 2, 32, 0.0, "light-volume"};
   const std::string cone = kRenderBall + "--model cone ";
   CHECK(sampling(at.sceneOf(cone + "--quality draft")) == draft);
   CHECK(sampling(at.sceneOf(cone + "--quality normal")) == normal);
@@ -148,8 +151,11 @@ TEST_CASE("A quality sets what goes together, and single options overrule it", "
   CHECK(sampling(mixed) == Json{5.0, "world", 1, 9, 0.5, "ordinates"});
   CHECK(sampling(at.sceneOf(cone + "--spacing 3 --quality high"))[0] == 3.0);
   // Segments follow the spacing.
-  CHECK(sampling(at.sceneOf(cone + "--directions 9")) == Json{2.5, "world", 4, 9, 0.0, "ordinates"});
-  CHECK(sampling(at.sceneOf(cone + "--spacing 1")) == Json{1.0, "world", 2, 16, 0.0, "ordinates"});
+  CHECK(sampling(at.sceneOf(cone + "--directions 9")) == Json{2.5, "world", 4, 9, 0.0, "light-volume"});
+  CHECK(sampling(at.sceneOf(cone + "--spacing 1")) == Json{1.0, "world", 2, 16, 0.0, "light-volume"});
+  CHECK(sampling(at.sceneOf(cone + "--method ordinates")) == Json{2.5, "world", 4, 16, 0.0, "ordinates"});
+  // A target can be refined to with ordinates alone.
+  CHECK(sampling(at.sceneOf(cone + "--target-error 0.5 --progressive 4"))[5] == "ordinates");
   CHECK(sampling(at.sceneOf(cone + "--method dos"))[0] == 0.5);
   CHECK(sampling(at.sceneOf(kRenderBall + "--model emission"))[0] == 0.5);
   CHECK(sampling(at.sceneOf(kRenderBall)) == normal);  // cone is what is drawn where no model is named
@@ -157,7 +163,8 @@ TEST_CASE("A quality sets what goes together, and single options overrule it", "
   // A scene file counts as it is written, unless a quality overrules it.
   writeBytes(at.folder.path() / "scene.json",
              R"({"volume": {"file": "ball.vdb"}, "transfer": "ball.json", "camera": {"size": [24, 20]},
-                 "model": "cone", "sampling": {"spacing": 1.5}, "occlusion": {"directions": 7, "scale": 0.8}})");
+                 "model": "cone", "method": "ordinates", "sampling": {"spacing": 1.5},
+                 "occlusion": {"directions": 7, "scale": 0.8}})");
   CHECK(sampling(at.sceneOf("render scene.json")) == Json{1.5, "world", 1, 7, 0.8, "ordinates"});
   CHECK(sampling(at.sceneOf("render scene.json --quality normal")) == normal);
   CHECK(sampling(at.sceneOf("render scene.json --quality normal --directions 3"))[3] == 3);

@@ -162,7 +162,7 @@ struct SceneSettings {
   VolumeReference volume;
   Camera camera;
   Model model = Model::emission;
-  Method method = Method::ordinates;
+  Method method = Method::lightVolume;
   glm::dvec3 ambient{1};                 // L_a, radiance from every direction
   std::optional<glm::dvec3> background;  // L_b; when it is set the picture is opaque (alpha 1)
   std::vector<LightSource> lights;       // for the model `lights`, which needs at least one
@@ -216,7 +216,7 @@ Scene readScene(const std::filesystem::path& path);
 /// @throw InvalidArgument  a number is not finite, a name is not UTF-8, or an environment map comes from no file
 std::string printScene(const Scene& scene);
 
-/// How much work ordinates spend on a picture.
+/// How much work is spent on the light of a picture: ordinates for a draft, else light volumes.
 enum class Quality { draft, normal, high };
 inline constexpr Name<Quality> kQualities[]{
     {"draft", Quality::draft}, {"normal", Quality::normal}, {"high", Quality::high}};
