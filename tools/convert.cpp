@@ -9,6 +9,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "command.h"
@@ -42,6 +43,7 @@ int plan(const ConvertCommand& command, const ConvertOptions& options, ProgressB
 Outcome convertOne(const ConvertCommand& command, const ConvertOptions& options, ProgressBar& bar) {
   const ConvertReport report = convert(command.inputs, command.output, options);
   bar.clear();
+  printNotes(report);
   printWarnings(report);
   printReport(report, options);
   return {report.bytesIn, report.bytesOut};
@@ -49,8 +51,10 @@ Outcome convertOne(const ConvertCommand& command, const ConvertOptions& options,
 
 Outcome convertSequence(const FrameSequence& sequence, const ConvertOptions& options, ProgressBar& bar) {
   Outcome outcome;
+  std::set<std::string> said;
   convertFrames(sequence.frames, options, [&](const FrameFiles&, const ConvertReport& report) {
     bar.clear();
+    printNotes(report, &said);
     printWarnings(report);
     printFrame(report);
     outcome.bytesIn += report.bytesIn;

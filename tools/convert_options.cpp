@@ -90,6 +90,18 @@ void addGridOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& comman
                  "of a DICOM folder: the UID of a series, or its number in the list that is printed [the only one]");
 }
 
+// How the files of volumes are read.
+void addReadingOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
+  app.add_option(
+         "--length-unit", command->options.source.open.lengthUnit,
+         "unit of the world: nm, um, mm, cm, m, or file for the one that the file states; where it states none, "
+         "its numbers are taken for this unit, and so are those of --spacing and --origin [mm, or smaller where voxels "
+         "are too small for OpenVDB]")
+      ->check(CLI::IsMember({"nm", "um", "mm", "cm", "m", "file"}));
+  app.add_flag("--strict", command->options.source.open.strict,
+               "refuse data files that are longer than their header (.mhd, .nhdr) says, which else is only noted");
+}
+
 // Which values stay.
 void addValueOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
   const CLI::Validator finite = finiteNumber();
@@ -232,6 +244,7 @@ void addConvertOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& com
   addFileOptions(app, command);
   addPackingOptions(app, command);
   addGridOptions(app, command);
+  addReadingOptions(app, command);
   addValueOptions(app, command);
   addPartOptions(app, command);
   addLossOptions(app, command);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <set>
 #include <sstream>
 
 namespace umbrick::tools {
@@ -111,6 +112,12 @@ void printFrame(const ConvertReport& report) {
   if (first.background) extras << ", background " << first.background->value;
   if (first.verified) extras << ", verified";
   std::cout << report.output.string() << ": " << line << extras.str() << std::endl;
+}
+
+void printNotes(const ConvertReport& report, std::set<std::string>* said) {
+  for (const ConvertedGrid& grid : report.grids)
+    for (const std::string& note : grid.notes)
+      if (!said || said->insert(note).second) std::cerr << grid.input.string() << ": " << note << '\n';
 }
 
 void printWarnings(const ConvertReport& report) {

@@ -1,6 +1,9 @@
 // What umbrick convert prints about a file that it wrote.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <set>
+#include <string>
+
 #include "umbrick/convert/convert_options.h"
 #include "umbrick/convert/convert_report.h"
 #include "umbrick/convert/plan_volumes.h"
@@ -13,6 +16,10 @@ void printReport(const ConvertReport& report, const ConvertOptions& options);
 
 /// One line about a frame that is written, on stdout.
 void printFrame(const ConvertReport& report);
+
+/// What a user should know of how the volumes were read, on stderr.
+/// @param said  notes that are not said again, as those of frames before; may be null
+void printNotes(const ConvertReport& report, std::set<std::string>* said = nullptr);
 
 /// Grids that were left out, and options that did not apply, on stderr.
 void printWarnings(const ConvertReport& report);

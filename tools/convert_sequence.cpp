@@ -17,16 +17,16 @@ namespace umbrick::tools {
 namespace fs = std::filesystem;
 namespace {
 
-// "12", "12-40" or "12-40:4".
+// "12", "12-40" or "12-40:4", where numbers may be negative: "-2-2".
 FrameRange parseRange(const std::string& text) {
   const auto refuse = [&] { throw UsageError("--frames: expected A, A-B or A-B:step with A <= B, found " + text); };
   std::string_view rest = text;
   const auto take = [&] {
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-    if (error != std::errc() || value < 0) refuse();
+    if (error != std::errc()) refuse();
     rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-    return std::min<std::int64_t>(value, 1'000'000'000'000);  // so that sums do not overflow
+    return std::clamp<std::int64_t>(value, -1'000'000'000'000, 1'000'000'000'000);  // so that sums do not overflow
   };
   const auto follows = [&](char sign) {
     const bool found = rest.starts_with(sign);
@@ -89,6 +89,8 @@ std::optional<FrameSequence> findSequence(const ConvertCommand& command, const C
   const auto asked = command.frames.empty() ? std::nullopt : std::optional(parseRange(command.frames));
   FrameSequence sequence = findFrames(*input, command.output, asked, options);
   printMissing(*input, sequence.missing);
+  for (const fs::path& file : sequence.leftOut)
+    std::cerr << file.string() << ": left out: another file has its number, or the number is too large\n";
   return sequence;
 }
 

@@ -20,6 +20,8 @@ std::optional<glm::dvec3> vector(const std::optional<std::array<double, 3>>& v) 
 OpenOptions openInput(const ConvertCommand& command) {
   OpenOptions open;
   open.series = command.options.source.open.series;
+  open.lengthUnit = command.options.source.open.lengthUnit;
+  open.strict = command.options.source.open.strict;
   if (!command.raw()) {
     open.spacing = vector(command.spacing);
     open.origin = vector(command.origin);

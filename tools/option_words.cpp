@@ -28,6 +28,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kWords{{
     {"build.maxError", "--max-error"},
     {"source.backgroundFromBorder", "--background auto"},
     {"source.resample", "--resample"},
+    {"source.open.lengthUnit", "--length-unit"},
 }};
 
 // What an option can do about an error of a reader.

@@ -47,11 +47,11 @@ void checkImages(const FrameFiles& first) {
 
 FrameSequence findFrames(const fs::path& input, const fs::path& output, const std::optional<FrameRange>& wanted,
                          const ConvertOptions& options) {
-  const std::vector<NumberedFile> all = listFrames(input);
+  FrameSequence sequence;
+  const std::vector<NumberedFile> all = listFrames(input, &sequence.leftOut);
   const FrameRange range = wanted.value_or(FrameRange{all.front().number, all.back().number});
   if (range.last < range.first || range.step < 1)
     throw OptionsError("wanted: expected first <= last and a step of at least 1, found frames " + text(range));
-  FrameSequence sequence;
   for (const NumberedFile& frame : all)
     if (range.contains(frame.number))
       sequence.frames.push_back({frame.number, frame.path, framePath(output, frame.number)});

@@ -27,6 +27,7 @@ void checkOptions(const fs::path& input, const ConvertOptions& options) {
   refuse(options.source.backgroundFromBorder, "source.backgroundFromBorder",
          "a grid states its background; give a number to change it");
   refuse(options.source.resample.has_value(), "source.resample", "a grid keeps its voxels");
+  refuse(!options.source.open.lengthUnit.empty(), "source.open.lengthUnit", "a grid keeps its world");
   refuse(!options.names.empty(), "options.names", "grids have names");
   refuse(!options.units.empty(), "options.units", "grids keep their metadata");
 }

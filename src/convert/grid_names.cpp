@@ -4,12 +4,14 @@
 #include <map>
 
 #include "umbrick/convert/options_error.h"
+#include "umbrick/ingest/vtk_volume.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
 std::string stemOf(fs::path path) {
+  if (const std::string array = vtkArrayName(path); !array.empty()) return array;
   if (!path.has_filename()) path = path.parent_path();  // a folder, written with a slash behind it
   for (const char* packing : {".gz", ".xz", ".zst", ".bz2"})
     if (path.extension() == packing && path.stem().has_extension()) return path.stem().stem().string();

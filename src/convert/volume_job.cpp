@@ -78,6 +78,7 @@ void buildVolume(VoxelSource& source, VolumeJob& job) {
   ConvertedGrid& report = job.report;
   BuiltGrid built = buildGrid(source, passOf(job, ConvertStage::converting, source.info()));
   report.volumeType = source.info().type;
+  report.notes = source.info().notes;
   job.bytesIn = source.info().fileBytes;
   if (job.options.isosurface) report.isosurface = replaceByIsosurface(job.input, *job.options.isosurface, built);
   if (!job.unit.empty()) built.grid->insertMeta("value_unit", openvdb::StringMetadata(job.unit));

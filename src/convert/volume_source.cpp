@@ -24,6 +24,18 @@ std::unique_ptr<VoxelSource> cropped(const SourceOptions& options, std::unique_p
   return options.crop ? cropSource(std::move(source), *options.crop) : std::move(source);
 }
 
+// A mask may state its place in another unit of length.
+std::unique_ptr<VoxelSource> inUnitOf(const VoxelSource& source, std::unique_ptr<VoxelSource> mask) {
+  const auto unit = [](const VoxelSource& of) {
+    const auto found = of.info().metadata.find("length_unit");
+    return found == of.info().metadata.end() ? std::string() : found->second;
+  };
+  const std::string wanted = unit(source), found = unit(*mask);
+  const bool known = wanted == "nm" || wanted == "um" || wanted == "mm" || wanted == "cm" || wanted == "m";
+  if (!known || found.empty() || found == wanted) return mask;
+  return inLengthUnit(std::move(mask), wanted);
+}
+
 }  // namespace
 
 void expectFile(const fs::path& input, const std::string& field) {
@@ -45,7 +57,7 @@ std::unique_ptr<VoxelSource> openFiltered(const fs::path& input, const SourceOpt
   if (!options.mask.empty()) {
     auto mask = holdsGrids(options.mask)
                     ? gridSource(options.mask.string(), readMaskGrid(options.mask).grid, source->info().dims)
-                    : openMask(options);
+                    : inUnitOf(*source, openMask(options));
     source = maskSource(std::move(source), std::move(mask), background, &notes.leftOut);
   }
   source = cropped(options, std::move(source));

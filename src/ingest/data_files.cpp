@@ -61,9 +61,15 @@ std::int64_t dataFileSize(const fs::path& path) {
 }
 
 std::unique_ptr<ByteStream> openPlainShare(const fs::path& path, std::int64_t offset, std::int64_t skip,
-                                           std::int64_t bytes, VoxelType type) {
+                                           std::int64_t bytes, VoxelType type, std::vector<std::string>* longer) {
   const std::int64_t size = dataFileSize(path);
   offset = skip < 0 ? std::max(offset, size - bytes) : offset + std::min(skip, size);
+  if (longer && size - offset > bytes) {
+    const std::string note = path.filename().string() + " has " + std::to_string(size - offset - bytes) +
+                             " bytes behind its voxels, which are left out";
+    if (std::find(longer->begin(), longer->end(), note) == longer->end()) longer->push_back(note);
+    return firstBytes(openPlain(path, offset), bytes);
+  }
   if (size - offset != bytes)
     throw IoError(path.string() + ": expected " + std::to_string(bytes) + " bytes of " +
                   std::string(voxelTypeName(type)) + " voxels, found " +

@@ -49,8 +49,9 @@ std::int64_t dataFileSize(const std::filesystem::path& path);
 
 /// A share of voxels that are stored as they are.
 /// @param skip  bytes after `offset`; -1: the voxels are the last bytes of the file
+/// @param longer  gets a note where the file is longer; null: that is an error
 /// @throw IoError  the file does not end with the last voxel
 std::unique_ptr<ByteStream> openPlainShare(const std::filesystem::path& path, std::int64_t offset, std::int64_t skip,
-                                           std::int64_t bytes, VoxelType type);
+                                           std::int64_t bytes, VoxelType type, std::vector<std::string>* longer);
 
 }  // namespace umbrick

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/ingest/hdf5_volume.h"
 
-#include <hdf5.h>
-
 #include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
 
+#include "ingest/hdf5_handle.h"
+#include "ingest/hdf5_meaning.h"
 #include "ingest/header_text.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
@@ -48,38 +48,25 @@ std::string complaint() {
   return text.empty() ? "an unreadable file" : text;
 }
 
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  hid_t get() const { return id_; }
-  bool good() const { return id_ >= 0; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
+using Handle = Hdf5Handle;
 
 struct Place {
   fs::path file;
   std::string dataset;  // empty: the only one
 };
 
-bool beginsAsHdf5(const fs::path& path) {
+bool beginsAs(const fs::path& path, std::string_view magic) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return false;
   std::array<char, 8> bytes{};
   openPlain(path)->read(std::as_writable_bytes(std::span(bytes)));
-  return std::string_view(bytes.data(), bytes.size()) == kMagic;
+  return std::string_view(bytes.data(), bytes.size()).starts_with(magic);
 }
 
 Place split(const fs::path& path) {
   const std::string text = path.string();
   for (std::size_t at = text.find(":/"); at != text.npos; at = text.find(":/", at + 1))
-    if (beginsAsHdf5(text.substr(0, at))) return {text.substr(0, at), text.substr(at + 1)};
+    if (beginsAs(text.substr(0, at), kMagic)) return {text.substr(0, at), text.substr(at + 1)};
   return {path, {}};
 }
 
@@ -91,11 +78,16 @@ std::vector<hsize_t> shapeOf(hid_t dataset) {
   return shape;
 }
 
-// The axes that count are the last three when those before have length 1, or all when there are fewer.
-std::size_t axesOf(const std::vector<hsize_t>& shape) {
-  std::size_t dropped = 0;
-  while (shape.size() - dropped > 3 && shape[dropped] == 1) ++dropped;
-  return shape.size() - dropped;
+// The axes that count: of more than three, those of length 1 are dropped, the first ones first.
+std::vector<std::size_t> axesOf(const std::vector<hsize_t>& shape) {
+  std::vector<std::size_t> axes;
+  std::size_t spare = shape.size() > 3 ? shape.size() - 3 : 0;
+  for (std::size_t i = 0; i < shape.size(); ++i)
+    if (shape[i] == 1 && spare > 0)
+      --spare;
+    else
+      axes.push_back(i);
+  return axes;
 }
 
 std::string shapeText(const std::vector<hsize_t>& shape) {
@@ -187,7 +179,7 @@ struct Found {
 herr_t onObject(hid_t file, const char* name, const H5O_info_t* info, void* user) {
   if (info->type != H5O_TYPE_DATASET) return 0;
   const Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
-  if (!dataset.good() || axesOf(shapeOf(dataset.get())) != 3) return 0;
+  if (!dataset.good() || axesOf(shapeOf(dataset.get())).size() != 3) return 0;
   auto& found = *static_cast<Found*>(user);
   const std::string path = std::string("/") + name;
   if (numberType(dataset.get()))
@@ -225,11 +217,10 @@ Handle openDataset(hid_t file, const std::string& name) {
     return dataset;
   const Handle type(H5Dget_type(dataset.get()), H5Tclose);
   double chunks = 1, bytes = static_cast<double>(H5Tget_size(type.get()));
-  for (std::size_t axis = 0; axis < shape.size(); ++axis) {
-    bytes *= static_cast<double>(chunk[axis]);
-    if (axis + 2 >= shape.size())
-      chunks *= static_cast<double>((shape[axis] + chunk[axis] - 1) / std::max<hsize_t>(chunk[axis], 1));
-  }
+  for (const hsize_t length : chunk) bytes *= static_cast<double>(length);
+  const std::vector<std::size_t> axes = axesOf(shape);
+  for (std::size_t i = axes.size() > 2 ? axes.size() - 2 : 0; i < axes.size(); ++i)
+    chunks *= static_cast<double>((shape[axes[i]] + chunk[axes[i]] - 1) / std::max<hsize_t>(chunk[axes[i]], 1));
   if (chunks * bytes > static_cast<double>(kMaxCacheBytes)) return dataset;
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
   H5Pset_chunk_cache(access.get(), static_cast<std::size_t>(chunks) * 10 + 1, static_cast<std::size_t>(chunks * bytes),
@@ -239,29 +230,30 @@ Handle openDataset(hid_t file, const std::string& name) {
 
 class Hdf5Source : public VoxelSource {
  public:
-  Hdf5Source(VolumeInfo info, Handle file, Handle dataset, VoxelType read)
-      : file_(std::move(file)), dataset_(std::move(dataset)), shape_(shapeOf(dataset_.get())) {
+  Hdf5Source(VolumeInfo info, Handle file, Handle dataset, Hdf5Meaning meaning)
+      : file_(std::move(file)),
+        dataset_(std::move(dataset)),
+        shape_(shapeOf(dataset_.get())),
+        meaning_(std::move(meaning)) {
     info_ = std::move(info);
-    layout_.type = read;
-    layout_.endian = std::endian::native;  // libhdf5 swaps
   }
 
   double readSlab(std::int64_t count, std::span<float> out) override {
     const Quiet quiet;
-    slab_.resize(out.size() * static_cast<std::size_t>(voxelBytes(layout_.type)));
+    slab_.resize(out.size() * static_cast<std::size_t>(voxelBytes(meaning_.layout.type)));
     std::vector<hsize_t> start(shape_.size()), extent = shape_;
-    if (axesOf(shape_) == 3) {
-      start[shape_.size() - 3] = static_cast<hsize_t>(next_);
-      extent[shape_.size() - 3] = static_cast<hsize_t>(count);
+    if (const std::vector<std::size_t> axes = axesOf(shape_); axes.size() == 3) {
+      start[axes[0]] = static_cast<hsize_t>(next_);
+      extent[axes[0]] = static_cast<hsize_t>(count);
     }
     const Handle from(H5Dget_space(dataset_.get()), H5Sclose);
     const Handle to(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose);
     if (H5Sselect_hyperslab(from.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr) < 0 ||
-        H5Dread(dataset_.get(), memoryType(layout_.type), to.get(), from.get(), H5P_DEFAULT, slab_.data()) < 0)
+        H5Dread(dataset_.get(), memoryType(meaning_.read), to.get(), from.get(), H5P_DEFAULT, slab_.data()) < 0)
       throw IoError(info_.name + ": expected " + describeBytes(info_) + ", found from slice " +
                     std::to_string(next_ + 1) + " on: " + complaint());
     next_ += count;
-    return decodeVoxels(layout_, slab_, out);
+    return meaning_.decode(slab_, out);
   }
 
   void skipSlices(std::int64_t count) override { next_ += count; }
@@ -270,7 +262,7 @@ class Hdf5Source : public VoxelSource {
  private:
   Handle file_, dataset_;
   std::vector<hsize_t> shape_;
-  VoxelLayout layout_;
+  Hdf5Meaning meaning_;
   std::int64_t next_ = 0;
   std::vector<std::byte> slab_;
 };
@@ -285,8 +277,12 @@ std::unique_ptr<VoxelSource> openHdf5(const fs::path& path) {
   VolumeInfo info;
   info.fileBytes = checkedFileSize(place.file);
   Handle file(H5Fopen(place.file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file.good()) throw IoError(place.file.string() + ": expected an HDF5 file, found: " + complaint());
-  if (place.dataset.empty()) place.dataset = onlyVolume(place.file, file.get());
+  if (!file.good())
+    throw IoError(place.file.string() + ": expected an HDF5 file, found" +
+                  (beginsAs(place.file, "CDF") ? " netCDF 3, which is not read; nccopy -k nc4 makes HDF5 of it"
+                                               : ": " + complaint()));
+  const bool chosen = place.dataset.empty();
+  if (chosen) place.dataset = onlyVolume(place.file, file.get());
   info.name = place.file.string() + ':' + place.dataset;
   Handle dataset = openDataset(file.get(), place.dataset);
   if (!dataset.good()) throw IoError(info.name + ": expected a dataset, found: " + complaint());
@@ -296,13 +292,14 @@ std::unique_ptr<VoxelSource> openHdf5(const fs::path& path) {
     throw IoError(info.name + ": type: expected integers of 8 to 64 bits or floats of 16 to 64, found " +
                   typeText(dataset.get()));
   const std::vector<hsize_t> shape = shapeOf(dataset.get());
-  const std::size_t axes = axesOf(shape);
-  if (axes < 2 || axes > 3)
-    failField(info.name, "shape", "two or three axes", shape.empty() ? "none" : shapeText(shape));
+  const std::vector<std::size_t> axes = axesOf(shape);
+  if (axes.size() < 2 || axes.size() > 3)
+    failField(info.name, "shape", "two or three axes that are longer than 1",
+              shape.empty() ? "none" : shapeText(shape));
   info.type = type->stored;
   info.dims = glm::i64vec3(1);
-  for (std::size_t i = 0; i < axes; ++i)
-    info.dims[static_cast<int>(i)] = static_cast<std::int64_t>(shape[shape.size() - 1 - i]);
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    info.dims[static_cast<int>(i)] = static_cast<std::int64_t>(shape[axes[axes.size() - 1 - i]]);
   if (!volumeBytes(info.dims, info.type))
     failField(info.name, "shape", "each from 1 to 2147483647 and less than 2^63 bytes in all", shapeText(shape));
   // A slice is held as a whole. Chunks that nobody wrote take no bytes, so this leaves much room.
@@ -312,8 +309,10 @@ std::unique_ptr<VoxelSource> openHdf5(const fs::path& path) {
     failField(info.name, "shape", "slices that the " + std::to_string(storedBytes) + " stored bytes can fill",
               shapeText(shape));
   addProvenance(info, place.file, "HDF5");
-  info.metadata["hdf5_dataset"] = place.dataset;
-  return std::make_unique<Hdf5Source>(std::move(info), std::move(file), std::move(dataset), type->read);
+  info.metadata["source_dataset"] = place.dataset;
+  if (chosen) info.notes.push_back("dataset " + place.dataset + " is taken, the only one of three axes");
+  Hdf5Meaning meaning = readHdf5Meaning(dataset.get(), type->read, axes, shape.size(), info);
+  return std::make_unique<Hdf5Source>(std::move(info), std::move(file), std::move(dataset), std::move(meaning));
 }
 
 }  // namespace umbrick

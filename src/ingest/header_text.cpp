@@ -72,7 +72,9 @@ std::optional<NamePattern> namePattern(std::string_view text) {
 
 std::string NamePattern::name(std::int64_t number) const {
   std::string text = std::to_string(number);
-  text.insert(0, digits - std::min(digits, text.size()), padding);
+  // As printf does: a sign counts, and stands before zeros and behind blanks.
+  const std::size_t at = padding == '0' && number < 0 ? 1 : 0;
+  text.insert(at, digits - std::min(digits, text.size()), padding);
   return before + text + after;
 }
 

@@ -153,11 +153,8 @@ class MetaHeaderReader {
       m[3][axis] = origin[i];
     }
     const std::string unit = fields_.value("DistanceUnits");
-    if (const auto millimetres = millimetresPer(unit)) {
-      scaleWorld(m, glm::dvec3(*millimetres));
-      header_.info.metadata["length_unit"] = "mm";
-    }
     checkPlace(header_.info, "TransformMatrix, ElementSpacing and Offset");
+    if (const auto millimetres = millimetresPer(unit)) useLengthUnit(header_.info, *millimetres);
   }
 
   void readFiles() {

@@ -18,9 +18,10 @@ namespace {
 
 // The voxels of one file, a share of all, as plain bytes.
 std::unique_ptr<ByteStream> openMetaShare(const MetaHeader& header, const fs::path& path, std::int64_t offset,
-                                          std::int64_t bytes) {
+                                          std::int64_t bytes, std::vector<std::string>* longer) {
   const std::int64_t size = dataFileSize(path);
-  if (!header.ascii && !header.compressed) return openPlainShare(path, offset, header.skip, bytes, header.layout.type);
+  if (!header.ascii && !header.compressed)
+    return openPlainShare(path, offset, header.skip, bytes, header.layout.type, longer);
   offset += std::min(header.skip, size);
   if (header.ascii) return decimalStream(openPlain(path, offset), header.layout.type, path.string());
   if (header.files.size() <= 1) checkDeflateRatio(path, header.info, size);
@@ -29,16 +30,18 @@ std::unique_ptr<ByteStream> openMetaShare(const MetaHeader& header, const fs::pa
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openMetaImage(const fs::path& path) {
+std::unique_ptr<VoxelSource> openMetaImage(const fs::path& path, bool strict) {
   const std::int64_t ownBytes = checkedFileSize(path);
   const auto header = std::make_shared<const MetaHeader>(readMetaHeader(path));
   VolumeInfo info = header->info;
   info.fileBytes = std::max<std::int64_t>(ownBytes, 0);
   addProvenance(info, path, "MetaImage");
+  const auto longer = strict || header->files.empty() ? nullptr : std::make_shared<std::vector<std::string>>();
   auto bytes = openDataFiles(info, "ElementDataFile", path, header->headerBytes, header->files,
-                             [header](const fs::path& file, std::int64_t offset, std::int64_t share) {
-                               return openMetaShare(*header, file, offset, share);
+                             [header, longer](const fs::path& file, std::int64_t offset, std::int64_t share) {
+                               return openMetaShare(*header, file, offset, share, longer.get());
                              });
+  if (longer) info.notes.insert(info.notes.end(), longer->begin(), longer->end());
   return std::make_unique<DenseSource>(std::move(info), header->layout, std::move(bytes), "");
 }
 

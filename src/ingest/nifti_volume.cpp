@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ingest/header_text.h"
+#include "ingest/length_unit.h"
 #include "ingest/nifti_header.h"
 #include "ingest/place.h"
 #include "ingest/provenance.h"
@@ -26,6 +27,22 @@ std::optional<VoxelType> voxelType(int datatype) {
   for (const auto& [code, type] : kTypes)
     if (code == datatype) return type;
   return std::nullopt;
+}
+
+// Names a type that is not read, with its code.
+std::string datatypeName(int datatype) {
+  static constexpr std::array<std::pair<int, const char*>, 8> kNames{{{0, "none"},
+                                                                      {1, "bits"},
+                                                                      {32, "complex numbers of 64 bits"},
+                                                                      {128, "RGB colours"},
+                                                                      {1536, "floats of 128 bits"},
+                                                                      {1792, "complex numbers of 128 bits"},
+                                                                      {2048, "complex numbers of 256 bits"},
+                                                                      {2304, "RGBA colours"}}};
+  std::string name = "an unknown type";
+  for (const auto& [code, known] : kNames)
+    if (code == datatype) name = known;
+  return name + " (code " + std::to_string(datatype) + ")";
 }
 
 // "a.img.gz" for "a.hdr" and the other way round: the same name with the other ending, packed or not.
@@ -76,6 +93,13 @@ glm::dmat4 qform(const NiftiHeader& header) {
   return m;
 }
 
+glm::dmat4 sform(const NiftiHeader& header) {
+  glm::dmat4 m(1);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) m[column][row] = header.srow[static_cast<std::size_t>(4 * row + column)];
+  return m;
+}
+
 std::string formName(const char* form, int code) {
   static constexpr std::array<const char*, 6> kNames{"", "scanner", "aligned", "Talairach", "MNI 152", "template"};
   return form +
@@ -85,10 +109,13 @@ std::string formName(const char* form, int code) {
 void place(const NiftiHeader& header, VolumeInfo& info) {
   glm::dmat4& m = info.indexToWorld;
   std::string field = "sform";
-  if (header.sformCode > 0) {
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 4; ++column)
-        m[column][row] = header.srow[static_cast<std::size_t>(4 * row + column)];
+  const bool instead =
+      header.sformCode > 0 && !spansSpace(sform(header)) && header.qformCode > 0 && spansSpace(qform(header));
+  if (instead)
+    info.notes.push_back("the sform (code " + std::to_string(header.sformCode) +
+                         ") has no three independent directions: the qform is used");
+  if (header.sformCode > 0 && !instead) {
+    m = sform(header);
     info.metadata["nifti_form"] = formName("sform", header.sformCode);
   } else if (header.qformCode > 0) {
     checkDistances(info, header);
@@ -102,10 +129,9 @@ void place(const NiftiHeader& header, VolumeInfo& info) {
     field = "pixdim";
   }
   if (field != "pixdim") info.metadata["space"] = "RAS";
-  if (header.spaceUnit >= 1 && header.spaceUnit <= 3) info.metadata["length_unit"] = "mm";
-  const double millimetres = header.spaceUnit == 1 ? 1000 : header.spaceUnit == 3 ? 1e-3 : 1;
-  scaleWorld(m, glm::dvec3(millimetres));
   checkPlace(info, field);
+  if (header.spaceUnit >= 1 && header.spaceUnit <= 3)
+    useLengthUnit(info, header.spaceUnit == 1 ? 1000 : header.spaceUnit == 3 ? 1e-3 : 1);
 }
 
 }  // namespace
@@ -133,8 +159,7 @@ std::unique_ptr<VoxelSource> openNifti(const fs::path& path) {
   }
   const auto type = voxelType(header.datatype);
   if (!type)
-    failField(path, "datatype", "the code of an integer of 8 to 64 bits or of a float of 32 or 64",
-              std::to_string(header.datatype));
+    failField(path, "datatype", "integers of 8 to 64 bits or floats of 32 or 64", datatypeName(header.datatype));
   info.type = *type;
   if (!volumeBytes(info.dims, info.type)) failField(path, "dim", "less than 2^63 bytes in all", "more");
   if (header.voxOffset < 0) failField(path, "vox_offset", "a number from 0", "another");

@@ -213,14 +213,15 @@ class NrrdAxesReader {
     else
       for (const Axis& axis : axes) units.push_back(axis.unit);
     if (units.empty() || units.size() > 3) return;
-    glm::dvec3 factor(1);
-    for (std::size_t i = 0; i < units.size(); ++i) {
+    const auto first = millimetresPer(units.front());
+    if (!first) return;  // unknown: left as it is
+    glm::dvec3 factor(*first);
+    for (std::size_t i = 1; i < units.size(); ++i) {
       const auto millimetres = millimetresPer(units[i]);
-      if (!millimetres) return;  // unknown: left as it is
+      if (!millimetres) return;
       factor[static_cast<int>(i)] = *millimetres;
     }
-    scaleWorld(header_.indexToWorld, factor);
-    header_.metadata["length_unit"] = "mm";
+    header_.millimetres = factor;
   }
 
   const HeaderFields& fields_;

@@ -24,8 +24,9 @@ struct NrrdHeader {
   std::int64_t lineSkip = 0, byteSkip = 0;       // byteSkip -1: the voxels are the last bytes of the file
   std::vector<std::filesystem::path> dataFiles;  // empty: the data follow the header
   std::int64_t bytes = 0;                        // size of the header with its closing blank line
-  glm::dmat4 indexToWorld{1};
-  std::map<std::string, std::string> metadata;  // fields that do not change voxels, and the key/value pairs
+  glm::dmat4 indexToWorld{1};                    // in the unit of the file
+  std::optional<glm::dvec3> millimetres;         // of that unit along each axis of the world, where it is known
+  std::map<std::string, std::string> metadata;   // fields that do not change voxels, and the key/value pairs
 };
 
 /// @throw IoError  naming the file, the field, what was expected and what was found

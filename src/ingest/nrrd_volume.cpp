@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ingest/data_files.h"
+#include "ingest/length_unit.h"
 #include "ingest/nrrd_header.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
@@ -36,11 +37,11 @@ std::int64_t skipLines(const fs::path& path, std::int64_t offset, std::int64_t l
 
 // The voxels of one file, a share of all, as plain bytes.
 std::unique_ptr<ByteStream> openNrrdShare(const NrrdHeader& header, const fs::path& path, std::int64_t offset,
-                                          std::int64_t voxelBytesHere) {
+                                          std::int64_t voxelBytesHere, std::vector<std::string>* longer) {
   dataFileSize(path);
   offset = skipLines(path, offset, header.lineSkip);
   if (header.encoding == NrrdEncoding::raw)
-    return openPlainShare(path, offset, header.byteSkip, voxelBytesHere, header.type);
+    return openPlainShare(path, offset, header.byteSkip, voxelBytesHere, header.type, longer);
   Packing packing = Packing::none;
   if (header.encoding == NrrdEncoding::gzip) packing = Packing::gzip;
   if (header.encoding == NrrdEncoding::bzip2) packing = Packing::bzip2;
@@ -60,7 +61,7 @@ std::unique_ptr<ByteStream> openNrrdShare(const NrrdHeader& header, const fs::pa
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openNrrd(const fs::path& path) {
+std::unique_ptr<VoxelSource> openNrrd(const fs::path& path, bool strict) {
   const std::int64_t headerFileBytes = checkedFileSize(path);
   const auto header = std::make_shared<const NrrdHeader>(readNrrdHeader(path));
   VolumeInfo info;
@@ -69,13 +70,16 @@ std::unique_ptr<VoxelSource> openNrrd(const fs::path& path) {
   info.type = header->type;
   info.indexToWorld = header->indexToWorld;
   info.metadata = header->metadata;
+  if (header->millimetres) useLengthUnit(info, *header->millimetres);
   addProvenance(info, path, "NRRD");
   info.fileBytes = std::max<std::int64_t>(headerFileBytes, 0);
 
+  const auto longer = strict || header->dataFiles.empty() ? nullptr : std::make_shared<std::vector<std::string>>();
   auto bytes = openDataFiles(info, "data file", path, header->bytes, header->dataFiles,
-                             [header](const fs::path& file, std::int64_t offset, std::int64_t share) {
-                               return openNrrdShare(*header, file, offset, share);
+                             [header, longer](const fs::path& file, std::int64_t offset, std::int64_t share) {
+                               return openNrrdShare(*header, file, offset, share, longer.get());
                              });
+  if (longer) info.notes.insert(info.notes.end(), longer->begin(), longer->end());
   const bool text = header->encoding == NrrdEncoding::text;
   const std::endian endian = text ? std::endian::native : header->bigEndian ? std::endian::big : std::endian::little;
   return std::make_unique<DenseSource>(std::move(info), VoxelLayout{header->type, endian, 0}, std::move(bytes), "");

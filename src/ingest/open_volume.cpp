@@ -11,6 +11,7 @@
 
 #include "ingest/dicom/dicom_series.h"
 #include "ingest/header_text.h"
+#include "ingest/length_unit.h"
 #include "ingest/streams/packed_stream.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/dicom_volume.h"
@@ -43,13 +44,13 @@ std::vector<Format> formats() {
         "scalar volumes; raw, gzip, bzip2, text and hex; detached, in lists and in numbered files"},
        [](Bytes b) { return b.starts_with("NRRD000"); },
        true,
-       [](const fs::path& path, const OpenOptions&) { return openNrrd(path); }},
+       [](const fs::path& path, const OpenOptions& options) { return openNrrd(path, options.strict); }},
       {{"MetaImage",
         {".mha", ".mhd"},
         "scalar volumes; binary, compressed and ASCII; in one file, beside, in lists and in numbered files"},
        [](Bytes b) { return b.starts_with("ObjectType") || b.starts_with("NDims"); },
        true,
-       [](const fs::path& path, const OpenOptions&) { return openMetaImage(path); }},
+       [](const fs::path& path, const OpenOptions& options) { return openMetaImage(path, options.strict); }},
       {{"NIfTI and Analyze",
         {".nii", ".nii.gz", ".hdr", ".img", ".img.gz"},
         "scalar volumes of NIfTI-1, NIfTI-2 and Analyze 7.5; sform, qform, units, slope and intercept"},
@@ -66,7 +67,7 @@ std::vector<Format> formats() {
        [](const fs::path& path, const OpenOptions& options) { return openDicom(path, options.series); }},
       {{"images",
         {".tif", ".tiff", ".png"},
-        "grey TIFF of one or many pages and PNG: a file, slice_%04d.tif, 'slice*.png' or a folder"},
+        "grey TIFF of one or many pages and PNG: a file, slice_%04d.tif, 'slice*.png' or a folder; OME-XML, ImageJ"},
        [](Bytes b) {
          return b.starts_with(Bytes("II*\0", 4)) || b.starts_with(Bytes("MM\0*", 4)) ||
                 b.starts_with(Bytes("II+\0", 4)) || b.starts_with(Bytes("MM\0+", 4)) || b.starts_with("\x89PNG");
@@ -75,17 +76,18 @@ std::vector<Format> formats() {
        [](const fs::path& path, const OpenOptions&) { return openImageStack(path); }},
       {{"VTK ImageData",
         {".vti"},
-        "one scalar array of points or cells; ascii, base64 and raw, inline and appended; zlib, LZ4 and LZMA"},
+        "one scalar array of points or cells: file.vti:name, or the only one; ascii, base64 and raw; zlib, LZ4 and "
+        "LZMA"},
        {},
        true,
        [](const fs::path& path, const OpenOptions&) { return openVti(path); }},
-      {{"legacy VTK", {".vtk"}, "structured points, ASCII and binary"},
+      {{"legacy VTK", {".vtk"}, "structured points, ASCII and binary: file.vtk:name, or the first scalars"},
        [](Bytes b) { return b.starts_with("# vtk DataFile"); },
        true,
        [](const fs::path& path, const OpenOptions&) { return openLegacyVtk(path); }},
       {{"HDF5",
-        {".h5", ".hdf5", ".he5"},
-        "a dataset of three axes: file.h5:/path, or the only one; every layout and filter of libhdf5"},
+        {".h5", ".hdf5", ".he5", ".nc", ".nc4"},
+        "a dataset of three axes, also of netCDF-4: file.h5:/path, or the only one; scale, offset, missing values"},
        [](Bytes b) { return b.starts_with("\x89HDF\r\n\x1a\n"); },
        false,
        [](const fs::path& path, const OpenOptions&) { return openHdf5(path); }},
@@ -98,8 +100,11 @@ std::vector<Format> formats() {
   };
 }
 
+// "file.vti:pressure" is a .vti.
 bool hasExtension(const Format& format, const fs::path& path) {
-  const std::string name = lower(path.filename().string());
+  std::string name = lower(path.filename().string());
+  if (const std::string array = vtkArrayName(path); !array.empty())
+    name = lower(path.string()).substr(0, path.string().size() - array.size() - 1);
   return std::any_of(format.row.extensions.begin(), format.row.extensions.end(),
                      [&](const std::string& extension) { return name.ends_with(extension); });
 }
@@ -129,29 +134,42 @@ std::optional<Format> formatOf(const fs::path& path) {
   return std::nullopt;
 }
 
-// A source whose format states no place, put where the caller says.
+// A source that is put where the caller says.
 class PlacedSource : public VoxelSource {
  public:
-  PlacedSource(std::unique_ptr<VoxelSource> source, const glm::dmat4& indexToWorld) : source_(std::move(source)) {
-    info_ = source_->info();
-    info_.indexToWorld = indexToWorld;
+  PlacedSource(std::unique_ptr<VoxelSource> source, VolumeInfo info) : source_(std::move(source)) {
+    info_ = std::move(info);
   }
   double readSlab(std::int64_t count, std::span<float> out) override { return source_->readSlab(count, out); }
+  void skipSlices(std::int64_t count) override { source_->skipSlices(count); }
+  bool skipsFast() const override { return source_->skipsFast(); }
+  std::optional<VoxelType> storedType() const override { return source_->storedType(); }
+  void readStored(std::int64_t count, std::span<std::byte> out) override { source_->readStored(count, out); }
 
  private:
   std::unique_ptr<VoxelSource> source_;
 };
 
-}  // namespace
+// The world in a unit that OpenVDB can hold, unless one was asked for.
+std::unique_ptr<VoxelSource> withUnit(std::unique_ptr<VoxelSource> source, const std::string& unit) {
+  if (!unit.empty()) return source;
+  VolumeInfo info = source->info();
+  enlargeUnstated(info);
+  if (info.notes.size() == source->info().notes.size()) return source;
+  return std::make_unique<PlacedSource>(std::move(source), std::move(info));
+}
 
-std::unique_ptr<VoxelSource> openVolume(const fs::path& path, const OpenOptions& options) {
-  if (options.raw) return openRaw(path, *options.raw);
+std::unique_ptr<VoxelSource> openPlaced(const fs::path& path, const OpenOptions& options) {
+  const auto inUnit = [&](std::unique_ptr<VoxelSource> source) {
+    return options.lengthUnit.empty() ? std::move(source) : inLengthUnit(std::move(source), options.lengthUnit);
+  };
+  if (options.raw) return inUnit(openRaw(path, *options.raw));
   const auto format = formatOf(path);
   if (!format) {
     checkedFileSize(path);
     throw UnknownFormat(path.string() + ": taken for headerless raw, which needs dims and type");
   }
-  auto source = format->open(path, options);
+  auto source = inUnit(format->open(path, options));
   if (!options.spacing && !options.origin) return source;
   if (format->placed)
     throw InvalidArgument(path.string() + ": spacing and origin: " + format->row.name + " states its own");
@@ -171,7 +189,21 @@ std::unique_ptr<VoxelSource> openVolume(const fs::path& path, const OpenOptions&
       place[3][axis] = (*options.origin)[axis];
     }
   }
-  return std::make_unique<PlacedSource>(std::move(source), place);
+  VolumeInfo info = source->info();
+  info.indexToWorld = place;
+  return std::make_unique<PlacedSource>(std::move(source), std::move(info));
+}
+
+}  // namespace
+
+std::unique_ptr<VoxelSource> openVolume(const fs::path& path, const OpenOptions& options) {
+  return withUnit(openPlaced(path, options), options.lengthUnit);
+}
+
+std::unique_ptr<VoxelSource> inLengthUnit(std::unique_ptr<VoxelSource> source, const std::string& unit) {
+  VolumeInfo info = source->info();
+  changeLengthUnit(info, unit);
+  return std::make_unique<PlacedSource>(std::move(source), std::move(info));
 }
 
 std::optional<std::string> formatOfName(const fs::path& path) {

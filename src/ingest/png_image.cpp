@@ -11,6 +11,12 @@
 namespace umbrick {
 namespace {
 
+std::string colourName(int type) {
+  if (type == PNG_COLOR_TYPE_PALETTE) return "a palette";
+  if (type == PNG_COLOR_TYPE_GRAY_ALPHA) return "grey and opacity";
+  return type == PNG_COLOR_TYPE_RGB ? "RGB" : "RGB and opacity";
+}
+
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
@@ -74,7 +80,7 @@ class PngImage : public SliceImages {
     if (!decoder_->info) throw IoError(path_.string() + ": cannot read: out of memory");
     if (!readHead(*decoder_, file_.get())) fail("a PNG image");
     if (png_get_color_type(decoder_->png, decoder_->info) != PNG_COLOR_TYPE_GRAY)
-      failField(path_, "colour type", "0, grey", std::to_string(png_get_color_type(decoder_->png, decoder_->info)));
+      failField(path_, "colour type", "grey", colourName(png_get_color_type(decoder_->png, decoder_->info)));
     width = png_get_image_width(decoder_->png, decoder_->info);
     height = png_get_image_height(decoder_->png, decoder_->info);
     layout.type = png_get_bit_depth(decoder_->png, decoder_->info) == 16 ? VoxelType::u16 : VoxelType::u8;

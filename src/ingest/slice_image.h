@@ -23,8 +23,12 @@ class SliceImages {
   bool whiteIsZero = false;
   std::string description;                 // of the first page
   std::optional<double> pixelsPerUnit[2];  // along x and y
+  int resolutionUnit = 0;                  // of these: 2 inches, 3 centimetres, else none
   /// The pixels of a page, rows from the top. Pages must be read in order. @throw IoError
   virtual void read(std::int64_t page, std::span<std::byte> out) = 0;
+  /// Takes the only page for the first of `count` that lie behind each other without directories of their own.
+  /// @throw IoError  it is packed, or the file ends before
+  virtual void promise(std::int64_t count);
 };
 
 /// By the first bytes. @throw IoError  neither, unreadable, or no grey image

@@ -9,6 +9,7 @@
 
 #include "ingest/header_text.h"
 #include "ingest/slice_image.h"
+#include "ingest/streams/byte_stream.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -37,6 +38,12 @@ T field(TIFF* tiff, std::uint32_t tag, T otherwise) {
   return TIFFGetFieldDefaulted(tiff, tag, &value) ? value : otherwise;
 }
 
+std::string photometricName(std::uint16_t photometric) {
+  static constexpr std::array<const char*, 9> kNames{"white is zero", "black is zero", "RGB",  "a palette", "a mask",
+                                                     "CMYK",          "YCbCr",         "code", "CIE L*a*b*"};
+  return photometric < kNames.size() && photometric != 7 ? kNames[photometric] : "code " + std::to_string(photometric);
+}
+
 class TiffImages : public SliceImages {
  public:
   explicit TiffImages(const std::filesystem::path& path) : path_(path) {
@@ -58,8 +65,11 @@ class TiffImages : public SliceImages {
     width = field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0);
     height = field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0);
     layout = layoutHere();
+    bits_ = field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1);
     whiteIsZero =
         field<std::uint16_t>(tiff_.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE;
+    resolutionUnit = field<std::uint16_t>(tiff_.get(), TIFFTAG_RESOLUTIONUNIT, RESUNIT_NONE);
+    if (std::uint16_t unit = 0; !TIFFGetField(tiff_.get(), TIFFTAG_RESOLUTIONUNIT, &unit)) resolutionUnit = 0;
     char* text = nullptr;
     if (TIFFGetField(tiff_.get(), TIFFTAG_IMAGEDESCRIPTION, &text) && text) description = text;
     for (const std::uint32_t axis : {0u, 1u}) {
@@ -70,15 +80,40 @@ class TiffImages : public SliceImages {
     }
   }
 
+  void promise(std::int64_t count) override {
+    const std::int64_t bytes = width * height * voxelBytes(layout.type), rowBytes = width * voxelBytes(layout.type);
+    const std::string expected = "one directory for " + std::to_string(count) + " slices";
+    if (pages != 1 || bits_ < 8 || TIFFIsTiled(tiff_.get()) ||
+        field<std::uint16_t>(tiff_.get(), TIFFTAG_COMPRESSION, COMPRESSION_NONE) != COMPRESSION_NONE)
+      failField(path_, "slices", expected + ", unpacked and in strips", "a packed one, or tiles");
+    const auto start = static_cast<std::int64_t>(TIFFGetStrileOffset(tiff_.get(), 0));
+    const auto rows = static_cast<std::int64_t>(field<std::uint32_t>(tiff_.get(), TIFFTAG_ROWSPERSTRIP, 1));
+    for (std::uint32_t strip = 0; strip < TIFFNumberOfStrips(tiff_.get()); ++strip)
+      if (static_cast<std::int64_t>(TIFFGetStrileOffset(tiff_.get(), strip)) != start + strip * rows * rowBytes)
+        failField(path_, "slices", expected + ", its strips behind each other", "strips elsewhere");
+    std::int64_t all = 0;
+    const std::int64_t left = checkedFileSize(path_) - start;
+    if (__builtin_mul_overflow(bytes, count, &all) || all > left)
+      failField(path_, "slices", std::to_string(count) + " of " + std::to_string(bytes) + " bytes behind each other",
+                std::to_string(std::max<std::int64_t>(left, 0)) + " bytes");
+    behind_ = openPlain(path_, start);
+    pages = count;
+  }
+
   void read(std::int64_t page, std::span<std::byte> out) override {
+    if (behind_) return readBehind(page, out);
     select(page);
     const auto here = layoutHere();
     if (field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0) != width ||
-        field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0) != height || here.type != layout.type)
+        field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0) != height || here.type != layout.type ||
+        field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1) != bits_)
       failField(path_, "page " + std::to_string(page + 1), sizeText(width, height, layout.type) + " as on the first",
                 sizeText(field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0),
                          field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0), here.type));
-    TIFFIsTiled(tiff_.get()) ? readTiles(page, out) : readStrips(page, out);
+    if (bits_ >= 8) return readPixels(page, rowBytes(), out);
+    packed_.resize(static_cast<std::size_t>(rowBytes() * height));
+    readPixels(page, rowBytes(), packed_);
+    unpack(out);
   }
 
  private:
@@ -88,6 +123,34 @@ class TiffImages : public SliceImages {
   }
   static std::string sizeText(std::int64_t w, std::int64_t h, VoxelType type) {
     return std::to_string(w) + " x " + std::to_string(h) + " " + std::string(voxelTypeName(type));
+  }
+
+  // Of the pixels as they lie in a row: several to a byte where they are small.
+  std::int64_t rowBytes() const { return (width * bits_ + 7) / 8; }
+
+  void readPixels(std::int64_t page, std::int64_t row, std::span<std::byte> out) {
+    TIFFIsTiled(tiff_.get()) ? readTiles(page, row, out) : readStrips(page, row, out);
+  }
+
+  void readBehind(std::int64_t page, std::span<std::byte> out) {
+    const auto bytes = static_cast<std::int64_t>(out.size());
+    if (behind_->skip((page - behindPage_) * bytes) < (page - behindPage_) * bytes || behind_->read(out) < out.size())
+      fail("the pixels of slice " + std::to_string(page + 1));
+    behindPage_ = page + 1;
+    const auto width1 = static_cast<std::size_t>(voxelBytes(layout.type));
+    if (TIFFIsByteSwapped(tiff_.get()))
+      for (std::size_t i = 0; i < out.size(); i += width1) std::reverse(&out[i], &out[i] + width1);
+  }
+
+  // Each row begins with a byte of its own, and the first pixel is in its highest bits.
+  void unpack(std::span<std::byte> out) const {
+    const unsigned mask = (1u << bits_) - 1;
+    for (std::int64_t y = 0; y < height; ++y)
+      for (std::int64_t x = 0; x < width; ++x) {
+        const auto byte = std::to_integer<unsigned>(packed_[static_cast<std::size_t>(y * rowBytes() + x * bits_ / 8)]);
+        out[static_cast<std::size_t>(y * width + x)] =
+            static_cast<std::byte>(byte >> (8 - bits_ - x * bits_ % 8) & mask);
+      }
   }
 
   void select(std::int64_t page) {
@@ -100,7 +163,7 @@ class TiffImages : public SliceImages {
     const auto photometric = field<std::uint16_t>(tiff_.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
     if (samples != 1 || photometric > PHOTOMETRIC_MINISBLACK)
       failField(path_, "photometric interpretation", "grey with one sample per pixel",
-                std::to_string(photometric) + " with " + std::to_string(samples));
+                photometricName(photometric) + " with " + std::to_string(samples));
     const auto bits = field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1);
     const auto format = field<std::uint16_t>(tiff_.get(), TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
     using enum VoxelType;
@@ -108,7 +171,9 @@ class TiffImages : public SliceImages {
     out.endian = std::endian::native;  // libtiff swaps
     const bool integer = format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_INT || format == SAMPLEFORMAT_VOID;
     const bool isSigned = format == SAMPLEFORMAT_INT;
-    if (integer && bits == 8)
+    if (integer && !isSigned && (bits == 1 || bits == 2 || bits == 4))
+      out.type = u8;  // each pixel becomes a byte
+    else if (integer && bits == 8)
       out.type = isSigned ? i8 : u8;
     else if (integer && bits == 16)
       out.type = isSigned ? i16 : u16;
@@ -119,12 +184,13 @@ class TiffImages : public SliceImages {
     else if (format == SAMPLEFORMAT_IEEEFP && (bits == 16 || bits == 32 || bits == 64))
       out.type = bits == 16 ? f16 : bits == 32 ? f32 : f64;
     else
-      failField(path_, "bits per sample", "8, 16, 32 or 64 of integers, 16, 32 or 64 of floats", std::to_string(bits));
+      failField(path_, "bits per sample", "1, 2, 4, 8, 16, 32 or 64 of integers, 16, 32 or 64 of floats",
+                std::to_string(bits));
     return out;
   }
 
-  void readStrips(std::int64_t page, std::span<std::byte> out) {
-    const auto rowBytes = static_cast<std::size_t>(width * voxelBytes(layout.type));
+  void readStrips(std::int64_t page, std::int64_t row, std::span<std::byte> out) {
+    const auto rowBytes = static_cast<std::size_t>(row);
     const std::size_t rows = std::min<std::size_t>(field<std::uint32_t>(tiff_.get(), TIFFTAG_ROWSPERSTRIP, 1),
                                                    static_cast<std::size_t>(height));
     for (std::uint32_t strip = 0; !out.empty(); ++strip) {
@@ -137,14 +203,15 @@ class TiffImages : public SliceImages {
     }
   }
 
-  void readTiles(std::int64_t page, std::span<std::byte> out) {
+  void readTiles(std::int64_t page, std::int64_t row, std::span<std::byte> out) {
     const std::int64_t tileWidth = field<std::uint32_t>(tiff_.get(), TIFFTAG_TILEWIDTH, 0);
     const std::int64_t tileHeight = field<std::uint32_t>(tiff_.get(), TIFFTAG_TILELENGTH, 0);
-    const std::int64_t bytes = voxelBytes(layout.type);
     const tmsize_t tileBytes = TIFFTileSize(tiff_.get());
-    // A tile is no larger than what it covers, but for the rest of its own edge.
-    if (tileWidth < 1 || tileHeight < 1 || tileBytes != tileWidth * tileHeight * bytes || tileWidth > width + 65536 ||
-        tileHeight > height + 65536)
+    const std::int64_t tileRow = (tileWidth * bits_ + 7) / 8;
+    // A tile is no larger than what it covers, but for the rest of its own edge. Its width is a multiple of 16, so that
+    // it begins at a byte.
+    if (tileWidth < 1 || tileHeight < 1 || tileBytes != tileRow * tileHeight || tileWidth > width + 65536 ||
+        tileHeight > height + 65536 || tileWidth * bits_ % 8 != 0)
       fail("tiles of the size of the image");
     std::vector<std::byte> tile(static_cast<std::size_t>(tileBytes));
     for (std::int64_t y = 0; y < height; y += tileHeight)
@@ -152,17 +219,21 @@ class TiffImages : public SliceImages {
         if (TIFFReadTile(tiff_.get(), tile.data(), static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, 0) <
             0)
           fail("the pixels of page " + std::to_string(page + 1));
-        const std::int64_t columns = std::min(tileWidth, width - x);
-        for (std::int64_t row = 0; row < std::min(tileHeight, height - y); ++row)
-          std::memcpy(out.data() + ((y + row) * width + x) * bytes, tile.data() + row * tileWidth * bytes,
-                      static_cast<std::size_t>(columns * bytes));
+        const std::int64_t begin = x * bits_ / 8, bytes = std::min(tileRow, row - begin);
+        for (std::int64_t line = 0; line < std::min(tileHeight, height - y); ++line)
+          std::memcpy(out.data() + (y + line) * row + begin, tile.data() + line * tileRow,
+                      static_cast<std::size_t>(bytes));
       }
   }
 
   std::filesystem::path path_;
   Complaint complaint_;
   std::unique_ptr<TIFF, CloseTiff> tiff_;
-  std::vector<std::uint64_t> pages_;  // offsets of their directories, so that each is found at once
+  int bits_ = 8;                        // of a pixel in the file
+  std::vector<std::byte> packed_;       // pixels of less than a byte
+  std::unique_ptr<ByteStream> behind_;  // slices without directories, from the first on
+  std::int64_t behindPage_ = 0;         // that comes next there
+  std::vector<std::uint64_t> pages_;    // offsets of their directories, so that each is found at once
 };
 
 }  // namespace

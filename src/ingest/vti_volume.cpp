@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "ingest/array_name.h"
 #include "ingest/header_text.h"
 #include "ingest/place.h"
 #include "ingest/provenance.h"
@@ -121,23 +122,29 @@ VoxelType vtiTypeOf(const fs::path& path, const std::string& text) {
   return found->second;
 }
 
-const VtiArray& arrayOf(const fs::path& path, const VtiHead& head) {
+const VtiArray& arrayOf(const fs::path& path, const VtiHead& head, const std::string& wanted) {
   const VtiArray* only = nullptr;
   std::string names;
   int count = 0;
   for (const VtiArray& array : head.arrays) {
     const std::string name = get(array.attributes, "Name");
+    // Marks of points that another piece holds too, or that are blank.
+    if (name == "vtkGhostType" || name == "vtkGhostLevels") continue;
     if (get(array.attributes, "NumberOfComponents", "1") != "1") {
       names +=
           (names.empty() ? "" : ", ") + name + " of " + get(array.attributes, "NumberOfComponents") + " components";
       continue;
     }
-    if (!name.empty() && name == head.scalars[array.cells ? 1 : 0]) return array;
+    if (wanted.empty() ? !name.empty() && name == head.scalars[array.cells ? 1 : 0] : name == wanted) return array;
     names += (names.empty() ? "" : ", ") + name;
     only = &array;
     ++count;
   }
-  if (count != 1) failField(path, "arrays", "one of one component, or one named by Scalars", names);
+  if (!wanted.empty()) failField(path, "arrays", "one of one component called " + wanted, names);
+  if (count != 1)
+    failField(path, "arrays",
+              "one of one component, one named by Scalars, or its name as in " + path.filename().string() + ":name",
+              names);
   return *only;
 }
 
@@ -249,15 +256,16 @@ std::unique_ptr<ByteStream> voxelsOf(const fs::path& path, const VtiHead& head, 
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openVti(const fs::path& path) {
+std::unique_ptr<VoxelSource> openVti(const fs::path& named) {
+  const auto [path, wanted] = splitArrayName(named, ".vti");
   VolumeInfo info;
-  info.name = path.string();
+  info.name = named.string();
   info.fileBytes = checkedFileSize(path);
   if (info.fileBytes < 0) throw IoError(path.string() + ": expected a file, found a pipe or device");
   const VtiHead head = VtiHeadReader(path).read();
   if (const std::string type = get(head.file, "type"); type != "ImageData") failField(path, "type", "ImageData", type);
   const auto extent = extentOf(path, head);
-  const VtiArray& array = arrayOf(path, head);
+  const VtiArray& array = arrayOf(path, head, wanted);
   for (std::size_t axis = 0; axis < 3; ++axis)
     info.dims[static_cast<int>(axis)] = extent[2 * axis + 1] - extent[2 * axis] + (array.cells ? 0 : 1);
   VoxelLayout layout;

@@ -67,6 +67,7 @@ void readVolume(VolumeFile& file, const LoadProgress& progress) {
   } else if (border && border->value != 0) {
     file.notes.push_back("beyond its voxels it is taken to be " + shortNumber(border->value) + ", as at its border");
   }
+  file.notes.insert(file.notes.begin(), loaded.report.notes.begin(), loaded.report.notes.end());
   file.grid = std::move(loaded.grid);
 }
 

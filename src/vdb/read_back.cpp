@@ -21,7 +21,11 @@ using openvdb::FloatGrid;
 
 FloatGrid::ConstPtr readDense(const fs::path& file, const FloatGrid& written) {
   const openvdb::CoordBBox box = written.evalActiveVoxelBoundingBox();
-  const auto source = openVolume(file);
+  OpenOptions open;
+  const auto unit = written.getMetadata<openvdb::StringMetadata>("length_unit");
+  for (const char* known : {"nm", "um", "mm", "cm", "m"})
+    if (unit && unit->value() == known) open.lengthUnit = known;
+  const auto source = openVolume(file, open);
   const VolumeInfo& info = source->info();
   const glm::i64vec3 dims(box.dim().x(), box.dim().y(), box.dim().z());
   if (info.dims != dims) throw IoError(info.name + ": dims: expected those of the active voxels, found others");

@@ -94,6 +94,14 @@ std::string metadataOf(const openvdb::FloatGrid& grid, const char* key) {
   return text ? text->value() : std::string();
 }
 
+// The unit of length, where headers have a name for it.
+std::string lengthUnitOf(const openvdb::FloatGrid& grid) {
+  const std::string stated = metadataOf(grid, "length_unit");
+  for (const char* known : {"mm", "um", "nm", "pm", "cm", "m"})
+    if (stated == known) return stated;
+  return {};
+}
+
 std::string nrrdHeader(const openvdb::FloatGrid& grid, const DenseBox& box, const Place& place) {
   const char* type = withType(box.type, [](auto zero) {
     using T = decltype(zero);
@@ -115,11 +123,13 @@ std::string nrrdHeader(const openvdb::FloatGrid& grid, const DenseBox& box, cons
     out += "space dimension: 3\n";
   out += "sizes: " + sizes(box.dims) + "\nspace directions: " + vector(place.axis[0]) + ' ' + vector(place.axis[1]) +
          ' ' + vector(place.axis[2]) + "\nspace origin: " + vector(place.origin) + '\n';
-  if (metadataOf(grid, "length_unit") == "mm") out += "space units: \"mm\" \"mm\" \"mm\"\n";
+  if (const std::string unit = lengthUnitOf(grid); !unit.empty())
+    out += "space units: \"" + unit + "\" \"" + unit + "\" \"" + unit + "\"\n";
   return out + "encoding: raw\nendian: little\n\n";
 }
 
-std::string metaImageHeader(const DenseBox& box, const Place& place, const std::string& voxels) {
+std::string metaImageHeader(const openvdb::FloatGrid& grid, const DenseBox& box, const Place& place,
+                            const std::string& voxels) {
   const char* type = withType(box.type, [](auto zero) {
     using T = decltype(zero);
     if constexpr (std::is_same_v<T, float>) return "MET_FLOAT";
@@ -132,12 +142,15 @@ std::string metaImageHeader(const DenseBox& box, const Place& place, const std::
     spacing[i] = place.axis[i].length();
     direction[i] = place.axis[i] / spacing[i];
   }
+  // Without it lengths are taken for mm.
+  const std::string unit = lengthUnitOf(grid);
+  const std::string units = unit.empty() || unit == "mm" ? "" : "\nDistanceUnits = " + unit;
   return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\n"
          "TransformMatrix = " +
          text(direction[0], " ") + ' ' + text(direction[1], " ") + ' ' + text(direction[2], " ") +
          "\nOffset = " + text(place.origin, " ") +
-         "\nCenterOfRotation = 0 0 0\nElementSpacing = " + text(spacing, " ") + "\nDimSize = " + sizes(box.dims) +
-         "\nElementType = " + type + "\nElementDataFile = " + voxels + '\n';
+         "\nCenterOfRotation = 0 0 0\nElementSpacing = " + text(spacing, " ") + units +
+         "\nDimSize = " + sizes(box.dims) + "\nElementType = " + type + "\nElementDataFile = " + voxels + '\n';
 }
 
 // Writes one layer of leaves after the other, so that a box larger than memory can be written.
@@ -210,7 +223,7 @@ DenseBox writeDense(const fs::path& path, const openvdb::FloatGrid& grid, const 
     const fs::path voxels = fs::path(path).replace_extension(".raw");
     PendingPair pending(path, voxels);
     writeWhole(voxels, pending.dataPath(), [&](std::ostream& out) { writeVoxels(out, grid, box); });
-    pending.writeHeader([&](const std::string& name) { return metaImageHeader(box, place, name); });
+    pending.writeHeader([&](const std::string& name) { return metaImageHeader(grid, box, place, name); });
     if (check) check(pending.headerPath());
     pending.commit();
   }

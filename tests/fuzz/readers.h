@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "fuzz/described_tiff.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/dicom_volume.h"
 #include "umbrick/ingest/hdf5_volume.h"
@@ -54,10 +56,17 @@ inline std::map<std::string, NamedTarget> targets() {
   return {
       {"dicom", {".dcm", volumeTarget([](const std::filesystem::path& path) { return openDicom(path); })}},
       {"hdf5", {".h5", volumeTarget(openHdf5)}},
-      {"metaimage", {".mha", volumeTarget(openMetaImage)}},
+      {"metaimage", {".mha", volumeTarget([](const std::filesystem::path& path) { return openMetaImage(path); })}},
       {"nifti", {".nii", volumeTarget(openNifti)}},
       {"npy", {".npy", volumeTarget(openNpy)}},
-      {"nrrd", {".nrrd", volumeTarget(openNrrd)}},
+      {"nrrd", {".nrrd", volumeTarget([](const std::filesystem::path& path) { return openNrrd(path); })}},
+      {"description",
+       {".tif",
+        // OME-XML, or what ImageJ and tifffile write.
+        [](const std::filesystem::path& path, std::string_view content) {
+          std::ofstream(path, std::ios::binary | std::ios::trunc) << describedTiff(content, std::string(64, 'x'));
+          readAll(*openImageStack(path));
+        }}},
       {"png", {".png", volumeTarget(openImageStack)}},
       {"raw",
        {".raw",

@@ -25,8 +25,8 @@ TEST_CASE("Frames come in the order of their numbers, gaps and all", "[ingest]")
   CHECK(frames[3].number == 12345);
   for (const NumberedFile& frame : frames) CHECK(framePath(folder.path() / "f_%04d.raw", frame.number) == frame.path);
   const auto plain = listFrames(folder.path() / "f_%d.raw");
-  REQUIRE(plain.size() == 2);
-  CHECK(plain[0].number == 3);
+  REQUIRE(plain.size() == 4);
+  CHECK(plain[1].path == folder.path() / "f_3.raw");
   CHECK_THAT(complaint<IoError>([&] { listFrames(folder.path() / "h_%d.raw"); }),
              Contains("h_%d.raw: expected files of that pattern, found none"));
   CHECK_THAT(complaint<IoError>([&] { listFrames(folder.path() / "none" / "h_%d.raw"); }),
@@ -48,4 +48,21 @@ TEST_CASE("A pattern is one number in the name of the file, not in folders or da
   const auto frames = listFrames(folder.path() / "v_%d.h5:/d");
   REQUIRE(frames.size() == 1);
   CHECK(frames[0].path == folder.path() / "v_7.h5:/d");
+}
+
+TEST_CASE("Frames have negative numbers and numbers of several widths, and what shares a number is told", "[ingest]") {
+  const TemporaryFolder folder;
+  for (const char* name : {"s_-002.npy", "s_-001.npy", "s_0000.npy", "s_0003.npy", "s_9.npy", "s_10.npy", "s_0010.npy",
+                           "s_99999999999999999999.npy", "s_x.npy", "s_1-2.npy"})
+    writeBytes(folder.path() / name, "x");
+  std::vector<fs::path> leftOut;
+  const auto frames = listFrames(folder.path() / "s_%04d.npy", &leftOut);
+  std::vector<std::int64_t> numbers;
+  for (const NumberedFile& frame : frames) numbers.push_back(frame.number);
+  CHECK(numbers == std::vector<std::int64_t>{-2, -1, 0, 3, 9, 10});
+  CHECK(frames.back().path == folder.path() / "s_0010.npy");
+  CHECK(leftOut == std::vector<fs::path>{folder.path() / "s_10.npy", folder.path() / "s_99999999999999999999.npy"});
+  CHECK(framePath("o_%04d.vdb", -2) == "o_-002.vdb");  // as printf has it
+  CHECK(framePath("o_%4d.vdb", -2) == "o_  -2.vdb");
+  CHECK(framePath("o_%d.vdb", -12) == "o_-12.vdb");
 }

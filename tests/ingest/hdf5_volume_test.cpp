@@ -3,7 +3,9 @@
 
 #include <hdf5.h>
 
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numeric>
 
 #include "support/files.h"
@@ -77,13 +79,106 @@ TEST_CASE("Slabs of an HDF5 dataset in chunks are the voxels that were written",
   const auto source = openVolume(file.path);
   CHECK(source->info().dims == glm::i64vec3(5, 6, 7));
   CHECK(source->info().type == VoxelType::u16);
-  CHECK(source->info().metadata.at("hdf5_dataset") == "/a/volume");
+  CHECK(source->info().metadata.at("source_dataset") == "/a/volume");
   CHECK(readVolume(*source) == std::vector<float>(values.begin(), values.end()));
   const auto again = openVolume(file.path.string() + ":/a/volume");
   again->skipSlices(6);
   std::vector<float> last(30);
   again->readSlab(1, last);
   CHECK(last == std::vector<float>(values.end() - 30, values.end()));
+}
+
+namespace {
+
+// Gives a dataset an attribute of numbers, or of text.
+template <class T>
+void describe(const Hdf5File& file, const char* dataset, const char* key, hid_t stored, const std::vector<T>& values) {
+  const hid_t opened = H5Fopen(file.path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t set = H5Dopen2(opened, dataset, H5P_DEFAULT);
+  const hsize_t count = values.size();
+  const hid_t space = H5Screate_simple(1, &count, nullptr);
+  const hid_t attribute = H5Acreate2(set, key, stored, space, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, std::is_floating_point_v<T> ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT, values.data());
+  H5Aclose(attribute);
+  H5Sclose(space);
+  H5Dclose(set);
+  H5Fclose(opened);
+}
+
+void describe(const Hdf5File& file, const char* dataset, const char* key, const char* text) {
+  const hid_t opened = H5Fopen(file.path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t set = H5Dopen2(opened, dataset, H5P_DEFAULT);
+  const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
+  H5Tset_size(type, H5T_VARIABLE);
+  const hid_t attribute = H5Acreate2(set, key, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, type, &text);
+  H5Aclose(attribute);
+  H5Sclose(space);
+  H5Tclose(type);
+  H5Dclose(set);
+  H5Fclose(opened);
+}
+
+}  // namespace
+
+// The CF conventions: value = stored * scale_factor + add_offset, and what is missing is told by the stored value.
+TEST_CASE("Packed values of netCDF are unpacked, and missing ones are no numbers", "[ingest]") {
+  const Hdf5File file;
+  file.add("/T", {1, 2, 3}, H5T_STD_I16LE, H5T_NATIVE_INT, std::vector<int>{-32767, 1, 2, 300, -9, 3000});
+  describe(file, "/T", "scale_factor", H5T_IEEE_F64LE, std::vector<double>{0.01});
+  describe(file, "/T", "add_offset", H5T_IEEE_F64LE, std::vector<double>{273.15});
+  describe(file, "/T", "_FillValue", H5T_STD_I16LE, std::vector<int>{-32767});
+  describe(file, "/T", "missing_value", H5T_STD_I16LE, std::vector<int>{-9});
+  describe(file, "/T", "valid_max", H5T_STD_I16LE, std::vector<int>{2999});
+  describe(file, "/T", "units", "K");
+  auto source = openVolume(file.path);
+  CHECK(source->info().metadata.at("rescale") == "273.14999999999998 + 0.01 * stored");
+  CHECK(source->info().metadata.at("value_unit") == "K");
+  REQUIRE(source->info().notes.size() == 2);
+  CHECK_THAT(source->info().notes[0], Contains("dataset /T is taken"));
+  CHECK_THAT(source->info().notes[1], Contains("-32767 (_FillValue), -9 (missing_value)"));
+  const std::vector<float> values = readVolume(*source);
+  for (const std::size_t missing : {0u, 4u, 5u}) CHECK(std::isnan(values[missing]));
+  CHECK(values[1] == Approx(273.16));
+  CHECK(values[3] == Approx(276.15));
+  source.reset();  // so that the file can be written again
+  describe(file, "/T", "valid_min", "none");
+  file.refused("", "valid_min: expected a number, found \"text\"");
+}
+
+TEST_CASE("Unsigned bytes of netCDF are what they stand for, and so is their fill value", "[ingest]") {
+  const Hdf5File file;
+  file.add("/b", {1, 1, 3}, H5T_STD_I8LE, H5T_NATIVE_INT, std::vector<int>{-1, -2, 3});
+  describe(file, "/b", "_Unsigned", "true");
+  describe(file, "/b", "_FillValue", H5T_STD_I8LE, std::vector<int>{-1});
+  const std::vector<float> values = file.read();
+  CHECK(std::isnan(values[0]));
+  CHECK(values[1] == 254);
+  CHECK(values[2] == 3);
+}
+
+// ilastik and the HDF5 plugin of Fiji write the size along z, y and x.
+TEST_CASE("Sizes of elements place an HDF5 dataset, whatever axes of length 1 it has", "[ingest]") {
+  const Hdf5File file;
+  const std::vector<int> values{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  const std::vector<float> floats(values.begin(), values.end());
+  for (const std::vector<hsize_t>& shape :
+       std::vector<std::vector<hsize_t>>{{1, 2, 2, 3, 1}, {2, 1, 2, 1, 3}, {2, 2, 3, 1}}) {
+    const std::string name = "/v" + std::to_string(shape.size()) + std::to_string(shape[0]);
+    file.add(name.c_str(), shape, H5T_STD_U8LE, H5T_NATIVE_INT, values);
+    describe(file, name.c_str(), "element_size_um", H5T_IEEE_F64LE, std::vector<double>{2, 0.5, 0.25});
+    describe(file, name.c_str(), "offset_um", H5T_IEEE_F64LE, std::vector<double>{30, 20, 10});
+    const auto source = openVolume(file.path.string() + ':' + name);
+    const VolumeInfo& info = source->info();
+    CHECK(info.dims == glm::i64vec3(3, 2, 2));
+    CHECK(info.metadata.at("length_unit") == "mm");
+    CHECK(info.metadata.at("file_length_unit") == "um");
+    for (int axis = 0; axis < 3; ++axis) {
+      CHECK(info.indexToWorld[axis][axis] == Approx(std::array{0.25e-3, 0.5e-3, 2e-3}[static_cast<std::size_t>(axis)]));
+      CHECK(info.indexToWorld[3][axis] == Approx(0.01 * (axis + 1)));
+    }
+    CHECK(readVolume(*source) == floats);
+  }
 }
 
 TEST_CASE("What is no volume in an HDF5 file is refused with both values", "[ingest]") {
@@ -95,8 +190,8 @@ TEST_CASE("What is no volume in an HDF5 file is refused with both values", "[ing
   file.add("/opaque", {1, 1, 1}, H5T_STD_REF_OBJ, H5T_STD_REF_OBJ, std::vector<char>{});
   file.add("/huge", {1, 2000000000, 2000000000}, H5T_STD_U8LE, H5T_NATIVE_INT, std::vector<int>{}, {1, 64, 64});
   file.add("/over", {3000000000, 3000000000, 3000000000}, H5T_STD_U8LE, H5T_NATIVE_INT, std::vector<int>{}, {1, 8, 8});
-  file.refused(":/line", "shape: expected two or three axes, found \"6\"");
-  file.refused(":/many", "shape: expected two or three axes, found \"2 x 2 x 2 x 2\"");
+  file.refused(":/line", "shape: expected two or three axes that are longer than 1, found \"6\"");
+  file.refused(":/many", "shape: expected two or three axes that are longer than 1, found \"2 x 2 x 2 x 2\"");
   file.refused(":/text", "type: expected integers of 8 to 64 bits or floats of 16 to 64, found text");
   file.refused(":/opaque", "found references");
   file.refused(":/huge", "can fill, found \"1 x 2000000000 x 2000000000\"");

@@ -2,11 +2,10 @@
 #include "umbrick/ingest/image_stack.h"
 
 #include <png.h>
-#include <tiffio.h>
 
 #include <catch2/catch.hpp>
-#include <functional>
 
+#include "ingest/write_tiff.h"
 #include "support/files.h"
 #include "support/read_volume.h"
 #include "support/temporary_folder.h"
@@ -18,34 +17,6 @@ using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-
-using Tag = std::function<void(TIFF*)>;
-
-// Pages of 3 x 2 pixels, unless `tags` says otherwise, written by libtiff.
-template <class T>
-void writeTiff(const fs::path& path, const std::vector<std::vector<T>>& pages, const Tag& tags = {},
-               const char* mode = "w") {
-  TIFF* tiff = TIFFOpen(path.c_str(), mode);
-  for (const std::vector<T>& page : pages) {
-    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 3);
-    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<int>(page.size() / 3));
-    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, static_cast<int>(8 * sizeof(T)));
-    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
-    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
-    TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT,
-                 std::is_floating_point_v<T> ? SAMPLEFORMAT_IEEEFP
-                 : std::is_signed_v<T>       ? SAMPLEFORMAT_INT
-                                             : SAMPLEFORMAT_UINT);
-    TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, 1);
-    if (tags) tags(tiff);
-    std::vector<T> rows = page;
-    const std::size_t rowValues = static_cast<std::size_t>(TIFFScanlineSize(tiff)) / sizeof(T);
-    for (std::size_t row = 0; row * rowValues < rows.size(); ++row)
-      TIFFWriteScanline(tiff, rows.data() + row * rowValues, static_cast<std::uint32_t>(row), 0);
-    TIFFWriteDirectory(tiff);
-  }
-  TIFFClose(tiff);
-}
 
 void writePng(const fs::path& path, int width, int height, int bits, int colour, std::string pixels) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
@@ -144,6 +115,11 @@ TEST_CASE("Files are slices in the order of their numbers: pattern, glob and fol
   stack.refused(at("t%d.png"), "expected files of that pattern, found none");
   writeTiff<std::uint8_t>(at("s13.tif"), {{1, 2, 3}});
   stack.refused(stack.folder.path(), "expected images of one kind, found s9.png and s13.tif");
+  fs::remove(at("s13.tif"));
+  fs::remove(at("s11.png"));
+  writeBytes(at("._s10.png"), "what macOS leaves on other disks");
+  writeBytes(at(".hidden.tif"), "no image");
+  CHECK(openVolume(stack.folder.path())->info().dims.z == 3);
 }
 
 TEST_CASE("Bits of a PNG become values as they are stored", "[ingest]") {
@@ -170,13 +146,14 @@ TEST_CASE("ImageJ's TIFF states spacing in its unit", "[ingest]") {
 TEST_CASE("Images that are no grey slices are refused with both values", "[ingest]") {
   const Stack stack;
   writePng(stack.path, 1, 1, 8, PNG_COLOR_TYPE_RGB, "abc");
-  stack.refused(stack.path, "colour type: expected 0, grey, found \"2\"");
+  stack.refused(stack.path, "colour type: expected grey, found \"RGB\"");
   writeTiff<std::uint8_t>(stack.path, {std::vector<std::uint8_t>(9)}, [](TIFF* t) {
     TIFFSetField(t, TIFFTAG_IMAGELENGTH, 1);
     TIFFSetField(t, TIFFTAG_SAMPLESPERPIXEL, 3);
     TIFFSetField(t, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
   });
-  stack.refused(stack.path, "photometric interpretation: expected grey with one sample per pixel, found \"2 with 3\"");
+  stack.refused(stack.path,
+                "photometric interpretation: expected grey with one sample per pixel, found \"RGB with 3\"");
   writeTiff<std::uint8_t>(stack.path, {{1, 2, 3}, {1, 2, 3, 4, 5, 6}});
   stack.refused(stack.path, "page 2: expected 3 x 1 u8 as on the first, found \"3 x 2 u8\"");
   writeBytes(stack.path, "no image");

@@ -106,6 +106,19 @@ TEST_CASE("NIfTI slope and intercept are applied once", "[ingest]") {
   CHECK(readVolume(*source)[10] == -1150);
 }
 
+TEST_CASE("A NIfTI sform that spans no space gives way to a good qform, with a note", "[ingest]") {
+  const NiftiFile file;
+  Header header;
+  header.put<std::int16_t>(252, {1, 1}).put<float>(76, {1, 2, 3, 4}).put<float>(268, {10, 20, 30});
+  file.write(header);
+  checkMatrix(file.info().indexToWorld, glm::dmat4(2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 10, 20, 30, 1));
+  CHECK(file.info().notes ==
+        std::vector<std::string>{"the sform (code 1) has no three independent directions: the qform is used"});
+  header.put<float>(76, {1, 0, 3, 4});  // no better
+  file.write(header);
+  CHECK_THROWS_WITH(file.info(), Contains("sform: expected finite numbers and three independent directions"));
+}
+
 TEST_CASE("NIfTI places voxels by the sform, else the qform, else pixdim, in mm and RAS", "[ingest]") {
   const NiftiFile file;
   // The sform is any matrix; in metres here.
@@ -156,7 +169,8 @@ TEST_CASE("Malformed NIfTI is refused with the field and both values", "[ingest]
           "sform: expected");
   refused(Header().put<std::int16_t>(40, {4, 2, 3, 2, 5}),
           "dim[4]: expected 1, since one volume of one component is read, found \"5\"");
-  refused(Header().put<std::int16_t>(70, {128, 24}), "datatype: expected the code of an integer of 8 to 64 bits");
+  refused(Header().put<std::int16_t>(70, {128, 24}),
+          "datatype: expected integers of 8 to 64 bits or floats of 32 or 64, found \"RGB colours (code 128)\"");
   refused(Header().put<std::int16_t>(46, {3}), "expected 2 x 3 x 3 i16 = 36 bytes after a header of 352, found 24");
   refused(Header(2).put<std::int64_t>(24, {2147483647, 2147483647, 2147483647}), "dim: expected less than 2^63 bytes");
   refused(Header(2).put<std::int64_t>(24, {std::int64_t(1) << 40}), "dim");

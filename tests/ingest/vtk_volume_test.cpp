@@ -160,8 +160,16 @@ TEST_CASE("The scalars of VTK ImageData are those that it names", "[ingest]") {
   const std::string other = "<DataArray Name=\"b\" type=\"Float32\" format=\"ascii\">7</DataArray>";
   CHECK(file.read(ascii(kImage, kPiece, other)) == kFloats);
   const std::string unnamed = replaced(kPiece, " Scalars=\"a\"", "");
-  file.refused(ascii(kImage, unnamed, other),
-               "arrays: expected one of one component, or one named by Scalars, found \"b, a\"");
+  file.refused(
+      ascii(kImage, unnamed, other),
+      "arrays: expected one of one component, one named by Scalars, or its name as in v.vti:name, found \"b, a\"");
+  // A name wins over Scalars, and marks of ghosts are no voxels.
+  CHECK(readVolume(*openVolume(file.path.string() + ":a")) == kFloats);
+  CHECK(openVolume(file.path.string() + ":b")->info().type == VoxelType::f32);
+  CHECK(formatOfName(file.path.string() + ":b") == "VTK ImageData");
+  CHECK_THROWS_WITH(openVolume(file.path.string() + ":c"), Contains("expected one of one component called c"));
+  const std::string ghosts = "<DataArray Name=\"vtkGhostType\" type=\"UInt8\" format=\"ascii\">7</DataArray>";
+  CHECK(file.read(ascii(kImage, unnamed, ghosts)) == kFloats);
 }
 
 TEST_CASE("Malformed VTK ImageData is refused with the field and both values", "[ingest]") {
@@ -213,8 +221,47 @@ TEST_CASE("Legacy VTK files of structured points are read as ASCII and binary, a
   file.refused(replaced(ascii, "32767", ""), "voxel 11: expected a number that i16 can hold");
   file.refused(replaced(ascii, "STRUCTURED_POINTS", "POLYDATA"),
                "DATASET: expected STRUCTURED_POINTS, found \"POLYDATA\"");
-  file.refused(replaced(ascii, "a short", "a short 3"), "SCALARS: expected a name, a type and one component");
+  file.refused(replaced(ascii, "a short", "a short 9"), "then a name, a type and one component");
   file.refused(replaced(ascii, "a short", "a bit"), "type of the scalars");
   file.refused(replaced(ascii, "2 3 2", "2000000000 2000000000 2000000000"), "DIMENSIONS: expected 1 to 2147483647");
-  file.refused(ascii.substr(0, 60), "head: expected SCALARS of points or cells, found \"the end of the file\"");
+  file.refused(ascii.substr(0, 60), "head: expected SCALARS or a FIELD with one number for each of the points or cells, found \"the end");
+}
+
+// VTK writes fields of the dataset, such as its time, before or behind its place, and attributes in any order.
+TEST_CASE("What stands before the scalars of a legacy VTK file is passed, and no field of another length is voxels",
+          "[ingest]") {
+  VtkFile file;
+  file.path = file.folder.path() / "v.vtk";
+  std::string text;
+  for (const auto value : kValues) text += std::to_string(value) + '\n';
+  const std::vector<double> time{1.5}, vectors(36, 7.0);
+  for (const bool binary : {false, true}) {
+    const auto values = [&](const std::vector<double>& of) {
+      if (binary) return bytesOf(of, /*reversed=*/true) + '\n';
+      std::string numbers;
+      for (const double value : of) numbers += std::to_string(value) + ' ';
+      return numbers + '\n';
+    };
+    const std::string voxels = binary ? bytesOf(kValues, true) + '\n' : text;
+    const std::string start = "# vtk DataFile Version 3.0\n\n" + std::string(binary ? "BINARY" : "ASCII") +
+                              "\n\nDATASET STRUCTURED_POINTS\n",
+                      place = "DIMENSIONS 2 3 2\n\nSPACING 0.5 2 4\nORIGIN 1 2 3\n",
+                      field = "FIELD FieldData 2\nTIME 1 1 double\n" + values(time) + "none 1 0 double\n\n",
+                      scalars = "SCALARS a short 1\n\nLOOKUP_TABLE default\n" + voxels,
+                      flow = "VECTORS flow double\n" + values(vectors),
+                      several = "FIELD more 2\nwide 3 12 double\n" + values(vectors) + "b 1 12 short\n" + voxels;
+    for (const std::string& content : {start + field + place + "POINT_DATA 12\n" + scalars,
+                                       start + place + field + "POINT_DATA 12\n" + flow + scalars,
+                                       start + place + "POINT_DATA 12\n" + field + several}) {
+      INFO(content);
+      CHECK(file.read(content) == kFloats);
+      CHECK(file.info(content).indexToWorld[0][0] == 0.5);
+    }
+    writeBytes(file.path, start + place + "POINT_DATA 12\n" + scalars + several);
+    CHECK(openVolume(file.path.string() + ":b")->info().metadata.at("array_name") == "b");
+    CHECK(readVolume(*openVolume(file.path.string() + ":b")) == kFloats);
+    file.refused(start + place + "POINT_DATA 12\n" + flow, "found \"only flow of 3 x double\"");
+    file.refused(start + place + "POINT_DATA 11\n" + scalars, "POINT_DATA: expected the number of voxels that");
+    file.refused(start + field, "found \"the end of the file\"");
+  }
 }

@@ -25,7 +25,8 @@ struct FrameFiles {
 };
 
 struct FrameSequence {
-  std::vector<FrameFiles> frames;   // in ascending order, at least one
+  std::vector<FrameFiles> frames;              // in ascending order, at least one
+  std::vector<std::filesystem::path> leftOut;  // files of the pattern whose number another file has
   std::vector<FrameRange> missing;  // numbers that are wanted, or else between the first and the last, and not there
 };
 

@@ -20,6 +20,7 @@ struct ConvertedGrid {
   std::filesystem::path input;
   std::string label;  // name of the grid, with "[k]" behind it where several of an input file share it
   std::optional<VoxelType> volumeType;  // of the voxels as the input stores them; none where it was a grid
+  std::vector<std::string> notes;       // of the volume, as VolumeInfo has them
   BuildReport build;
   std::optional<BorderMode> background;  // what the border of the volume had
   std::optional<std::uint64_t> masked;   // voxels that the mask made background

@@ -20,7 +20,11 @@ bool isFramePattern(const std::filesystem::path& path);
 std::filesystem::path framePath(const std::filesystem::path& pattern, std::int64_t number);
 
 /// The files and folders whose names fit a pattern, in ascending order of their numbers, of which some may be missing.
+/// Numbers may be negative, and written in another width than the pattern has: frame_9 and frame_009 fit frame_%04d.
+/// @param leftOut  gets files whose number another file has, which fits the pattern better, or is too large; may be
+/// null
 /// @throw IoError  there is none, or a folder that cannot be read  @throw InvalidArgument  not a pattern
-std::vector<NumberedFile> listFrames(const std::filesystem::path& pattern);
+std::vector<NumberedFile> listFrames(const std::filesystem::path& pattern,
+                                     std::vector<std::filesystem::path>* leftOut = nullptr);
 
 }  // namespace umbrick

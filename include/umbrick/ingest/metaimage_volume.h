@@ -13,12 +13,12 @@ namespace umbrick {
 /// file, in a LIST of files or in numbered files.
 ///
 /// World space is what Offset, TransformMatrix (one axis of the image after the other) and ElementSpacing say, in mm
-/// where DistanceUnits is known; it is recorded as LPS, the convention of ITK, whose format this is.
-/// ElementToIntensityFunctionSlope and ...Offset are applied. CenterOfRotation moves nothing: Offset is the place of
-/// the first voxel.
-/// Format: https://itk.org/Wiki/ITK/MetaIO/Documentation
+/// (or less, where voxels are small) where DistanceUnits is known; it is recorded as LPS, the convention of ITK, whose
+/// format this is. ElementToIntensityFunctionSlope and ...Offset are applied. CenterOfRotation moves nothing: Offset is
+/// the place of the first voxel. Format: https://itk.org/Wiki/ITK/MetaIO/Documentation
 ///
+/// @param strict  refuses a data file beside the header that is longer than this says, which else is noted
 /// @throw IoError  a file is missing, short, long or malformed, or voxels have several channels
-std::unique_ptr<VoxelSource> openMetaImage(const std::filesystem::path& path);
+std::unique_ptr<VoxelSource> openMetaImage(const std::filesystem::path& path, bool strict = false);
 
 }  // namespace umbrick

@@ -17,8 +17,9 @@ namespace umbrick {
 /// are known.
 /// Format: https://teem.sourceforge.net/nrrd/format.html
 ///
+/// @param strict  refuses a data file beside the header that is longer than this says, which else is noted
 /// @throw IoError  a file is missing, short, long or malformed, or it holds what is not read: several components per
 ///                 voxel
-std::unique_ptr<VoxelSource> openNrrd(const std::filesystem::path& path);
+std::unique_ptr<VoxelSource> openNrrd(const std::filesystem::path& path, bool strict = false);
 
 }  // namespace umbrick

@@ -14,7 +14,12 @@
 namespace umbrick {
 
 struct OpenOptions {
-  std::optional<RawOptions> raw = {};      // when given, the file is read as headerless raw, whatever its name
+  std::optional<RawOptions> raw = {};  // when given, the file is read as headerless raw, whatever its name
+  bool strict = false;                 // refuses data files that are longer than their detached header says
+  /// The unit of length that the world gets: nm, um, mm, cm, m, or "file" for the one that the file states. Where a
+  /// file states none, its numbers are taken for this unit. Empty: mm, or smaller where voxels are too small for
+  /// OpenVDB.
+  std::string lengthUnit = {};
   std::string series = {};                 // of DICOM: the UID of a series, or its number in the list, from 1
   std::optional<glm::dvec3> spacing = {};  // world units between voxel centres, for formats that state no place
   std::optional<glm::dvec3> origin = {};   // world position of the first voxel's centre, for the same formats
@@ -31,6 +36,10 @@ struct UnknownFormat : InvalidArgument {
 ///                         throw it too
 /// @throw IoError          as the formats do
 std::unique_ptr<VoxelSource> openVolume(const std::filesystem::path& path, const OpenOptions& options = {});
+
+/// A volume whose world is in another unit, which its metadata then state.
+/// @param unit  nm, um, mm, cm, m or "file"  @throw InvalidArgument  another one
+std::unique_ptr<VoxelSource> inLengthUnit(std::unique_ptr<VoxelSource> source, const std::string& unit);
 
 /// The name of the format that the extension of `path` stands for, or nothing.
 std::optional<std::string> formatOfName(const std::filesystem::path& path);

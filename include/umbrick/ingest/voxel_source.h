@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace umbrick {
 
@@ -27,13 +28,17 @@ bool isFloat(VoxelType type);
 struct VolumeInfo {
   std::string name;                // what messages call the source, usually its file name
   glm::i64vec3 dims{0};            // voxels along x (fastest), y, z
-  glm::dmat4 indexToWorld{1};      // voxel centres lie at integers; the world is in mm where the file states a unit
+  glm::dmat4 indexToWorld{1};      // voxel centres lie at integers; the world is in metadata["length_unit"]
   VoxelType type = VoxelType::u8;  // of the voxels as they are stored
   /// What the file says beside its voxels. Every source gives source_format and source_file. Where the file states
-  /// them, there are length_unit, modality, rescale (a slope and an intercept that are already applied) and space,
-  /// which says which way the axes of the world point: "LPS" is towards left, posterior and superior of the patient,
-  /// "RAS" towards right, anterior and superior. Spaces are never converted. Other keys belong to one format.
+  /// them, there are length_unit (mm, or um, nm or pm where OpenVDB cannot hold voxels that small in mm), modality,
+  /// rescale (a slope and an intercept that are already applied) and space, which says which way the axes of the world
+  /// point: "LPS" is towards left, posterior and superior of the patient, "RAS" towards right, anterior and superior.
+  /// Spaces are never converted. Other keys belong to one format.
   std::map<std::string, std::string> metadata;
+  /// What a user should know of how the file was read: what was chosen, guessed or left out, a line each, without the
+  /// name of the file.
+  std::vector<std::string> notes;
   std::int64_t fileBytes = 0;  // size of all files that hold the volume, packed as they are
 };
 

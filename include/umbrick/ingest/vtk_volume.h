@@ -8,9 +8,10 @@
 
 namespace umbrick {
 
-/// Opens an image with one scalar array on its points or its cells: the one that the file names as its scalars, or else
-/// the only one that has one component. Values of cells become voxels at the centres of the cells. Origin, spacing,
-/// direction and the start of the extent become the transform.
+/// Opens an image with one scalar array on its points or its cells: the one that the path names, as in
+/// "file.vti:pressure", or that the file names as its scalars, or else the only one that has one component; of a .vtk
+/// the first one that has one number for each point or cell. vtkGhostType is none of them. Values of cells become
+/// voxels at the centres of the cells. Origin, spacing, direction and the start of the extent become the transform.
 /// - A .vti may hold its array as ascii, base64 or raw, inline or appended, plain or in blocks of zlib, LZ4 or
 ///   LZMA. It must have one piece.
 /// - A .vtk may be ASCII or binary.
@@ -19,5 +20,8 @@ namespace umbrick {
 /// @throw IoError  missing, short, malformed, another kind of dataset, several pieces, vectors
 std::unique_ptr<VoxelSource> openVti(const std::filesystem::path& path);
 std::unique_ptr<VoxelSource> openLegacyVtk(const std::filesystem::path& path);
+
+/// The array that a path such as "run/file.vti:pressure" names, where run/file.vti is a file; else nothing.
+std::string vtkArrayName(const std::filesystem::path& path);
 
 }  // namespace umbrick

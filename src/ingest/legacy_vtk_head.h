@@ -1,0 +1,28 @@
+// The text of a legacy VTK file up to the voxels, past whatever data stand before them.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "umbrick/ingest/voxel_source.h"
+
+namespace umbrick {
+
+struct LegacyHead {
+  bool ascii = false, cells = false;
+  std::array<std::int64_t, 3> points{};
+  std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};
+  VoxelType type = VoxelType::u8;
+  std::string array;
+  std::int64_t bytes = 0;  // where the voxels begin
+};
+
+/// Reads up to the first array of one number for each point or cell, or to that of the name. What lies behind it is
+/// left alone.
+/// @param name  of the array; empty: any
+/// @throw IoError  no structured points, or no such array
+LegacyHead readLegacyHead(const std::filesystem::path& path, const std::string& name);
+
+}  // namespace umbrick
