@@ -142,8 +142,9 @@ void addPartOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& comman
       ".nvdb by its indices");
   app.add_option(
          "--resample", command->resample,
-         "spacing of the voxels to be made, one for all axes or one for each, world units (mm, where the file states "
-         "its unit): each has the mean of what it covers, so that the integral stays; the last ones along an axis may "
+         "spacing of the voxels to be made, one for all axes or one for each, world units (mm where the file states "
+         "its unit, see --length-unit): each has the mean of what it covers, so that the integral stays; the last ones "
+         "along an axis may "
          "reach beyond the volume and have the mean of their part inside; stands behind the input [as in the file]")
       ->expected(1, 3)
       ->check(positiveNumber());
