@@ -86,8 +86,14 @@ void addGridOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& comman
   app.add_option("--grid", command->options.grids,
                  "of a .vdb or .nvdb: only this grid, \"name\" or \"name[1]\"; may be repeated [all scalar ones]")
       ->allow_extra_args(false);
-  app.add_option("--series", command->options.source.open.series,
-                 "of a DICOM folder: the UID of a series, or its number in the list that is printed [the only one]");
+  app.add_option(
+      "--series", command->options.source.open.series,
+      "of a DICOM folder: the UID of a series, or its number in the list that is printed [the only one]; its damaged "
+      "files and slices unlike most of the others are left out");
+  app.add_option("--where", command->options.source.open.where,
+                 "of DICOM: only slices whose tag has this value, as AcquisitionNumber=2 or 0018,0081=4.6; may be "
+                 "repeated, and then all must hold [all slices]")
+      ->allow_extra_args(false);
 }
 
 // How the files of volumes are read.
@@ -144,8 +150,8 @@ void addPartOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& comman
          "--resample", command->resample,
          "spacing of the voxels to be made, one for all axes or one for each, world units (mm where the file states "
          "its unit, see --length-unit): each has the mean of what it covers, so that the integral stays; the last ones "
-         "along an axis may "
-         "reach beyond the volume and have the mean of their part inside; stands behind the input [as in the file]")
+         "along an axis may reach beyond the volume and have the mean of their part inside; DICOM slices that are "
+         "missing or uneven are interpolated before; stands behind the input [as in the file]")
       ->expected(1, 3)
       ->check(positiveNumber());
 }

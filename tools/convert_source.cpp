@@ -22,6 +22,7 @@ OpenOptions openInput(const ConvertCommand& command) {
   open.series = command.options.source.open.series;
   open.lengthUnit = command.options.source.open.lengthUnit;
   open.strict = command.options.source.open.strict;
+  open.where = command.options.source.open.where;
   if (!command.raw()) {
     open.spacing = vector(command.spacing);
     open.origin = vector(command.origin);
@@ -45,6 +46,7 @@ OpenOptions openInput(const ConvertCommand& command) {
 OpenOptions openMask(const ConvertCommand& command) {
   ConvertCommand mask = command;
   mask.options.source.open.series.clear();
+  mask.options.source.open.where.clear();
   mask.headerBytes = 0;
   mask.bitsStored = 0;
   if (formatOfName(command.options.source.mask)) {
@@ -81,6 +83,7 @@ SourceOptions sourceOptions(const ConvertCommand& command) {
   if (!command.resample.empty()) {
     const std::vector<double>& s = command.resample;
     source.resample = {s.front(), s[s.size() / 2], s.back()};
+    source.open.evenSlices = true;
   }
   source.backgroundFromBorder = command.background == "auto";
   return source;

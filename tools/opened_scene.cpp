@@ -9,6 +9,7 @@
 
 #include "command.h"
 #include "umbrick/core/names.h"
+#include "umbrick/ingest/dicom_volume.h"
 #include "umbrick/ingest/open_volume.h"
 #include "umbrick/scene/capabilities.h"
 
@@ -90,9 +91,8 @@ void chooseView(const SceneOptions& options, bool fromScene, OpenedScene& opened
 
 // What an option can do about an error of a reader.
 std::string hintOf(const std::exception& error) {
-  const std::string text = error.what();
   if (dynamic_cast<const UnknownFormat*>(&error)) return ": give --dims and --type";
-  if (text.find("series") != std::string::npos && text.find("--series") == std::string::npos) return "; give --series";
+  if (dynamic_cast<const SeveralSeries*>(&error)) return "; give --series";
   return {};
 }
 

@@ -32,6 +32,15 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kWords{{
 }};
 
 // What an option can do about an error of a reader.
+std::string hintOf(const std::exception& error) {
+  if (dynamic_cast<const SeveralPhases*>(&error)) return "; convert --where Tag=value picks";
+  if (dynamic_cast<const OddSlices*>(&error)) return "; it is left out where --series names the series";
+  if (dynamic_cast<const UnplacedSlices*>(&error)) return "; give --spacing";
+  if (dynamic_cast<const UnevenSlices*>(&error)) return "; convert --resample interpolates to an even grid";
+  if (dynamic_cast<const SeveralGrids*>(&error)) return "; give --grid";
+  return {};
+}
+
 std::string hint(const OptionsError& error) try {
   std::rethrow_if_nested(error);
   return {};
@@ -60,8 +69,7 @@ std::string inOptionWords(const std::exception& error) {
   // A field that an option sets by its name needs no more words.
   if (field && !field->option.empty() && text.substr(0, end) == field->path)
     text.insert(end, " (--" + std::string(field->option) + ")");
-  if (dynamic_cast<const SeveralGrids*>(&error)) text += "; give --grid";
-  return text;
+  return text + hintOf(error);
 }
 
 }  // namespace umbrick::tools

@@ -36,6 +36,10 @@ struct Format {
 
 constexpr std::size_t kMagicBytes = 352;
 
+DicomOptions dicomOptions(const OpenOptions& options) {
+  return {options.series, options.where, options.spacing, options.origin, options.evenSlices};
+}
+
 std::vector<Format> formats() {
   using Bytes = std::string_view;
   return {
@@ -64,7 +68,7 @@ std::vector<Format> formats() {
         "a file or a folder of them: grey series, single- and multi-frame, raw and compressed"},
        [](Bytes b) { return b.size() >= 132 && b.substr(128, 4) == "DICM"; },
        true,
-       [](const fs::path& path, const OpenOptions& options) { return openDicom(path, options.series); }},
+       [](const fs::path& path, const OpenOptions& options) { return openDicom(path, dicomOptions(options)); }},
       {{"images",
         {".tif", ".tiff", ".png"},
         "grey TIFF of one or many pages and PNG: a file, slice_%04d.tif, 'slice*.png' or a folder; OME-XML, ImageJ"},
@@ -115,10 +119,10 @@ std::optional<Format> formatOf(const fs::path& path) {
     return *std::find_if(all.begin(), all.end(), [&](const Format& format) { return format.row.name == name; });
   };
   if (fs::is_directory(path))
-    if (auto series = readDicomSeries(path)) {
+    if (auto found = readDicomFolder(path)) {
       Format dicom = named("DICOM");
-      dicom.open = [series = std::move(*series)](const fs::path& folder, const OpenOptions& options) {
-        return openDicomSeries(folder, pickSeries(folder, series, options.series));
+      dicom.open = [found = std::move(*found)](const fs::path& folder, const OpenOptions& options) {
+        return openDicomFolder(folder, found, dicomOptions(options));
       };
       return dicom;
     }
@@ -171,6 +175,7 @@ std::unique_ptr<VoxelSource> openPlaced(const fs::path& path, const OpenOptions&
   }
   auto source = inUnit(format->open(path, options));
   if (!options.spacing && !options.origin) return source;
+  if (format->row.name == "DICOM") return source;  // which has looked at them: a series may state a part of its place
   if (format->placed)
     throw InvalidArgument(path.string() + ": spacing and origin: " + format->row.name + " states its own");
   glm::dmat4 place = source->info().indexToWorld;

@@ -21,6 +21,8 @@ struct OpenOptions {
   /// OpenVDB.
   std::string lengthUnit = {};
   std::string series = {};                 // of DICOM: the UID of a series, or its number in the list, from 1
+  std::vector<std::string> where = {};     // of DICOM: only slices with this "Tag=value", see DicomOptions
+  bool evenSlices = false;                 // of DICOM: slices that are not evenly spaced are interpolated
   std::optional<glm::dvec3> spacing = {};  // world units between voxel centres, for formats that state no place
   std::optional<glm::dvec3> origin = {};   // world position of the first voxel's centre, for the same formats
 };

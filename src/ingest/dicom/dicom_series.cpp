@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/dicom/dicom_series.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <map>
 #include <system_error>
@@ -27,61 +29,76 @@ std::vector<fs::path> filesIn(const fs::path& folder) {
   return paths;
 }
 
-std::string listing(const std::vector<DicomSeriesFiles>& all) {
-  std::string out;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    out += (i ? "; " : "") + std::to_string(i + 1) + ": " + all[i].series.modality + " \"" + all[i].series.description +
-           "\", " + std::to_string(all[i].files.size()) + " files, " + all[i].series.uid;
-  return out;
+std::vector<std::optional<DicomFile>> readAll(const std::vector<fs::path>& paths) {
+  std::vector<std::optional<DicomFile>> files(paths.size());
+  tbb::parallel_for(std::size_t(0), paths.size(), [&](std::size_t i) { files[i] = readDicomTagsIfAny(paths[i]); });
+  return files;
 }
 
-}  // namespace
+// A folder of what is named DICOM and is none would else be one of an unknown format.
+void checkNamed(const fs::path& folder, const std::vector<fs::path>& paths) {
+  std::size_t count = 0;
+  const fs::path* first = nullptr;
+  for (const fs::path& path : paths) {
+    const std::string extension = lower(path.extension().string());
+    if (extension != ".dcm" && extension != ".ima") continue;
+    ++count;
+    if (!first) first = &path;
+  }
+  if (first)
+    throw IoError(folder.string() + ": expected DICOM files, found " + std::to_string(count) +
+                  " that are named so and have no DICOM header, such as " + first->filename().string());
+}
 
-std::optional<std::vector<DicomSeriesFiles>> readDicomSeries(const fs::path& path) {
-  bool found = false;
+// Puts files in order of series. Damaged files of series that have a whole file stay with them.
+DicomFolder sorted(std::vector<DicomFile> files) {
   std::map<std::string, DicomSeriesFiles> byUid;
-  const auto add = [&](DicomFile file) {
-    found = true;
-    if (file.rows == 0) return;  // no image: a directory, a report
-    DicomSeriesFiles& each = byUid[file.seriesUid];
+  for (const DicomFile& file : files)
+    if (!file.damaged) byUid[file.seriesUid].series.uid = file.seriesUid;
+  DicomFolder folder;
+  for (DicomFile& file : files) {
+    const auto found = byUid.find(file.seriesUid);
+    if (found == byUid.end()) {
+      folder.damaged.push_back(std::move(file));
+      continue;
+    }
+    DicomSeriesFiles& each = found->second;
     if (each.files.empty())
       each.series = {file.seriesUid, file.seriesDescription, file.modality, file.seriesNumber, {}};
     each.series.files.push_back(file.path);
     each.files.push_back(std::move(file));
-  };
-  if (fs::is_directory(path)) {
-    for (const fs::path& each : filesIn(path))
-      if (auto file = readDicomTagsIfAny(each)) add(std::move(*file));
-  } else {
-    add(readDicomTags(path));
   }
-  if (!found) return std::nullopt;
-  std::vector<DicomSeriesFiles> out;
-  for (auto& [uid, series] : byUid) out.push_back(std::move(series));
-  std::stable_sort(out.begin(), out.end(),
+  for (auto& [uid, series] : byUid) folder.series.push_back(std::move(series));
+  std::stable_sort(folder.series.begin(), folder.series.end(),
                    [](const auto& a, const auto& b) { return a.series.number < b.series.number; });
-  return out;
+  return folder;
+}
+
+}  // namespace
+
+std::optional<DicomFolder> readDicomFolder(const fs::path& path) {
+  std::vector<DicomFile> images;
+  if (fs::is_directory(path)) {
+    const std::vector<fs::path> paths = filesIn(path);
+    bool found = false;
+    for (std::optional<DicomFile>& file : readAll(paths)) {
+      found = found || file;
+      if (file && file->rows > 0) images.push_back(std::move(*file));  // others: a directory, a report
+    }
+    if (!found) checkNamed(path, paths);
+    if (!found) return std::nullopt;
+  } else {
+    DicomFile file = readDicomTags(path);
+    if (file.rows > 0) images.push_back(std::move(file));
+  }
+  return sorted(std::move(images));
 }
 
 std::vector<DicomSeries> listDicomSeries(const fs::path& path) {
   std::vector<DicomSeries> out;
-  for (DicomSeriesFiles& each : readDicomSeries(path).value_or(std::vector<DicomSeriesFiles>()))
+  for (DicomSeriesFiles& each : readDicomFolder(path).value_or(DicomFolder()).series)
     out.push_back(std::move(each.series));
   return out;
-}
-
-DicomSeriesFiles pickSeries(const fs::path& path, std::vector<DicomSeriesFiles> all, const std::string& series) {
-  if (all.empty()) throw IoError(path.string() + ": expected DICOM images, found none");
-  if (series.empty()) {
-    if (all.size() == 1) return std::move(all.front());
-    throw SeveralSeries(path.string() + ": " + std::to_string(all.size()) +
-                        " series, pick one by number or UID: " + listing(all));
-  }
-  const auto number = integer(series);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].series.uid == series || (number && *number == static_cast<std::int64_t>(i) + 1))
-      return std::move(all[i]);
-  throw InvalidArgument(path.string() + ": no series \"" + series + "\": there are " + listing(all));
 }
 
 }  // namespace umbrick

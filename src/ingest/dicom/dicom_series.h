@@ -17,15 +17,20 @@ struct DicomSeriesFiles {
   std::vector<DicomFile> files;  // as series.files
 };
 
-/// The series of the images of a file, or of a folder and the folders in it, by number and then UID. Each file is
-/// opened and read up to its pixels once. Nothing for a folder without a DICOM file.
-/// @throw IoError  missing, or a DICOM file that cannot be read
-std::optional<std::vector<DicomSeriesFiles>> readDicomSeries(const std::filesystem::path& path);
+struct DicomFolder {
+  std::vector<DicomSeriesFiles> series;  // by number and then UID; each has a file that is whole
+  std::vector<DicomFile> damaged;        // files of no series that is there
+};
 
-/// The one that openDicom picks. @throw Error  as openDicom does
-DicomSeriesFiles pickSeries(const std::filesystem::path& path, std::vector<DicomSeriesFiles> all,
-                            const std::string& series);
+/// The series of the images of a file, or of a folder and the folders in it. The header of each file is read once, by
+/// all cores. Nothing for a folder without a DICOM file.
+/// @throw IoError  missing or not to be opened; a single file that is damaged; a folder of files that are named as
+/// DICOM
+///                 and have no header of it
+std::optional<DicomFolder> readDicomFolder(const std::filesystem::path& path);
 
-std::unique_ptr<VoxelSource> openDicomSeries(const std::filesystem::path& path, DicomSeriesFiles series);
+/// Opens the series that the options pick. @throw Error  as openDicom does
+std::unique_ptr<VoxelSource> openDicomFolder(const std::filesystem::path& path, DicomFolder folder,
+                                             const DicomOptions& options);
 
 }  // namespace umbrick

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/ingest/dicom_volume.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <cmath>
-#include <exception>
-#include <glm/geometric.hpp>
-#include <sstream>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <utility>
 
-#include "ingest/dicom/dicom_file.h"
+#include "ingest/dicom/dicom_pick.h"
+#include "ingest/dicom/dicom_pixels.h"
 #include "ingest/dicom/dicom_series.h"
+#include "ingest/dicom/dicom_stack.h"
 #include "ingest/header_text.h"
 #include "ingest/place.h"
 #include "ingest/provenance.h"
@@ -21,169 +25,144 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-// One frame of one file.
-struct Slice {
-  std::size_t file = 0, frame = 0;
-  DicomFrame plane;
-};
+using Bytes = std::vector<std::byte>;
 
-std::string text(const glm::dvec3& v) {
-  std::ostringstream out;
-  out << '(' << v.x << ' ' << v.y << ' ' << v.z << ')';
-  return out.str();
-}
-
-// All slices must have the same size and type.
-void checkAlike(const DicomFile& a, const DicomFile& b) {
-  const auto size = [](const DicomFile& file) {
-    return std::to_string(file.columns) + " x " + std::to_string(file.rows);
-  };
-  if (a.columns != b.columns || a.rows != b.rows)
-    throw IoError(b.path.string() + ": expected " + size(a) + " pixels as in " + a.path.filename().string() +
-                  ", found " + size(b));
-  if (a.layout.type != b.layout.type)
-    throw IoError(b.path.string() + ": expected " + std::string(voxelTypeName(a.layout.type)) + " pixels as in " +
-                  a.path.filename().string() + ", found " + std::string(voxelTypeName(b.layout.type)));
-}
-
-void checkPlane(const DicomFile& file, const DicomFrame& frame, const DicomFile& firstFile, const DicomFrame& first) {
-  if (!frame.position) failField(file.path, "ImagePositionPatient", "the position of the slice", "");
-  if (!frame.alongRow) failField(file.path, "ImageOrientationPatient", "the directions of rows and columns", "");
-  if (!frame.spacing) failField(file.path, "PixelSpacing", "the distance of the pixels", "");
-  if (!(frame.spacing->x > 0) || !(frame.spacing->y > 0))
-    failField(file.path, "PixelSpacing", "positive numbers",
-              std::to_string(frame.spacing->y) + " " + std::to_string(frame.spacing->x));
-  // Cosines are written with six digits or so.
-  const glm::dvec3 x = *frame.alongRow, y = *frame.alongColumn;
-  if (std::abs(glm::length(x) - 1) > 1e-3 || std::abs(glm::length(y) - 1) > 1e-3 || std::abs(glm::dot(x, y)) > 1e-3)
-    failField(file.path, "ImageOrientationPatient", "two unit vectors at right angles", text(x) + " " + text(y));
-  if (glm::distance(x, *first.alongRow) > 1e-4 || glm::distance(y, *first.alongColumn) > 1e-4)
-    throw IoError(file.path.string() + ": ImageOrientationPatient: expected " + text(*first.alongRow) + " " +
-                  text(*first.alongColumn) + " as in " + firstFile.path.filename().string() + ", found " + text(x) +
-                  " " + text(y));
-  if (glm::distance(*frame.spacing, *first.spacing) > 1e-5 * glm::length(*first.spacing))
-    throw IoError(file.path.string() + ": PixelSpacing: expected " + std::to_string(first.spacing->y) + " " +
-                  std::to_string(first.spacing->x) + " as in " + firstFile.path.filename().string() + ", found " +
-                  std::to_string(frame.spacing->y) + " " + std::to_string(frame.spacing->x));
-}
-
-class Stack {
+// Pixels of slices, for several threads at once. The last file of which several slices are had at once, a mosaic or one
+// that is unpacked as a whole, is kept.
+class SlicePixels {
  public:
-  Stack(std::string name, std::vector<DicomFile> files) : name_(std::move(name)), files_(std::move(files)) {
-    for (std::size_t file = 0; file < files_.size(); ++file) {
-      checkAlike(files_.front(), files_[file]);
-      for (std::size_t frame = 0; frame < files_[file].frames.size(); ++frame) {
-        checkPlane(files_[file], files_[file].frames[frame], files_.front(), files_.front().frames.front());
-        slices_.push_back({file, frame, files_[file].frames[frame]});
-      }
-    }
-    const DicomFrame& first = files_.front().frames.front();
-    normal_ = glm::normalize(glm::cross(*first.alongRow, *first.alongColumn));
-    std::stable_sort(slices_.begin(), slices_.end(),
-                     [&](const Slice& a, const Slice& b) { return along(a) < along(b); });
-    checkPositions();
-  }
-
-  const std::vector<Slice>& slices() const { return slices_; }
-  const std::vector<DicomFile>& files() const { return files_; }
-
-  glm::dmat4 indexToWorld() const {
-    const DicomFrame& first = slices_.front().plane;
-    glm::dmat4 m(1);
-    m[0] = glm::dvec4(*first.alongRow * first.spacing->x, 0);
-    m[1] = glm::dvec4(*first.alongColumn * first.spacing->y, 0);
-    m[2] = glm::dvec4(step(), 0);
-    m[3] = glm::dvec4(*first.position, 1);
-    return m;
+  /// @return the pixels of the slice, as file.pixels.layout says
+  Bytes read(const DicomSlice& slice) {
+    const DicomPixelData& pixels = slice.file->pixels;
+    const bool whole = pixels.columns == slice.file->columns && pixels.rows == slice.file->rows;
+    if (pixels.single() && whole) return readDicomPixels(*slice.file, slice.frame->image);
+    const std::shared_ptr<const Bytes> kept = keptPixels(*slice.file);
+    return cut(slice, *kept);
   }
 
  private:
-  double along(const Slice& slice) const { return glm::dot(*slice.plane.position, normal_); }
-
-  std::string called(const Slice& slice) const {
-    const DicomFile& file = files_[slice.file];
-    return file.path.filename().string() +
-           (file.frames.size() > 1 ? " frame " + std::to_string(slice.frame + 1) : std::string());
-  }
-
-  // From one slice to the next, the mean of all; a single slice is as thick as it says, or as its pixels are wide.
-  glm::dvec3 step() const {
-    const DicomFrame& first = slices_.front().plane;
-    if (slices_.size() > 1)
-      return (*slices_.back().plane.position - *first.position) / static_cast<double>(slices_.size() - 1);
-    const double thickness = files_.front().sliceDistance;
-    return normal_ * (thickness > 0 ? thickness : std::sqrt(first.spacing->x * first.spacing->y));
-  }
-
-  void checkPositions() const {
-    if (slices_.size() < 2) return;
-    std::vector<double> gaps;
-    for (std::size_t i = 1; i < slices_.size(); ++i) gaps.push_back(along(slices_[i]) - along(slices_[i - 1]));
-    std::vector<double> sorted = gaps;
-    std::nth_element(sorted.begin(), sorted.begin() + std::ssize(sorted) / 2, sorted.end());
-    const double usual = sorted[sorted.size() / 2];
-    // Positions are written to a micron or so; slices are never that thin.
-    constexpr double kSame = 1e-3;
-    for (std::size_t i = 0; i < gaps.size(); ++i) {
-      const Slice &a = slices_[i], &b = slices_[i + 1];
-      if (gaps[i] < kSame)
-        throw IoError(name_ + ": expected one slice at each position, found " + called(a) + " and " + called(b) +
-                      " at " + text(*a.plane.position));
-      if (gaps[i] > 1.5 * usual && usual >= kSame)
-        throw IoError(name_ + ": expected slices " + std::to_string(usual) + " mm apart, found " +
-                      std::to_string(gaps[i]) + " mm between " + called(a) + " at " + text(*a.plane.position) +
-                      " and " + called(b) + " at " + text(*b.plane.position) + ": is a slice missing?");
+  std::shared_ptr<const Bytes> keptPixels(const DicomFile& file) {
+    const std::scoped_lock lock(mutex_);
+    if (keptOf_ != &file) {
+      kept_.reset();
+      keptOf_ = nullptr;
+      kept_ = std::make_shared<const Bytes>(readDicomPixels(file, 0));
+      keptOf_ = &file;
     }
-    const glm::dvec3 each = step();
-    const double tolerance = std::max(0.02 * glm::length(each), 0.01);
-    for (std::size_t i = 0; i < slices_.size(); ++i) {
-      const glm::dvec3 expected = *slices_.front().plane.position + each * static_cast<double>(i);
-      if (glm::distance(expected, *slices_[i].plane.position) > tolerance)
-        throw IoError(name_ + ": " + called(slices_[i]) + ": ImagePositionPatient: expected " + text(expected) +
-                      " for slices that are evenly spaced, found " + text(*slices_[i].plane.position));
-    }
+    return kept_;
   }
 
-  std::string name_;
-  std::vector<DicomFile> files_;
-  std::vector<Slice> slices_;
-  glm::dvec3 normal_{0, 0, 1};
+  static Bytes cut(const DicomSlice& slice, const Bytes& from) {
+    const DicomPixelData& pixels = slice.file->pixels;
+    const auto voxel = static_cast<std::int64_t>(voxelBytes(pixels.layout.type));
+    const std::int64_t row = slice.file->columns * voxel, wide = pixels.columns * voxel;
+    const std::int64_t image = pixels.single() ? 0 : static_cast<std::int64_t>(slice.frame->image);
+    const std::int64_t first = (image * pixels.rows + slice.frame->corner.y) * wide + slice.frame->corner.x * voxel;
+    Bytes out(static_cast<std::size_t>(row * slice.file->rows));
+    for (std::int64_t y = 0; y < slice.file->rows; ++y)
+      std::memcpy(out.data() + y * row, from.data() + first + y * wide, static_cast<std::size_t>(row));
+    return out;
+  }
+
+  std::mutex mutex_;
+  const DicomFile* keptOf_ = nullptr;
+  std::shared_ptr<const Bytes> kept_;
 };
+
+bool isRescaled(const DicomFrame& frame) { return frame.slope != 1 || frame.intercept != 0; }
 
 class DicomSource : public VoxelSource {
  public:
-  DicomSource(VolumeInfo info, Stack stack) : stack_(std::move(stack)) { info_ = std::move(info); }
+  DicomSource(VolumeInfo info, DicomStack stack) : stack_(std::move(stack)) {
+    info_ = std::move(info);
+    using enum VoxelType;
+    asStored_ = info_.type == u8 || info_.type == i8 || info_.type == u16 || info_.type == i16;
+    for (const DicomSlice& slice : stack_.slices()) asStored_ = asStored_ && !isRescaled(*slice.frame);
+    for (const DicomBlend& blend : stack_.blends()) asStored_ = asStored_ && blend.share == 0;
+  }
 
   double readSlab(std::int64_t count, std::span<float> out) override {
-    const auto voxels = static_cast<std::size_t>(info_.dims.x * info_.dims.y);
-    const std::size_t bytes = voxels * static_cast<std::size_t>(voxelBytes(info_.type));
-    double error = 0;
-    for (std::int64_t i = 0; i < count; ++i) {
-      const Slice& slice = stack_.slices()[next_++];
-      const DicomFile& file = stack_.files()[slice.file];
-      const bool native = file.pixelOffset >= 0;
-      if (native)
-        pixels_ = readDicomPixels(file, slice.frame, 1);
-      else if (unpacked_ != slice.file)
-        pixels_ = readDicomPixels(file, 0, file.frames.size());
-      unpacked_ = slice.file;
-      VoxelLayout layout = file.layout;
-      layout.slope = slice.plane.slope;
-      layout.intercept = slice.plane.intercept;
-      error = std::max(error, decodeVoxels(layout, std::span(pixels_).subspan(native ? 0 : slice.frame * bytes, bytes),
-                                           out.subspan(static_cast<std::size_t>(i) * voxels, voxels)));
+    const std::vector<std::size_t> needed = blendedSlices(count);
+    std::map<std::size_t, std::vector<float>> held;
+    for (const std::size_t slice : needed) held[slice].resize(voxels());
+    std::vector<double> errors(static_cast<std::size_t>(count) + needed.size(), 0.0);
+    // All cores: slices of the slab that are there, and those between which others lie.
+    tbb::parallel_for(std::size_t(0), errors.size(), [&](std::size_t i) {
+      if (i >= static_cast<std::size_t>(count)) {
+        const std::size_t slice = needed[i - static_cast<std::size_t>(count)];
+        errors[i] = decode(slice, held.at(slice));
+      } else if (const DicomBlend& blend = stack_.blends()[next_ + i]; blend.share == 0) {
+        errors[i] = decode(blend.slice, out.subspan(i * voxels(), voxels()));
+      }
+    });
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      const DicomBlend& blend = stack_.blends()[next_ + i];
+      if (blend.share == 0) continue;
+      const std::vector<float>&a = held.at(blend.slice), &b = held.at(blend.slice + 1);
+      for (std::size_t k = 0; k < voxels(); ++k)
+        out[i * voxels() + k] = static_cast<float>((1 - blend.share) * double(a[k]) + blend.share * double(b[k]));
     }
-    return error;
+    next_ += static_cast<std::size_t>(count);
+    return *std::max_element(errors.begin(), errors.end());
+  }
+
+  void skipSlices(std::int64_t count) override { next_ += static_cast<std::size_t>(count); }
+  bool skipsFast() const override { return true; }
+
+  std::optional<VoxelType> storedType() const override { return asStored_ ? std::optional(info_.type) : std::nullopt; }
+  void readStored(std::int64_t count, std::span<std::byte> out) override {
+    const std::size_t bytes = voxels() * static_cast<std::size_t>(voxelBytes(info_.type));
+    tbb::parallel_for(std::size_t(0), static_cast<std::size_t>(count), [&](std::size_t i) {
+      const DicomSlice& slice = stack_.slices()[stack_.blends()[next_ + i].slice];
+      const Bytes raw = pixels_.read(slice);
+      const std::span<std::byte> to = out.subspan(i * bytes, bytes);
+      std::memcpy(to.data(), raw.data(), bytes);
+      normaliseVoxels(slice.file->pixels.layout, to);
+    });
+    next_ += static_cast<std::size_t>(count);
   }
 
  private:
-  Stack stack_;
+  std::size_t voxels() const { return static_cast<std::size_t>(info_.dims.x * info_.dims.y); }
+
+  double decode(std::size_t index, std::span<float> out) {
+    const DicomSlice& slice = stack_.slices()[index];
+    VoxelLayout layout = slice.file->pixels.layout;
+    layout.slope = slice.frame->slope;
+    layout.intercept = slice.frame->intercept;
+    return decodeVoxels(layout, pixels_.read(slice), out);
+  }
+
+  // The slices of the series that the next ones of the volume lie between.
+  std::vector<std::size_t> blendedSlices(std::int64_t count) const {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+      if (const DicomBlend& blend = stack_.blends()[next_ + i]; blend.share != 0)
+        for (const std::size_t slice : {blend.slice, blend.slice + 1})
+          if (std::find(out.begin(), out.end(), slice) == out.end()) out.push_back(slice);
+    return out;
+  }
+
+  DicomStack stack_;
+  SlicePixels pixels_;
   std::size_t next_ = 0;
-  std::size_t unpacked_ = static_cast<std::size_t>(-1);  // index of the file whose frames are held
-  std::vector<std::byte> pixels_;
+  bool asStored_ = false;
 };
 
-void describe(const Stack& stack, VolumeInfo& info) {
+// What files say in the same words is said once.
+void joinNotes(const std::vector<DicomFile>& files, std::vector<std::string>& notes) {
+  std::map<std::string, std::pair<std::size_t, std::string>> all;
+  for (const DicomFile& file : files)
+    for (const auto& [what, found] : file.notes)
+      if (auto& [count, first] = all[what]; count++ == 0) first = file.path.filename().string() + ": " + found;
+  for (const auto& [what, said] : all) {
+    const auto& [count, first] = said;
+    notes.push_back(what + " (" + first +
+                    (count > 1 ? ", and " + std::to_string(count - 1) + " more files)" : std::string(")")));
+  }
+}
+
+void describe(const DicomStack& stack, VolumeInfo& info) {
   const DicomFile& file = stack.files().front();
   info.metadata["space"] = "LPS";
   info.metadata["length_unit"] = "mm";
@@ -194,31 +173,77 @@ void describe(const Stack& stack, VolumeInfo& info) {
   keep("series_uid", file.seriesUid);
   keep("series_description", file.seriesDescription);
   keep("value_unit", file.valueUnit.empty() && file.modality == "CT" ? "HU" : file.valueUnit);
-  if (file.photometric == "MONOCHROME1") keep("photometric", "MONOCHROME1: the lowest value is white");
+  if (file.pixels.photometric == "MONOCHROME1") keep("photometric", "MONOCHROME1: the lowest value is white");
   if (file.gantryTilt != 0) keep("gantry_tilt", std::to_string(file.gantryTilt) + " degrees");
+  const DicomFrame& first = *stack.slices().front().frame;
   bool alike = true;
-  for (const Slice& slice : stack.slices())
-    alike = alike && slice.plane.slope == stack.slices()[0].plane.slope &&
-            slice.plane.intercept == stack.slices()[0].plane.intercept;
+  for (const DicomSlice& slice : stack.slices())
+    alike = alike && slice.frame->slope == first.slope && slice.frame->intercept == first.intercept;
   VoxelLayout layout;
-  layout.slope = stack.slices()[0].plane.slope;
-  layout.intercept = stack.slices()[0].plane.intercept;
+  layout.slope = first.slope;
+  layout.intercept = first.intercept;
   keep("rescale", alike ? describeRescale(layout).value_or("") : "its own for each slice");
+}
+
+std::string listing(const std::vector<DicomSeriesFiles>& all) {
+  std::string out;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    out += (i ? "; " : "") + std::to_string(i + 1) + ": " + all[i].series.modality + " \"" + all[i].series.description +
+           "\", " + std::to_string(all[i].files.size()) + " files, " + all[i].series.uid;
+  return out;
+}
+
+// The one that the options pick.
+std::vector<DicomFile> pickSeries(const fs::path& path, DicomFolder folder, const std::string& wanted,
+                                  std::vector<std::string>& notes) {
+  std::vector<DicomSeriesFiles>& all = folder.series;
+  if (wanted.empty()) {
+    if (all.size() > 1)
+      throw SeveralSeries(path.string() + ": " + std::to_string(all.size()) +
+                          " series, pick one by number or UID: " + listing(all));
+    if (!folder.damaged.empty() && !all.empty())
+      throw OddSlices(messageOf(folder.damaged.front().refused) + "; beside it there is series " + listing(all));
+    if (!folder.damaged.empty()) std::rethrow_exception(folder.damaged.front().refused);
+    if (all.empty()) throw IoError(path.string() + ": expected DICOM images, found none");
+    return std::move(all.front().files);
+  }
+  const auto place = integer(wanted);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].series.uid != wanted && !(place && *place == static_cast<std::int64_t>(i) + 1)) continue;
+    for (const DicomFile& file : folder.damaged)
+      if (file.seriesUid.empty()) notes.push_back("left out, of whatever series it is: " + messageOf(file.refused));
+    return std::move(all[i].files);
+  }
+  throw InvalidArgument(path.string() + ": no series \"" + wanted + "\": there are " + listing(all));
+}
+
+// Files whose pixels cannot be those of a volume end it, or are left out of a series that is picked where they are few.
+void dropRefused(std::vector<DicomFile>& files, bool picked, std::vector<std::string>& notes) {
+  const auto refused = [](const DicomFile& file) { return file.refused != nullptr; };
+  const auto first = std::find_if(files.begin(), files.end(), refused);
+  if (first == files.end()) return;
+  const auto count = std::count_if(files.begin(), files.end(), refused);
+  if (2 * count >= std::ssize(files)) std::rethrow_exception(first->refused);
+  if (!picked) throw OddSlices(messageOf(first->refused));
+  for (const DicomFile& file : files)
+    if (file.refused) notes.push_back(file.path.filename().string() + " is left out: " + messageOf(file.refused));
+  std::erase_if(files, refused);
 }
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openDicomSeries(const fs::path& path, DicomSeriesFiles series) {
+std::unique_ptr<VoxelSource> openDicomFolder(const fs::path& path, DicomFolder folder, const DicomOptions& options) {
   VolumeInfo info;
   info.name = path.string();
-  for (const DicomFile& file : series.files) {
-    if (file.refused) std::rethrow_exception(file.refused);
-    info.fileBytes += checkedFileSize(file.path);
-  }
-  Stack stack(info.name, std::move(series.files));
+  std::vector<DicomFile> files = pickSeries(path, std::move(folder), options.series, info.notes);
+  dropRefused(files, !options.series.empty() || !options.where.empty(), info.notes);
+  keepWhere(info.name, files, options.where);
+  joinNotes(files, info.notes);
+  DicomStack stack(info.name, std::move(files), options, info.notes);
+  for (const DicomFile& file : stack.files()) info.fileBytes += checkedFileSize(file.path);
   const DicomFile& first = stack.files().front();
-  info.dims = {first.columns, first.rows, std::ssize(stack.slices())};
-  info.type = first.layout.type;
+  info.dims = {first.columns, first.rows, std::ssize(stack.blends())};
+  info.type = first.pixels.layout.type;
   if (!volumeBytes(info.dims, info.type)) failField(path, "frames", "less than 2^31", std::to_string(info.dims.z));
   info.indexToWorld = stack.indexToWorld();
   addProvenance(info, path, "DICOM");
@@ -227,9 +252,8 @@ std::unique_ptr<VoxelSource> openDicomSeries(const fs::path& path, DicomSeriesFi
   return std::make_unique<DicomSource>(std::move(info), std::move(stack));
 }
 
-std::unique_ptr<VoxelSource> openDicom(const fs::path& path, const std::string& series) {
-  return openDicomSeries(path,
-                         pickSeries(path, readDicomSeries(path).value_or(std::vector<DicomSeriesFiles>()), series));
+std::unique_ptr<VoxelSource> openDicom(const fs::path& path, const DicomOptions& options) {
+  return openDicomFolder(path, readDicomFolder(path).value_or(DicomFolder()), options);
 }
 
 }  // namespace umbrick

@@ -52,8 +52,9 @@ void take(const Stream& stream, std::span<const std::byte>& in, std::span<std::b
 
 class ZlibCodec : public Codec {
  public:
-  ZlibCodec() {
-    if (inflateInit2(&stream_, 15 + 32) != Z_OK) throw IoError("cannot unpack zlib: out of memory");  // 32: gzip too
+  /// @param windowBits  15 + 32: gzip as well; -15: deflate without a head or sum of its own
+  explicit ZlibCodec(int windowBits = 15 + 32) {
+    if (inflateInit2(&stream_, windowBits) != Z_OK) throw IoError("cannot unpack zlib: out of memory");
   }
   ~ZlibCodec() override { inflateEnd(&stream_); }
   ZlibCodec(const ZlibCodec&) = delete;
@@ -163,6 +164,8 @@ std::unique_ptr<Codec> makeCodec(Packing packing) {
       return std::make_unique<ZstdCodec>();
     case Packing::bzip2:
       return std::make_unique<Bzip2Codec>();
+    case Packing::deflate:
+      return std::make_unique<ZlibCodec>(-15);
     default:
       return std::make_unique<ZlibCodec>();
   }
@@ -204,8 +207,9 @@ class UnpackedStream : public ByteStream {
                   std::to_string(total_) + " unpacked bytes");
   }
 
-  // What follows a gzip stream and is none is ignored, as gzip does.
+  // What follows a gzip stream and is none is ignored, as gzip does. Nothing follows a deflated one.
   bool padding() const {
+    if (packing_ == Packing::deflate) return true;
     return (packing_ == Packing::gzip || packing_ == Packing::zlib) && in_.front() != std::byte(0x1f);
   }
 
@@ -222,7 +226,7 @@ class UnpackedStream : public ByteStream {
 }  // namespace
 
 std::string_view packingName(Packing packing) {
-  static constexpr std::array<std::string_view, 6> kNames{"plain", "gzip", "zlib", "xz", "zstd", "bzip2"};
+  static constexpr std::array<std::string_view, 7> kNames{"plain", "gzip", "zlib", "xz", "zstd", "bzip2", "deflate"};
   return kNames[static_cast<std::size_t>(packing)];
 }
 

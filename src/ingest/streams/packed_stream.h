@@ -7,12 +7,13 @@
 
 namespace umbrick {
 
-enum class Packing { none, gzip, zlib, xz, zstd, bzip2 };
+enum class Packing { none, gzip, zlib, xz, zstd, bzip2, deflate };
 
-/// The packing that the first bytes at `offset` tell. zlib is never found, since its streams have no magic bytes.
+/// The packing that the first bytes at `offset` tell. zlib and deflate are never found, since
+/// their streams have no magic bytes.
 Packing packingOf(const std::filesystem::path& path, std::int64_t offset = 0);
 
-/// "gzip" ... "bzip2"; "plain" for none
+/// "gzip" ... "deflate"; "plain" for none
 std::string_view packingName(Packing packing);
 
 /// Members or frames that follow each other are one stream. Needs some MB whatever the size; streams that need more
