@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "ingest/dicom/dicom_rle.h"
 #include "ingest/dicom/jpeg_check.h"
 #include "ingest/streams/byte_stream.h"
 #include "umbrick/core/error.h"
@@ -191,6 +192,16 @@ Bytes readDicomPixels(const DicomFile& file, std::size_t image) try {
   if (parts.empty()) throw IoError(where(file, image) + "expected packed pixels, found none");
   std::vector<Bytes> fragments;
   for (const DicomFragment& part : parts) fragments.push_back(readBytes(file, part.offset, part.bytes));
+  if (pixels.transferSyntax == "1.2.840.10008.1.2.5") {
+    if (!pixels.single()) throw IoError(where(file, 0) + "expected a fragment of RLE data for each frame");
+    Bytes packed;
+    for (const Bytes& each : fragments) packed.insert(packed.end(), each.begin(), each.end());
+    const auto pixelBytes = static_cast<std::size_t>(voxelBytes(pixels.layout.type));
+    Bytes out(static_cast<std::size_t>(pixels.columns * pixels.rows) * pixelBytes);
+    const std::string damage = unpackDicomRle(packed, pixelBytes, out);
+    if (!damage.empty()) throw IoError(where(file, image) + "expected " + damage);
+    return out;
+  }
   if (pixels.single()) checkJpeg(file, image, fragments);
   return unpack(file, image, fragments, pixels.single() ? 1 : pixels.images);
 } catch (const Error&) {
