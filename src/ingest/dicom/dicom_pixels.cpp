@@ -6,7 +6,9 @@
 #include <gdcmSequenceOfFragments.h>
 #include <gdcmTrace.h>
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -40,23 +42,6 @@ bool isJpeg(const DicomPixelData& pixels) {
   const std::string_view family = "1.2.840.10008.1.2.4.";
   const std::string& syntax = pixels.transferSyntax;
   return syntax.starts_with(family) && syntax.size() == family.size() + 2 && syntax[family.size()] < '9';
-}
-
-void checkJpegHeader(const DicomFile& file, std::size_t image, const Bytes& stream);
-
-// The fragments together are the JPEG of one picture.
-void checkJpeg(const DicomFile& file, std::size_t image, const std::vector<Bytes>& fragments) {
-  Bytes joined;
-  const Bytes* stream = &fragments.front();
-  if (fragments.size() > 1) {
-    for (const Bytes& each : fragments) joined.insert(joined.end(), each.begin(), each.end());
-    stream = &joined;
-  }
-  checkJpegHeader(file, image, *stream);
-  if (stream->size() < 2 || (*stream)[0] != std::byte(0xff) || (*stream)[1] != std::byte(0xd8)) return;
-  if (const auto damage = jpegDamage(*stream))
-    throw IoError(file.path.string() + ": PixelData: frame " + std::to_string(image + 1) +
-                  ": expected a whole JPEG, found: " + *damage);
 }
 
 // The frame header of a JPEG: what it says must be what the tags say, since GDCM's decoders trust one or the other.
@@ -93,6 +78,45 @@ void checkJpegHeader(const DicomFile& file, std::size_t image, const Bytes& stre
                   std::to_string(bits) + " bits and " + std::to_string(components));
   }
   throw IoError(where(file, image) + "expected the frame header of a JPEG, found none");
+}
+
+// The same of JPEG 2000: its SIZ segment. GDCM writes as many pixels as that says.
+void checkJpeg2000(const DicomFile& file, std::size_t image, const Bytes& stream) {
+  const DicomPixelData& pixels = file.pixels;
+  if (!pixels.transferSyntax.starts_with("1.2.840.10008.1.2.4.9")) return;
+  constexpr std::byte kBegin[] = {std::byte(0xff), std::byte(0x4f), std::byte(0xff), std::byte(0x51)};
+  const auto found = std::search(stream.begin(), stream.end(), std::begin(kBegin), std::end(kBegin));
+  if (stream.end() - found < 45) throw IoError(where(file, image) + "expected the header of JPEG 2000, found none");
+  const auto number = [&](std::ptrdiff_t at, int bytes) {
+    std::int64_t out = 0;
+    for (int i = 0; i < bytes; ++i) out = out << 8 | std::to_integer<std::int64_t>(found[at + i]);
+    return out;
+  };
+  const std::int64_t columns = number(8, 4) - number(16, 4), rows = number(12, 4) - number(20, 4),
+                     components = number(40, 2), bits = (number(42, 1) & 0x7f) + 1;
+  if (columns == pixels.columns && rows == pixels.rows && components == 1 && bits <= pixels.bitsAllocated &&
+      number(43, 2) == 0x0101)
+    return;
+  throw IoError(where(file, image) + "expected JPEG 2000 of " + std::to_string(pixels.columns) + " x " +
+                std::to_string(pixels.rows) + " pixels of at most " + std::to_string(pixels.bitsAllocated) +
+                " bits and one component, found " + std::to_string(columns) + " x " + std::to_string(rows) + " of " +
+                std::to_string(bits) + " bits and " + std::to_string(components));
+}
+
+// The fragments together are the JPEG of one picture.
+void checkJpeg(const DicomFile& file, std::size_t image, const std::vector<Bytes>& fragments) {
+  Bytes joined;
+  const Bytes* stream = &fragments.front();
+  if (fragments.size() > 1) {
+    for (const Bytes& each : fragments) joined.insert(joined.end(), each.begin(), each.end());
+    stream = &joined;
+  }
+  checkJpeg2000(file, image, *stream);
+  checkJpegHeader(file, image, *stream);
+  if (stream->size() < 2 || (*stream)[0] != std::byte(0xff) || (*stream)[1] != std::byte(0xd8)) return;
+  if (const auto damage = jpegDamage(*stream))
+    throw IoError(file.path.string() + ": PixelData: frame " + std::to_string(image + 1) +
+                  ": expected a whole JPEG, found: " + *damage);
 }
 
 void silenceGdcm() {
