@@ -15,7 +15,7 @@ namespace umbrick::tools {
 namespace {
 
 // The fields of ConvertOptions that the library's messages name, longer ones before those that they begin with.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kWords{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kWords{{
     {"options.grids", "--grid"},
     {"options.isosurface", "--isosurface"},
     {"options.names", "--name"},

@@ -104,7 +104,9 @@ void checkOutputs(const PictureOutput& output) {
 
 Look PictureOutput::look() const { return {parseName(kToneMaps, toneMap, "--tone"), exposure, backdrop}; }
 
-VolumeUnits unitsOf(const ScalarGrid& grid) { return {grid.metadata("length_unit"), grid.metadata("value_unit"), grid.metadata("space")}; }
+VolumeUnits unitsOf(const ScalarGrid& grid) {
+  return {grid.metadata("length_unit"), grid.metadata("value_unit"), grid.metadata("space")};
+}
 
 void prepareLook(PictureOutput& output, Backdrop backdrop, const ResolvedScene& scene, const VolumeUnits& units) {
   output.backdrop = backdrop;

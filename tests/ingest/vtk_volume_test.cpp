@@ -224,7 +224,8 @@ TEST_CASE("Legacy VTK files of structured points are read as ASCII and binary, a
   file.refused(replaced(ascii, "a short", "a short 9"), "then a name, a type and one component");
   file.refused(replaced(ascii, "a short", "a bit"), "type of the scalars");
   file.refused(replaced(ascii, "2 3 2", "2000000000 2000000000 2000000000"), "DIMENSIONS: expected 1 to 2147483647");
-  file.refused(ascii.substr(0, 60), "head: expected SCALARS or a FIELD with one number for each of the points or cells, found \"the end");
+  file.refused(ascii.substr(0, 60),
+               "head: expected SCALARS or a FIELD with one number for each of the points or cells, found \"the end");
 }
 
 // VTK writes fields of the dataset, such as its time, before or behind its place, and attributes in any order.

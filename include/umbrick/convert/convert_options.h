@@ -36,8 +36,8 @@ struct ConvertOptions {
   /// Names of the grids, one for each volume. Where there are none, one volume alone becomes build.name, and several
   /// take the stems of their file names: "head" for scans/head.nii.gz. Grids of a file keep their names.
   std::vector<std::string> names = {};
-  std::vector<std::string> units = {};   // of the values, as metadata "value_unit": none, one for all, or one each
-  std::vector<std::string> grids = {};   // of a file of grids only these, "name" or "name[1]"; else all scalar ones
+  std::vector<std::string> units = {};  // of the values, as metadata "value_unit": none, one for all, or one each
+  std::vector<std::string> grids = {};  // of a file of grids only these, "name" or "name[1]"; else all scalar ones
   std::optional<IsosurfaceOptions> isosurface = {};  // writes level sets in place of the grids
   OutputOptions output = {};
   /// Reads the file back before it takes its name, and compares it with the input.
