@@ -1,5 +1,6 @@
 // What TIFF files say of themselves in their descriptions, beside their tags: which pages are slices, and how far
-// pixels and slices lie apart. SPDX-License-Identifier: Apache-2.0
+// pixels and slices lie apart.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>

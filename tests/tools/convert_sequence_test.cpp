@@ -122,8 +122,9 @@ TEST_CASE("Numbers on one side only, or in what cannot be frames, are wrong usag
   refused("f_001.nrrd -o o_%d.vdb", 2, "o_%d.vdb: expected an input with a number in its name too");
   refused("f_001.nrrd --frames 1-2 -o o.vdb", 2, "--frames: expected an input with a number in its name");
   refused("f_%03d.nrrd f_001.nrrd -o o_%d.vdb", 2, "expected one input where frames are numbered, found 2");
-  for (const char* range : {"2-1", "x", "1-", "1-2:0", "1-2:", "-1", "1-2-3"})
+  for (const char* range : {"2-1", "x", "1-", "1-2:0", "1-2:", "-", "1-2-3"})
     refused(std::string("f_%03d.nrrd -o o_%d.vdb --frames=") + range, 2, "--frames: expected A, A-B or A-B:step");
+  refused("f_%03d.nrrd -o o_%d.vdb --frames=-1", 1, "f_%03d.nrrd: expected frames of -1, found none");
   refused("f_%03d.nrrd -o o_%d.vdb --frames 3-9", 1, "f_%03d.nrrd: expected frames of 3-9, found none");
   refused("g_%03d.nrrd -o o_%d.vdb", 1, "g_%03d.nrrd: expected files of that pattern, found none");
   refused("f_%03d.nrrd -o none/o_%d.vdb", 1, "frame 1: none/o_1.vdb: cannot write");

@@ -13,7 +13,7 @@
 namespace umbrick {
 namespace {
 
-constexpr std::size_t kLongestKept = 64;
+constexpr std::size_t kLongestTextKept = 64;
 
 // The functional groups that state the plane of a frame: its position, its orientation and the measures of its pixels.
 constexpr std::array<std::uint32_t, 3> kPlaneGroups{0x00209113, 0x00209116, 0x00289110};
@@ -84,7 +84,7 @@ void readGroups(const DicomTags& groups, DicomFrame& frame, double& sliceDistanc
 void addValues(const DicomElements& elements, DicomValues& out) {
   for (const DicomElement& element : elements)
     if (!element.items.empty()) addValues(element.items.front(), out);
-  const DicomValues own = shortValues(elements, kLongestKept);
+  const DicomValues own = shortValues(elements, kLongestTextKept);
   out.insert(out.end(), own.begin(), own.end());
 }
 
