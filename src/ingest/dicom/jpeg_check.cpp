@@ -14,9 +14,9 @@ struct Damage {
 struct NotChecked {};
 
 // A stream cut into bytes, markers and segments.
-class Bytes {
+class JpegBytes {
  public:
-  explicit Bytes(std::span<const std::byte> stream) : rest_(stream) {}
+  explicit JpegBytes(std::span<const std::byte> stream) : rest_(stream) {}
   int next() {
     if (rest_.empty()) throw Damage{"the data end early"};
     const int value = std::to_integer<int>(rest_.front());
@@ -34,11 +34,11 @@ class Bytes {
     while (code == 0xff) code = next();
     return code;
   }
-  Bytes segment() {
+  JpegBytes segment() {
     const int length = next2();
     if (length < 2 || static_cast<std::size_t>(length - 2) > rest_.size())
       throw Damage{"a segment of " + std::to_string(length) + " bytes runs past the end"};
-    const Bytes out(rest_.first(static_cast<std::size_t>(length - 2)));
+    const JpegBytes out(rest_.first(static_cast<std::size_t>(length - 2)));
     rest_ = rest_.subspan(static_cast<std::size_t>(length - 2));
     return out;
   }
@@ -54,7 +54,7 @@ class Bytes {
 // The bits between two markers.
 class Bits {
  public:
-  explicit Bits(Bytes& bytes) : bytes_(bytes) {}
+  explicit Bits(JpegBytes& bytes) : bytes_(bytes) {}
   // The next 16, filled up with zeros at the end.
   std::uint32_t peek() {
     while (count_ < 16 && fill()) {
@@ -84,7 +84,7 @@ class Bits {
     return true;
   }
 
-  Bytes& bytes_;
+  JpegBytes& bytes_;
   std::uint64_t bits_ = 0;
   int count_ = 0;
 };
@@ -92,7 +92,7 @@ class Bits {
 // Codes by the 16 bits that begin with them.
 class HuffmanTable {
  public:
-  void read(Bytes& segment) {
+  void read(JpegBytes& segment) {
     std::array<int, 16> counts;
     for (int& count : counts) count = segment.next();
     codes_.assign(1 << 16, {});
@@ -128,7 +128,7 @@ class JpegCheck {
     if (bytes_.marker() != 0xd8) throw NotChecked{};
     for (int marker = bytes_.marker(); marker != 0xd9; marker = bytes_.marker()) {
       if (marker >= 0xd0 && marker <= 0xd7) throw Damage{"a restart marker stands outside of the codes"};
-      Bytes segment = bytes_.segment();
+      JpegBytes segment = bytes_.segment();
       if (marker == 0xc4)
         readTables(segment);
       else if (marker == 0xc0 || marker == 0xc1 || marker == 0xc3)
@@ -144,7 +144,7 @@ class JpegCheck {
   }
 
  private:
-  void readTables(Bytes& segment) {
+  void readTables(JpegBytes& segment) {
     while (!segment.empty()) {
       const int where = segment.next();
       if (where >> 4 > 1 || (where & 15) > 3) throw Damage{"a Huffman table has no such place"};
@@ -152,7 +152,7 @@ class JpegCheck {
     }
   }
 
-  void readFrame(Bytes& segment, bool lossless) {
+  void readFrame(JpegBytes& segment, bool lossless) {
     lossless_ = lossless;
     segment.next();  // bits of a sample
     rows_ = segment.next2();
@@ -160,7 +160,7 @@ class JpegCheck {
     if (segment.next() != 1 || rows_ == 0) throw NotChecked{};  // of several components; rows stated later
   }
 
-  void readScan(Bytes& segment) {
+  void readScan(JpegBytes& segment) {
     if (columns_ == 0) throw Damage{"a scan comes before its frame"};
     if (segment.next() != 1) throw Damage{"expected a scan of one component"};
     segment.next();
@@ -198,7 +198,7 @@ class JpegCheck {
     }
   }
 
-  Bytes bytes_;
+  JpegBytes bytes_;
   std::array<HuffmanTable, 8> tables_;  // four of differences, four of coefficients
   bool lossless_ = false;
   int rows_ = 0, columns_ = 0, restartEvery_ = 0, scans_ = 0;
