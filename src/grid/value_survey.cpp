@@ -13,8 +13,8 @@ namespace {
 
 using Leaf = FloatLeaf;
 using Leaves = FloatLeaves;
-constexpr int kLeafEdge = static_cast<int>(Leaf::DIM);
-constexpr openvdb::Index kStrides[3]{kLeafEdge * kLeafEdge, kLeafEdge, 1};
+constexpr int kEdgeOfLeaf = static_cast<int>(Leaf::DIM);
+constexpr openvdb::Index kLeafStrides[3]{kEdgeOfLeaf * kEdgeOfLeaf, kEdgeOfLeaf, 1};
 
 double voxelsOf(const openvdb::CoordBBox& box) { return static_cast<double>(box.volume()); }
 
@@ -108,13 +108,13 @@ struct Bins {
 
 bool isInside(const openvdb::Coord& local) {
   for (int axis = 0; axis < 3; ++axis)
-    if (local[axis] == 0 || local[axis] == kLeafEdge - 1) return false;
+    if (local[axis] == 0 || local[axis] == kEdgeOfLeaf - 1) return false;
   return true;
 }
 
 double gradientAt(const Leaf& leaf, openvdb::Index voxel) {
   double squares = 0;
-  for (const openvdb::Index stride : kStrides) {
+  for (const openvdb::Index stride : kLeafStrides) {
     const double slope = 0.5 * (double(leaf.getValue(voxel + stride)) - double(leaf.getValue(voxel - stride)));
     squares += slope * slope;
   }
@@ -174,8 +174,8 @@ double shareOfJumps(const Leaves& leaves, const ValueSurvey& survey) {
     for (openvdb::Index voxel = 0; voxel < Leaf::SIZE; ++voxel) {
       const openvdb::Coord local = Leaf::offsetToLocalCoord(voxel);
       for (int axis = 0; axis < 3; ++axis) {
-        if (local[axis] == kLeafEdge - 1) continue;
-        const float here = leaf.getValue(voxel), there = leaf.getValue(voxel + kStrides[axis]);
+        if (local[axis] == kEdgeOfLeaf - 1) continue;
+        const float here = leaf.getValue(voxel), there = leaf.getValue(voxel + kLeafStrides[axis]);
         if (here == there || !std::isfinite(here) || !std::isfinite(there)) continue;
         state.different += 1;
         if (std::abs(rank(here) - rank(there)) > 1) state.apart += 1;

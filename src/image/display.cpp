@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <string>
 
+#include "image/finite.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/srgb.h"
 
@@ -13,8 +14,6 @@ namespace umbrick {
 namespace {
 
 const glm::dvec3 kBelow(0.60, 0.62, 0.65), kAbove(0.17, 0.19, 0.23);  // sRGB display values
-
-double finiteOr0(float value) { return std::isnan(value) ? 0 : std::clamp<double>(value, 0, 1e30); }
 
 }  // namespace
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/text_file.h"
+#include "image/finite.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
 #include "umbrick/core/srgb.h"
@@ -29,8 +30,6 @@ struct CloseFile {
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
 std::uint8_t byteOf(double share) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0))); }
-
-double finiteOr0(float value) { return std::isnan(value) ? 0 : std::clamp<double>(value, 0, 1e30); }
 
 // Encodes the image with rows from the top and straight alpha.
 std::vector<std::uint8_t> encoded(const Image& image, const PngOptions& options) {
