@@ -152,4 +152,11 @@ inline void checkMatrix(const glm::dmat4& found, const glm::dvec3& step) {
       CHECK(found[column][row] == Approx(expected[column][row]).epsilon(1e-12).margin(1e-12));
 }
 
+/// Tells whether a source has a note with this text.
+inline bool noted(const VoxelSource& source, const std::string& text) {
+  for (const std::string& note : source.info().notes)
+    if (note.find(text) != std::string::npos) return true;
+  return false;
+}
+
 }  // namespace umbrick::dicom_files

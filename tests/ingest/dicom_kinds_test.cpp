@@ -28,12 +28,6 @@ std::string deflated(const std::string& bytes) {
   return out;
 }
 
-bool noted(const VoxelSource& source, const std::string& text) {
-  for (const std::string& note : source.info().notes)
-    if (note.find(text) != std::string::npos) return true;
-  return false;
-}
-
 std::string allPixels(int count) {
   std::string out;
   for (int z = 0; z < count; ++z) out += pixels(z);

@@ -12,13 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-bool noted(const VoxelSource& source, const std::string& text) {
-  for (const std::string& note : source.info().notes)
-    if (note.find(text) != std::string::npos) return true;
-  return false;
-}
-
-glm::dvec3 at(double z) { return glm::dvec3(1, 2, 3) + 2.0 * z * kNormal; }
+glm::dvec3 onAxis(double z) { return glm::dvec3(1, 2, 3) + 2.0 * z * kNormal; }
 
 // Slices along z, whose first voxel has the value of their position.
 void writeAxial(const DicomFolder& files, const std::vector<std::string>& positions) {
@@ -42,7 +36,7 @@ TEST_CASE("Phases of one DICOM series are listed by the tags in which they diffe
   const DicomFolder files;
   for (int phase = 1; phase <= 2; ++phase)
     for (int z = 0; z < 3; ++z) {
-      Elements file = slice(z + 3 * (phase - 1), at(z)).text(0x20, 0x12, "IS", std::to_string(phase));
+      Elements file = slice(z + 3 * (phase - 1), onAxis(z)).text(0x20, 0x12, "IS", std::to_string(phase));
       file.text(0x18, 0x81, "DS", phase == 1 ? "4.60" : "9.2").text(0x20, 0x13, "IS", std::to_string(10 * phase + z));
       files.write(std::to_string(phase) + std::to_string(z) + ".dcm", file);
     }
@@ -70,10 +64,10 @@ TEST_CASE("Phases of one DICOM series are listed by the tags in which they diffe
 
 TEST_CASE("The few DICOM slices that are unlike the others are named, and a series is read without them", "[ingest]") {
   const DicomFolder files;
-  for (int z = 0; z < 4; ++z) files.write("s" + std::to_string(z) + ".dcm", slice(z, at(z)));
+  for (int z = 0; z < 4; ++z) files.write("s" + std::to_string(z) + ".dcm", slice(z, onAxis(z)));
   // It comes first by its name.
   files.write("a.dcm",
-              slice(9, at(0)).text(0x20, 0x37, "DS", "0\\1\\0\\0\\0\\-1").text(8, 8, "CS", "ORIGINAL\\LOCALIZER"));
+              slice(9, onAxis(0)).text(0x20, 0x37, "DS", "0\\1\\0\\0\\0\\-1").text(8, 8, "CS", "ORIGINAL\\LOCALIZER"));
   CHECK_THROWS_AS(files.open(), OddSlices);
   files.refused(
       "a.dcm: ImageOrientationPatient: expected (0.8 0.6 0) (0 0 -1) as in s0.dcm and 3 more slices, found (0 1 0)");
@@ -81,15 +75,15 @@ TEST_CASE("The few DICOM slices that are unlike the others are named, and a seri
   checkVoxels(*picked, 4);
   CHECK(noted(*picked, "a.dcm is left out: ImageOrientationPatient"));
   for (int z = 0; z < 4; ++z)
-    files.write("s" + std::to_string(z) + ".dcm", slice(z, at(z)).text(8, 8, "CS", "ORIGINAL\\AXIAL"));
+    files.write("s" + std::to_string(z) + ".dcm", slice(z, onAxis(z)).text(8, 8, "CS", "ORIGINAL\\AXIAL"));
   checkVoxels(*openDicom(files.folder.path(), {.where = {"ImageType=AXIAL"}}), 4);
 }
 
 TEST_CASE("A damaged DICOM file in a folder is named, and a series is read without it", "[ingest]") {
   const DicomFolder files;
-  for (int z = 0; z < 4; ++z) files.write("s" + std::to_string(z) + ".dcm", slice(z, at(z)));
+  for (int z = 0; z < 4; ++z) files.write("s" + std::to_string(z) + ".dcm", slice(z, onAxis(z)));
   const auto damage = [&](const char* uid, std::size_t bytes) {
-    const std::string whole = slice(4, at(4)).text(0x20, 0xe, "UI", uid).file();
+    const std::string whole = slice(4, onAxis(4)).text(0x20, 0xe, "UI", uid).file();
     writeBytes(files.folder.path() / "z.dcm", whole.substr(0, bytes));
     CHECK_THROWS_AS(files.open(), OddSlices);
     files.refused("z.dcm: expected ");
@@ -105,7 +99,7 @@ TEST_CASE("A damaged DICOM file in a folder is named, and a series is read witho
 TEST_CASE("Slices that state no place are spaced as they are told to be", "[ingest]") {
   const DicomFolder files;
   for (int z = 0; z < 3; ++z)
-    files.write(files.name(z), slice(z, at(z))
+    files.write(files.name(z), slice(z, onAxis(z))
                                    .remove(0x20, 0x32)
                                    .remove(0x20, 0x37)
                                    .remove(0x28, 0x30)
@@ -121,7 +115,7 @@ TEST_CASE("Slices that state no place are spaced as they are told to be", "[inge
   files.series(3, 2.0 * kNormal);
   CHECK_THROWS_AS(openVolume(files.folder.path(), {.spacing = glm::dvec3(1)}), InvalidArgument);
   // Only the pixels' distance is missing.
-  for (int z = 0; z < 3; ++z) files.write(files.name(z), slice(z, at(z)).remove(0x28, 0x30));
+  for (int z = 0; z < 3; ++z) files.write(files.name(z), slice(z, onAxis(z)).remove(0x28, 0x30));
   checkMatrix(openVolume(files.folder.path(), {.spacing = glm::dvec3(0.5, 0.75, 1)})->info().indexToWorld,
               2.0 * kNormal);
 }

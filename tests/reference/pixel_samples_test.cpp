@@ -14,7 +14,7 @@ using namespace umbrick;
 
 namespace {
 
-const glm::dvec3 kAlbedo(0.9, 0.5, 0.2);
+const glm::dvec3 kSheetAlbedo(0.9, 0.5, 0.2);
 constexpr int kSize = 12;
 
 ScalarGrid solidGrid() {
@@ -25,7 +25,7 @@ ScalarGrid solidGrid() {
 ResolvedScene solidScene(bool perspective, double sigma_t, const HalfPlane& edge) {
   const glm::dvec3 eye(12, 13, 60), lookAt(12.5, 12, 12);
   ResolvedScene scene = plainScene(
-      homogeneous(kAlbedo, sigma_t),
+      homogeneous(kSheetAlbedo, sigma_t),
       perspective ? perspectiveCamera(eye, lookAt, 0.3, kSize) : orthographicCamera(eye, lookAt, 14, kSize), 1);
   scene.clipPlanes = {planeSeenAs(edge, scene.camera)};
   return scene;
@@ -86,7 +86,7 @@ TEST_CASE("At an edge, depth is that of what covers a part of the pixel", "[refe
         CHECK(*picture.depth.at(x, y) == Approx(40 + 1 / sigma_t).margin(1e-4));
       else
         CHECK(std::isinf(*picture.depth.at(x, y)));
-      CHECK(picture.colour.at(x, y)[0] == Approx(share * kAlbedo[0] + (1 - share) * 0.3).margin(4e-6));
+      CHECK(picture.colour.at(x, y)[0] == Approx(share * kSheetAlbedo[0] + (1 - share) * 0.3).margin(4e-6));
     }
 }
 

@@ -14,7 +14,7 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kBall = "ball.vdb --tf ball.json --azimuth 0 --up z --model emission --size 240x200 ";
+const std::string kLookBall = "ball.vdb --tf ball.json --azimuth 0 --up z --model emission --size 240x200 ";
 
 // The bytes of an 8-bit display value are off by half a level, read back in linear light.
 bool isClose(const Image& png, const Image& exact, double alphaLevel = 0.5 / 255 + 1e-6) {
@@ -34,8 +34,8 @@ TEST_CASE("Options of the PNG leave the EXR as it is, to the last bit", "[tools]
   if (!testContext()) return;
   const BallWorkplace at;
   for (const std::string command : {"render ", "reference "}) {
-    REQUIRE(at.run(command + kBall + "--exr-pixel float -o plain.exr -o plain.png").err == "");
-    REQUIRE(at.run(command + kBall +
+    REQUIRE(at.run(command + kLookBall + "--exr-pixel float -o plain.exr -o plain.png").err == "");
+    REQUIRE(at.run(command + kLookBall +
                    "--exposure 1.5 --tone filmic --background gradient --annotate triad,scale --annotate colours "
                    "--exr-pixel float -o looked.exr -o looked.png")
                 .err == "");
@@ -45,13 +45,13 @@ TEST_CASE("Options of the PNG leave the EXR as it is, to the last bit", "[tools]
     const Image exr = at.exr("plain.exr").layers[0].image;
     CHECK(isClose(readPng(at.folder.path() / "plain.png"), displayed(exr, {})));
     // Options alone are what they say.
-    REQUIRE(at.run(command + kBall + "--exposure 1 -o a.png").err == "");
+    REQUIRE(at.run(command + kLookBall + "--exposure 1 -o a.png").err == "");
     CHECK(isClose(readPng(at.folder.path() / "a.png"), displayed(exr, {.exposure = 1})));
-    REQUIRE(at.run(command + kBall + "--tone-map filmic --background=gradient -o a.png").err == "");
+    REQUIRE(at.run(command + kLookBall + "--tone-map filmic --background=gradient -o a.png").err == "");
     const Look look{.toneMap = ToneMap::filmic, .backdrop = Backdrop::gradient};
     CHECK(isClose(readPng(at.folder.path() / "a.png"), displayed(exr, look)));
     // Annotations are at the edges; the middle stays.
-    REQUIRE(at.run(command + kBall + "--annotate all -o a.png").err == "");
+    REQUIRE(at.run(command + kLookBall + "--annotate all -o a.png").err == "");
     const Image annotated = readPng(at.folder.path() / "a.png"), plain = readPng(at.folder.path() / "plain.png");
     CHECK((annotated.pixels != plain.pixels));
     for (int i = 95; i < 105; ++i)
@@ -80,7 +80,7 @@ TEST_CASE("A background has a name or three numbers", "[tools]") {
 TEST_CASE("What has no effect or no room is said", "[tools]") {
   if (!testContext()) return;
   const BallWorkplace at;
-  CHECK_THAT(at.run("render " + kBall + "--exposure 1 -o a.exr").err,
+  CHECK_THAT(at.run("render " + kLookBall + "--exposure 1 -o a.exr").err,
              Contains("of a PNG only, and no PNG is asked for"));
   CHECK_THAT(at.run("render ball.vdb --tf ball.json --size 40x30 --annotate triad,scale -o a.png").err,
              Contains("a picture of 40 x 30 has no room for these annotations, which are left out: triad, scale"));
@@ -92,7 +92,7 @@ TEST_CASE("Looks that make no sense are refused in one line", "[tools]") {
   const BallWorkplace at;
   for (const std::string command : {"render ", "reference "}) {
     const auto refused = [&](const std::string& options, const std::string& message) {
-      expectRefusal(at.folder, command + kBall + options + " -o a.png", 2, message);
+      expectRefusal(at.folder, command + kLookBall + options + " -o a.png", 2, message);
     };
     refused("--exposure nan", "--exposure: expected a number from -100 to 100, found nan");
     refused("--exposure 1000", "--exposure");

@@ -10,19 +10,19 @@
 
 using namespace umbrick;
 using Catch::Contains;
-using Json = nlohmann::json;
 
 namespace {
-const std::string kBall =
+const std::string kSampledBall =
     "ball.vdb --tf ball.json --model emission --azimuth 0 --up z --size 24x20 --spacing 0.1 --spacing-unit world ";
 }
 
 TEST_CASE("Renderer and reference average over the same places, and their files say so", "[tools]") {
   if (!testContext()) return;
   const BallWorkplace at;
-  REQUIRE(at.run("render " + kBall + "--samples 6 --layers --exr-pixel float -o a.exr --stats a.json").err == "");
-  REQUIRE(at.run("reference " + kBall + "--pixel-samples 6 --layers -o b.exr --stats b.json").err == "");
-  REQUIRE(at.run("render " + kBall + "--layers --exr-pixel float -o c.exr").err == "");
+  REQUIRE(at.run("render " + kSampledBall + "--samples 6 --layers --exr-pixel float -o a.exr --stats a.json").err ==
+          "");
+  REQUIRE(at.run("reference " + kSampledBall + "--pixel-samples 6 --layers -o b.exr --stats b.json").err == "");
+  REQUIRE(at.run("render " + kSampledBall + "--layers --exr-pixel float -o c.exr").err == "");
   const ExrFile a = at.exr("a.exr"), b = at.exr("b.exr"), c = at.exr("c.exr");
   CHECK(a.metadata.at("umbrick.filter") == "box, 6 samples a pixel");
   CHECK(b.metadata.at("umbrick.filter") == "box, 6 samples a pixel");
@@ -68,11 +68,12 @@ TEST_CASE("Numbers of samples that make no sense are refused in one line", "[too
   if (!testContext()) return;
   const BallWorkplace at;
   for (const std::string number : {"0", "-1", "4097"})
-    expectRefusal(at.folder, "render " + kBall + "--samples " + number + " -o a.exr", 1, "--samples");
-  expectRefusal(at.folder, "render " + kBall + "--samples 1.5 -o a.exr", 2, "--samples");
-  expectRefusal(at.folder, "render " + kBall + "--samples many -o a.exr", 2, "--samples");
-  expectRefusal(at.folder, "reference " + kBall + "--pixel-samples 0 -o a.exr", 1, "--pixel-samples");
-  expectRefusal(at.folder, "reference " + kBall + "--integrator monte-carlo --pixel-samples 8 --samples 15 -o a.exr", 1,
+    expectRefusal(at.folder, "render " + kSampledBall + "--samples " + number + " -o a.exr", 1, "--samples");
+  expectRefusal(at.folder, "render " + kSampledBall + "--samples 1.5 -o a.exr", 2, "--samples");
+  expectRefusal(at.folder, "render " + kSampledBall + "--samples many -o a.exr", 2, "--samples");
+  expectRefusal(at.folder, "reference " + kSampledBall + "--pixel-samples 0 -o a.exr", 1, "--pixel-samples");
+  expectRefusal(at.folder,
+                "reference " + kSampledBall + "--integrator monte-carlo --pixel-samples 8 --samples 15 -o a.exr", 1,
                 "samples is 15, must be at least 16, two for each sample of a pixel");
 }
 
@@ -82,5 +83,5 @@ TEST_CASE("A check holds for averaged pictures, too", "[tools][slow]") {
   const ProgramResult result = at.run("check ball.vdb --tf ball.json --size 48x40 --samples 3 --json");
   INFO(result.err << result.out);
   CHECK(result.status == 0);
-  CHECK(Json::parse(result.out)["scene"]["sampling"]["pixelSamples"] == 3);
+  CHECK(nlohmann::json::parse(result.out)["scene"]["sampling"]["pixelSamples"] == 3);
 }
