@@ -10,7 +10,7 @@
 
 using namespace umbrick;
 using Catch::Contains;
-using Json = nlohmann::json;
+using SceneJson = nlohmann::json;
 
 namespace {
 
@@ -18,8 +18,8 @@ const std::string kRenderBall = "render ball.vdb --tf ball.json --size 24x20 --a
 const std::string kCone = kRenderBall + "--model cone --directions 4 ";
 
 // Returns spacing, its unit, segments, directions, scale and method.
-Json sampling(const Json& scene) {
-  const Json &s = scene.at("sampling"), &o = scene.at("occlusion");
+SceneJson sampling(const SceneJson& scene) {
+  const SceneJson &s = scene.at("sampling"), &o = scene.at("occlusion");
   return {s.at("spacing"), s.at("unit"), s.at("segments"), o.at("directions"), o.at("scale"), scene.at("method")};
 }
 
@@ -38,7 +38,7 @@ TEST_CASE("Samples are averaged, and the estimate is printed and kept with the s
   const ExrFile a = at.exr("a.exr");
   REQUIRE(a.layers.size() == 3);
   CHECK(*std::max_element(a.layers[0].image.pixels.begin(), a.layers[0].image.pixels.end()) > 0.2f);
-  const Json stats = at.json("a.stats.json"), passes = stats["progressive"];
+  const SceneJson stats = at.json("a.stats.json"), passes = stats["progressive"];
   CHECK(passes["passes"] == 6);
   CHECK(passes["seed"] == 7);
   CHECK(passes["reached_target"] == false);
@@ -74,12 +74,12 @@ TEST_CASE("A target is reached by finer slabs, or the picture is kept and the st
   INFO(reached.err);
   CHECK(reached.status == 0);
   CHECK(reached.err.find("is not reached") == std::string::npos);
-  const Json stats = at.json("a.stats.json");
+  const SceneJson stats = at.json("a.stats.json");
   CHECK(stats["progressive"]["reached_target"] == true);
   CHECK(stats["progressive"]["error"] <= 0.02);
   CHECK(stats["progressive"]["passes"] < 400);
   // Header and statistics name the slabs that the picture has.
-  const Json scene = Json::parse(at.exr("a.exr").metadata.at("umbrick.scene"));
+  const SceneJson scene = SceneJson::parse(at.exr("a.exr").metadata.at("umbrick.scene"));
   CHECK(scene["sampling"]["spacing"] == stats["scene"]["sampling"]["spacing"]);
   CHECK(stats["spacing_world"] == stats["scene"]["sampling"]["spacing"]);
 
@@ -139,7 +139,7 @@ TEST_CASE("A quality sets what goes together, and single options overrule it", "
   if (!testContext()) return;
   const BallWorkplace at;
   // Spacing is in world units in a header; here this makes no difference, since voxels are of unit size.
-  const Json draft{5.0, "world", 4, 6, 0.0, "ordinates"}, normal{2.5, "world", 4, 16, 0.0, "light-volume"},
+  const SceneJson draft{5.0, "world", 4, 6, 0.0, "ordinates"}, normal{2.5, "world", 4, 16, 0.0, "light-volume"},
       high{1.25, "world", 2, 32, 0.0, "light-volume"};
   const std::string cone = kRenderBall + "--model cone ";
   CHECK(sampling(at.sceneOf(cone + "--quality draft")) == draft);
@@ -147,13 +147,13 @@ TEST_CASE("A quality sets what goes together, and single options overrule it", "
   CHECK(sampling(at.sceneOf(cone + "--quality high")) == high);
   CHECK(sampling(at.sceneOf(cone)) == normal);
 
-  const Json mixed = at.sceneOf(cone + "--quality draft --directions 9 --segments 1 --occlusion-scale 0.5");
-  CHECK(sampling(mixed) == Json{5.0, "world", 1, 9, 0.5, "ordinates"});
+  const SceneJson mixed = at.sceneOf(cone + "--quality draft --directions 9 --segments 1 --occlusion-scale 0.5");
+  CHECK(sampling(mixed) == SceneJson{5.0, "world", 1, 9, 0.5, "ordinates"});
   CHECK(sampling(at.sceneOf(cone + "--spacing 3 --quality high"))[0] == 3.0);
   // Segments follow the spacing.
-  CHECK(sampling(at.sceneOf(cone + "--directions 9")) == Json{2.5, "world", 4, 9, 0.0, "light-volume"});
-  CHECK(sampling(at.sceneOf(cone + "--spacing 1")) == Json{1.0, "world", 2, 16, 0.0, "light-volume"});
-  CHECK(sampling(at.sceneOf(cone + "--method ordinates")) == Json{2.5, "world", 4, 16, 0.0, "ordinates"});
+  CHECK(sampling(at.sceneOf(cone + "--directions 9")) == SceneJson{2.5, "world", 4, 9, 0.0, "light-volume"});
+  CHECK(sampling(at.sceneOf(cone + "--spacing 1")) == SceneJson{1.0, "world", 2, 16, 0.0, "light-volume"});
+  CHECK(sampling(at.sceneOf(cone + "--method ordinates")) == SceneJson{2.5, "world", 4, 16, 0.0, "ordinates"});
   // A target can be refined to with ordinates alone.
   CHECK(sampling(at.sceneOf(cone + "--target-error 0.5 --progressive 4"))[5] == "ordinates");
   CHECK(sampling(at.sceneOf(cone + "--method dos"))[0] == 0.5);
@@ -165,7 +165,7 @@ TEST_CASE("A quality sets what goes together, and single options overrule it", "
              R"({"volume": {"file": "ball.vdb"}, "transfer": "ball.json", "camera": {"size": [24, 20]},
                  "model": "cone", "method": "ordinates", "sampling": {"spacing": 1.5},
                  "occlusion": {"directions": 7, "scale": 0.8}})");
-  CHECK(sampling(at.sceneOf("render scene.json")) == Json{1.5, "world", 1, 7, 0.8, "ordinates"});
+  CHECK(sampling(at.sceneOf("render scene.json")) == SceneJson{1.5, "world", 1, 7, 0.8, "ordinates"});
   CHECK(sampling(at.sceneOf("render scene.json --quality normal")) == normal);
   CHECK(sampling(at.sceneOf("render scene.json --quality normal --directions 3"))[3] == 3);
   writeBytes(at.folder.path() / "silent.json",
