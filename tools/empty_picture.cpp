@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "umbrick/core/short_number.h"
 #include "umbrick/grid/value_survey.h"
 
 namespace umbrick::tools {
@@ -24,12 +24,6 @@ Emptiness findEmptiness(const Image& colour, const ResolvedScene& scene) {
     if (!scene.background) nothing = nothing && alpha <= kStep;
   }
   return nothing ? Emptiness::nothing : everything ? Emptiness::everything : Emptiness::none;
-}
-
-std::string shortNumber(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", number);
-  return text;
 }
 
 // Returns the intervals of values that a function shows: "from 0.5 to 2 and above 8".
@@ -54,11 +48,11 @@ std::string shownValues(const TransferFunction& transfer) {
     if (open && below)
       text += "all values";
     else if (open)
-      text += "above " + shortNumber(from);
+      text += "above " + shortNumber(from, 4);
     else if (below)
-      text += "below " + shortNumber(to);
+      text += "below " + shortNumber(to, 4);
     else
-      text += "from " + shortNumber(from) + " to " + shortNumber(to);
+      text += "from " + shortNumber(from, 4) + " to " + shortNumber(to, 4);
   }
   if (text.empty()) return "none";
   return pieces > 3 ? text + ", ..." : text;
@@ -72,8 +66,9 @@ std::optional<std::string> describeEmptyPicture(const Image& colour, const Resol
   const ValueSurvey values = surveyValues(volume.grid());
   std::string text = found == Emptiness::nothing ? "nothing is drawn" : "every pixel is opaque";
   if (values.voxels == 0) return text + ": the volume has no finite value";
-  text += ": the volume has values from " + shortNumber(values.value.min) + " to " + shortNumber(values.value.max) +
-          " (most from " + shortNumber(values.low) + " to " + shortNumber(values.high) + ")";
+  text += ": the volume has values from " + shortNumber(values.value.min, 4) + " to " +
+          shortNumber(values.value.max, 4) + " (most from " + shortNumber(values.low, 4) + " to " +
+          shortNumber(values.high, 4) + ")";
   if (!volume.valueUnit().empty()) text += " in " + volume.valueUnit();
   text += ", the transfer function shows " + shownValues(scene.transfer);
   const bool meets =

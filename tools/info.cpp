@@ -183,14 +183,9 @@ int info(const InfoOptions& options) {
   if (options.suggestTransfer) {
     if (options.grids.size() > 1)
       throw UsageError("--suggest-tf: expected one --grid, found " + std::to_string(options.grids.size()));
-    VolumeReference reference;
-    reference.file = options.input;
     VolumeOptions volume = options.volume;
     if (!options.grids.empty()) volume.grid = options.grids.front();
-    applyVolumeOptions(volume, reference);
-    const SuggestedTransfer suggested = suggestTransfer(*openVolumeOf(reference));
-    std::cerr << options.input.string() << ": " << suggested.reason << '\n';
-    std::cout << printTransferFunction(suggested.transfer) << '\n';
+    std::cout << printTransferFunction(suggestFor(options.input, volume).transfer) << '\n';
     return 0;
   }
   FileSummary file = summariseFile(options.input, options.bins);

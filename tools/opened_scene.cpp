@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opened_scene.h"
 
-#include <cstdio>
 #include <cstdlib>
+#include <iostream>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "command.h"
+#include "option_words.h"
 #include "umbrick/core/names.h"
-#include "umbrick/ingest/dicom_volume.h"
-#include "umbrick/ingest/open_volume.h"
+#include "umbrick/core/short_number.h"
 #include "umbrick/scene/capabilities.h"
 
 namespace umbrick::tools {
@@ -32,12 +32,6 @@ std::string lineOf(const VolumeReference& volume, const Choices& choices) {
   for (std::size_t i = 0; i < choices.reasons.size(); ++i)
     line += (i > 0 ? "; " : both ? " (" : " ") + choices.reasons[i];
   return line + (both ? ")\n" : "\n");
-}
-
-std::string shortText(double number, int digits = 6) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, number);
-  return text;
 }
 
 void chooseTransfer(const SceneOptions& options, OpenedScene& opened, Choices& choices) {
@@ -80,36 +74,29 @@ void chooseView(const SceneOptions& options, bool fromScene, OpenedScene& opened
     // A view that nobody has turned fills the picture.
     const Box bounds = opened.volume->visibleBounds(*scene.transfer);
     const double zoom = fillingZoom(orbitCamera(bounds, orbitView(*scene.orbit), scene.camera), bounds);
-    scene.orbit->zoom = std::strtod(shortText(zoom, 3).c_str(), nullptr);
-    choices.add("zoom", shortText(zoom, 3));
+    scene.orbit->zoom = std::strtod(shortNumber(zoom, 3).c_str(), nullptr);
+    choices.add("zoom", shortNumber(zoom, 3));
   }
   if (fromScene || options.view || options.has("azimuth") || options.has("elevation")) return;
   choices.view = true;
-  choices.add("azimuth", shortText(scene.orbit->azimuth * 180 / std::numbers::pi));
-  choices.add("elevation", shortText(scene.orbit->elevation * 180 / std::numbers::pi));
-}
-
-// What an option can do about an error of a reader.
-std::string hintOf(const std::exception& error) {
-  if (dynamic_cast<const UnknownFormat*>(&error)) return ": give --dims and --type";
-  if (dynamic_cast<const SeveralSeries*>(&error)) return "; give --series";
-  return {};
+  choices.add("azimuth", shortNumber(scene.orbit->azimuth * 180 / std::numbers::pi, 6));
+  choices.add("elevation", shortNumber(scene.orbit->elevation * 180 / std::numbers::pi, 6));
 }
 
 }  // namespace
 
 std::shared_ptr<const Volume> openVolumeOf(const VolumeReference& reference,
                                            const std::function<void(double)>& progress) {
-  try {
-    return std::make_shared<const Volume>(reference, progress);
-  } catch (const InvalidArgument& error) {
-    try {
-      std::rethrow_if_nested(error);
-    } catch (const InvalidArgument& cause) {
-      throw UsageError(error.what() + hintOf(cause));
-    }
-    throw;
-  }
+  return asUsage([&] { return std::make_shared<const Volume>(reference, progress); });
+}
+
+SuggestedTransfer suggestFor(const std::filesystem::path& input, const VolumeOptions& options) {
+  VolumeReference reference;
+  reference.file = input;
+  applyVolumeOptions(options, reference);
+  SuggestedTransfer suggested = suggestTransfer(*openVolumeOf(reference));
+  std::cerr << input.string() << ": " << suggested.reason << '\n';
+  return suggested;
 }
 
 OpenedScene openScene(const SceneOptions& options, Scene scene, const std::function<void(double)>& progress) {

@@ -27,4 +27,8 @@ OpenedScene openScene(const SceneOptions& options, Scene scene, const std::funct
 std::shared_ptr<const Volume> openVolumeOf(const VolumeReference& reference,
                                            const std::function<void(double)>& progress = {});
 
+/// Makes the transfer function of --tf auto for a volume, and says on stderr what the volume is taken for.
+/// @throw UsageError, IoError, InvalidArgument
+SuggestedTransfer suggestFor(const std::filesystem::path& input, const VolumeOptions& options);
+
 }  // namespace umbrick::tools

@@ -38,13 +38,7 @@ int suggest(TfOptions options) {
       throw UsageError("--spacing: expected three numbers, found '" + options.spacing + "'");
     options.volume.spacing = numbers;
   }
-  VolumeReference reference;
-  reference.file = options.input;
-  applyVolumeOptions(options.volume, reference);
-  const auto volume = openVolumeOf(reference);
-  const SuggestedTransfer suggested = suggestTransfer(*volume);
-  std::cerr << options.input.string() << ": " << suggested.reason << '\n';
-  const std::string text = printTransferFunction(suggested.transfer) + "\n";
+  const std::string text = printTransferFunction(suggestFor(options.input, options.volume).transfer) + "\n";
   if (options.output.empty()) {
     std::cout << text;
     return 0;

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "umbrick/core/short_number.h"
 #include "umbrick/image/text.h"
 #include "umbrick/optics/transfer_function.h"
 
@@ -46,12 +46,6 @@ void drawText(Image& image, int x, int y, const std::string& text) {
     }
 }
 
-std::string shortNumber(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", number);
-  return text;
-}
-
 }  // namespace
 
 Image drawTransferSheet(const std::vector<std::string>& presets) {
@@ -64,7 +58,7 @@ Image drawTransferSheet(const std::vector<std::string>& presets) {
     drawFunction(image, top, transfer);
     const Range domain = transfer.valueDomain();
     drawText(image, kMargin, top - 6,
-             presets[i] + ": " + shortNumber(domain.min) + " to " + shortNumber(domain.max) +
+             presets[i] + ": " + shortNumber(domain.min, 4) + " to " + shortNumber(domain.max, 4) +
                  (transfer.unit().empty() ? "" : ", " + transfer.unit()));
   }
   return image;

@@ -2,6 +2,7 @@
 #include "umbrick/grid/scalar_grid.h"
 
 #include "umbrick/core/error.h"
+#include "umbrick/core/transformed_box.h"
 #include "umbrick/grid/affine_matrix.h"
 #include "umbrick/grid/float_grid.h"
 
@@ -28,14 +29,8 @@ IndexBox ScalarGrid::activeBox() const {
 
 Box ScalarGrid::worldBounds() const {
   const IndexBox box = activeBox();
-  Box bounds;
-  if (box.empty()) return bounds;
-  const glm::dmat4 matrix = indexToWorld();
-  for (int corner = 0; corner < 8; ++corner)
-    bounds.include(
-        glm::dvec3(matrix * glm::dvec4(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                                       corner & 4 ? box.max.z : box.min.z, 1)));
-  return bounds;
+  if (box.empty()) return {};
+  return transformed({glm::dvec3(box.min), glm::dvec3(box.max)}, indexToWorld());
 }
 
 }  // namespace umbrick

@@ -10,6 +10,7 @@
 #include "umbrick/brick/brick_grid.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/core/transformed_box.h"
 #include "umbrick/grid/value_survey.h"
 #include "umbrick/render/suggest_transfer.h"
 #include "umbrick/shade/prepare.h"
@@ -48,11 +49,7 @@ Box Volume::visibleBounds(const TransferFunction& transfer) const {
   const IndexBox box = visible.empty() ? grid_.activeBox() : visible;
   // A voxel reaches half way to its neighbours.
   const glm::dvec3 low = glm::dvec3(box.min) - 0.5, high = glm::dvec3(box.max) + 0.5;
-  Box bounds;
-  for (int corner = 0; corner < 8; ++corner)
-    bounds.include(glm::dvec3(indexToWorld_ * glm::dvec4(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
-                                                         corner & 4 ? high.z : low.z, 1)));
-  return bounds;
+  return transformed({low, high}, indexToWorld_);
 }
 
 TransferFunction inUnit(const TransferFunction& transfer, std::string_view unit) {
@@ -85,22 +82,6 @@ std::unique_ptr<Bricks> Volume::cutForRefinement(const ResolvedScene& scene) con
     return cut(scene);
   }
   return cut(coarser);
-}
-
-TransferFunction greyRamp(const Volume& volume) {
-  const std::unique_ptr<Bricks> bricks = brickGrid(volume.grid());
-  const double low = bricks->value.min, high = bricks->value.max, background = bricks->background;
-  const double diagonal = glm::length(volume.worldBounds().extent());
-  const double most = 20 / (diagonal > 0 ? diagonal : shortestVoxelEdge(volume.indexToWorld()));
-  const double reach = std::max({high - background, background - low, 1e-30});
-  const glm::dvec3 grey(0.8);
-  const double margin = 0.1 * reach;
-  std::vector<TransferFunction::Point> points;
-  if (background - margin > low) points.push_back({low, {grey, most * (background - margin - low) / reach}});
-  points.push_back({background - margin, {grey, 0}});
-  points.push_back({background + margin, {grey, 0}});
-  if (background + margin < high) points.push_back({high, {grey, most * (high - background - margin) / reach}});
-  return TransferFunction(points);
 }
 
 }  // namespace umbrick

@@ -8,6 +8,7 @@
 #include "umbrick/convert/load_volume.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/names.h"
+#include "umbrick/core/short_number.h"
 #include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/vdb/grid_listing.h"
 #include "umbrick/vdb/read_grid.h"
@@ -15,12 +16,6 @@
 namespace umbrick {
 namespace {
 namespace fs = std::filesystem;
-
-std::string shortNumber(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", number);
-  return text;
-}
 
 RawOptions rawOptions(const VolumeReference& reference) {
   const RawLayout& layout = *reference.raw;
@@ -61,11 +56,11 @@ void readVolume(VolumeFile& file, const LoadProgress& progress) {
   if (uniform && border && border->value != 0) {
     options.build.background = 0.0f;
     loaded = loadVolume(source.file, options);
-    file.notes.push_back("all of its voxels are " + shortNumber(border->value));
+    file.notes.push_back("all of its voxels are " + shortNumber(border->value, 6));
   } else if (uniform) {
     throw InvalidArgument(source.file.string() + ": all of its voxels are 0: there is nothing to show");
   } else if (border && border->value != 0) {
-    file.notes.push_back("beyond its voxels it is taken to be " + shortNumber(border->value) + ", as at its border");
+    file.notes.push_back("beyond its voxels it is taken to be " + shortNumber(border->value, 6) + ", as at its border");
   }
   file.notes.insert(file.notes.begin(), loaded.report.notes.begin(), loaded.report.notes.end());
   file.grid = std::move(loaded.grid);

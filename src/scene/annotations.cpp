@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <glm/geometric.hpp>
 #include <string_view>
 
+#include "umbrick/core/short_number.h"
 #include "umbrick/core/srgb.h"
 
 namespace umbrick {
@@ -16,9 +16,8 @@ constexpr int kBarColours = 256;
 constexpr double kLongestBar = 0.25;  // of the width of the picture
 
 std::string printed(double number, const std::string& unit) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", number);
-  return unit.empty() ? text : text + (" " + unit);
+  const std::string text = shortNumber(number, 4);
+  return unit.empty() ? text : text + " " + unit;
 }
 
 glm::dvec3 fromSrgb(double r, double g, double b) { return {srgbToLinear(r), srgbToLinear(g), srgbToLinear(b)}; }

@@ -84,9 +84,4 @@ inline constexpr std::string_view kShiftedHounsfield = "HU + 1000";
 /// Returns a transfer function for values of another unit, where both are units of CT; else the function as it is.
 TransferFunction inUnit(const TransferFunction& transfer, std::string_view unit);
 
-/// Returns a transfer function for a volume of which nothing is known: grey, denser the farther a value is from the
-/// background, on both sides of it, and transparent near it. The densest voxels let light through for a twentieth
-/// of the diagonal.
-TransferFunction greyRamp(const Volume& volume);
-
 }  // namespace umbrick
