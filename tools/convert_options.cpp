@@ -104,6 +104,13 @@ void addReadingOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& com
          "its numbers are taken for this unit, and so are those of --spacing and --origin [mm, or smaller where voxels "
          "are too small for OpenVDB]")
       ->check(CLI::IsMember({"nm", "um", "mm", "cm", "m", "file"}));
+  app.add_option("--space", command->space,
+                 "which way the axes of the world point: lps (towards left, posterior and superior of a patient, as in "
+                 "DICOM), ras (as in NIfTI) or file; of a file that does not say it, the numbers are taken for that "
+                 "space; .mhd is written as lps always [file; of several inputs that of the first]")
+      ->check(CLI::IsMember({"lps", "ras", "file"}));
+  app.add_flag("--override", command->options.source.open.overridePlace,
+               "--spacing and --origin also take the place of what the file states, in the unit of its world");
   app.add_flag("--strict", command->options.source.open.strict,
                "refuse data files that are longer than their header (.mhd, .nhdr) says, which else is only noted");
 }

@@ -118,9 +118,40 @@ void printNotes(const ConvertReport& report, std::set<std::string>* said) {
   for (const ConvertedGrid& grid : report.grids)
     for (const std::string& note : grid.notes)
       if (!said || said->insert(note).second) std::cerr << grid.input.string() << ": " << note << '\n';
+  for (const std::string& note : report.notes)
+    if (!said || said->insert(note).second) std::cerr << report.output.string() << ": " << note << '\n';
 }
 
+namespace {
+
+// What a user should see in the numbers: nothing is left, or so much that another background would leave it out.
+void printUsual(const ConvertedGrid& grid) {
+  char line[256];
+  const double all = double(grid.build.voxels);
+  const char* name = grid.label.c_str();
+  if (grid.build.activeVoxels == 0 && !grid.isosurface)
+    std::snprintf(line, sizeof line,
+                  "grid \"%.64s\": nothing is left: each voxel is background, or left out by what was asked for", name);
+  else if (grid.usual)
+    std::snprintf(line, sizeof line,
+                  "grid \"%.64s\": %.1f %% of its voxels are %.9g and active, since the background is another value: "
+                  "--background auto or %.9g leaves them out",
+                  name, 100.0 * double(grid.usual->voxels) / all, double(grid.usual->value), double(grid.usual->value));
+  else if (grid.borderMedian)
+    std::snprintf(
+        line, sizeof line,
+        "grid \"%.64s\": %.1f %% of its voxels are active, and on its border the median is %.9g: --background "
+        "auto, --threshold or --tolerance leave out what is of no interest",
+        name, 100.0 * double(grid.build.activeVoxels) / all, double(*grid.borderMedian));
+  else
+    return;
+  std::cerr << grid.input.string() << ": " << line << '\n';
+}
+
+}  // namespace
+
 void printWarnings(const ConvertReport& report) {
+  for (const ConvertedGrid& grid : report.grids) printUsual(grid);
   for (const LeftOutGrid& grid : report.leftOut)
     std::cerr << report.grids.front().input.string() << ": grid \"" << grid.label
               << "\" is left out: expected a scalar grid, found " << grid.type << '\n';

@@ -2,6 +2,7 @@
 #include "convert_source.h"
 
 #include <bit>
+#include <cctype>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -23,6 +24,9 @@ OpenOptions openInput(const ConvertCommand& command) {
   open.lengthUnit = command.options.source.open.lengthUnit;
   open.strict = command.options.source.open.strict;
   open.where = command.options.source.open.where;
+  open.overridePlace = command.options.source.open.overridePlace;
+  if (command.space != "file") open.space = command.space;
+  for (char& letter : open.space) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
   if (!command.raw()) {
     open.spacing = vector(command.spacing);
     open.origin = vector(command.origin);
@@ -47,6 +51,7 @@ OpenOptions openMask(const ConvertCommand& command) {
   ConvertCommand mask = command;
   mask.options.source.open.series.clear();
   mask.options.source.open.where.clear();
+  mask.space.clear();  // a mask follows the input
   mask.headerBytes = 0;
   mask.bitsStored = 0;
   if (formatOfName(command.options.source.mask)) {

@@ -15,7 +15,7 @@ namespace umbrick::tools {
 namespace {
 
 // The fields of ConvertOptions that the library's messages name, longer ones before those that they begin with.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kWords{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kWords{{
     {"options.grids", "--grid"},
     {"options.isosurface", "--isosurface"},
     {"options.names", "--name"},
@@ -25,6 +25,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kWords{{
     {"output.nano adaptive", "--quantise n"},
     {"output.nano bits", "--quantise "},
     {"output.nano", "--quantise"},
+    {"build.background", "--background"},
     {"build.maxError", "--max-error"},
     {"source.backgroundFromBorder", "--background auto"},
     {"source.resample", "--resample"},
@@ -38,6 +39,7 @@ std::string hintOf(const std::exception& error) {
   if (dynamic_cast<const UnplacedSlices*>(&error)) return "; give --spacing";
   if (dynamic_cast<const UnevenSlices*>(&error)) return "; convert --resample interpolates to an even grid";
   if (dynamic_cast<const SeveralGrids*>(&error)) return "; give --grid";
+  if (dynamic_cast<const StatedPlace*>(&error)) return "; convert --override takes yours";
   return {};
 }
 
@@ -48,6 +50,8 @@ std::string hint(const OptionsError& error) try {
   return ": give --dims and --type";
 } catch (const SeveralSeries&) {
   return "; give --series";
+} catch (const StatedPlace&) {
+  return "; --override takes yours";
 } catch (const InvalidArgument&) {
   return {};
 }

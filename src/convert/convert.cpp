@@ -15,7 +15,7 @@ ConvertReport convertVolumes(const std::vector<fs::path>& inputs, const fs::path
   if (inputs.empty()) throw OptionsError(output.string() + ": expected at least one input, found none");
   checkOutput(output, options.output, inputs);
   std::vector<VolumeJob> jobs = volumeJobs(inputs, settled(options));
-  for (VolumeJob& job : jobs) buildVolume(*openJob(job), job);
+  openEach(jobs, [](VoxelSource& source, VolumeJob& job) { buildVolume(source, job); });
   return writeVolumes(jobs, output);
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "convert/background.h"
 #include "convert/check_verified.h"
 #include "convert/pass.h"
 #include "convert/replace_by_isosurface.h"
@@ -12,6 +13,7 @@
 #include "umbrick/convert/holds_grids.h"
 #include "umbrick/convert/options_error.h"
 #include "umbrick/grid/grid_filters.h"
+#include "umbrick/grid/grid_world.h"
 #include "umbrick/vdb/read_back.h"
 #include "umbrick/vdb/read_grid.h"
 
@@ -77,13 +79,20 @@ ScalarGrid readMask(const SourceOptions& source) {
 
 // Reads a grid as it is converted: masked, then cropped.
 // @param masked  is told how many voxels the mask left out, where there is one
-ScalarGrid readFiltered(const GridJob& job, const std::string& label, std::optional<std::uint64_t>& masked) {
+// @param notes   gets a line for each change of its world
+ScalarGrid readFiltered(const GridJob& job, const std::string& label, std::optional<std::uint64_t>& masked,
+                        std::vector<std::string>& notes) {
   ScalarGrid grid = readScalarGridAnyTransform(job.input, label);
+  filtering(job.input, [&] { grid.grid = inSpace(grid.grid, job.options.source.open.space, notes); });
   const std::optional<IndexBox>& crop = job.options.source.crop;
   if (!job.mask && !crop) return grid;
   const auto part = grid.grid->deepCopy();
   filtering(job.input, [&] {
-    if (job.mask) masked = maskGrid(*part, *job.mask->grid);
+    if (job.mask) {
+      std::vector<std::string> changes;
+      masked = maskGrid(*part, *inWorld(job.mask->grid, worldOf(*part), changes));
+      for (const std::string& change : changes) notes.push_back("mask " + job.mask->name + ": " + change);
+    }
     if (crop) cropGrid(*part, *crop);
   });
   grid.grid = part;
@@ -99,7 +108,10 @@ bool keepsLevelSet(const openvdb::FloatGrid& grid, const BuildOptions& build) {
 openvdb::FloatGrid::ConstPtr build(GridJob& job, std::size_t i, const BuildOptions& options) {
   ConvertedGrid& row = job.report.grids[i];
   const ScalarGrid source =
-      job.grids.empty() ? readFiltered(job, row.label, row.masked) : std::exchange(job.grids[i], {});
+      job.grids.empty() ? readFiltered(job, row.label, row.masked, row.notes) : std::exchange(job.grids[i], {});
+  if (source.grid->getGridClass() != openvdb::GRID_LEVEL_SET)
+    refuseKept(job.input, options, options.background.value_or(source.grid->background()),
+               options.background ? "as was asked for" : "that of the grid");
   row.keptLevelSet = keepsLevelSet(*source.grid, options);
   BuiltGrid built = sparsifyGrid(source, options);
   if (job.options.isosurface) row.isosurface = replaceByIsosurface(job.input, *job.options.isosurface, built);
@@ -115,7 +127,8 @@ void verify(GridJob& job, std::size_t i, const openvdb::FloatGrid& grid, const f
   BuildOptions options = job.options.build;
   options.progress = beginPass(job.options.progress, ConvertStage::verifying, job.input);
   std::optional<std::uint64_t> again;
-  row.verified = verifyGrid(readFiltered(job, row.label, again), *back, options, row.build.quantising.max);
+  std::vector<std::string> notesAgain;
+  row.verified = verifyGrid(readFiltered(job, row.label, again, notesAgain), *back, options, row.build.quantising.max);
   checkVerified(output, row.label, *row.verified, row.build);
 }
 
@@ -134,7 +147,7 @@ GridJob openGridJob(const fs::path& input, const ConvertOptions& options) {
 }
 
 void readGrids(GridJob& job) {
-  for (ConvertedGrid& row : job.report.grids) job.grids.push_back(readFiltered(job, row.label, row.masked));
+  for (ConvertedGrid& row : job.report.grids) job.grids.push_back(readFiltered(job, row.label, row.masked, row.notes));
 }
 
 ConvertReport writeGridJob(GridJob& job, const fs::path& output) {
@@ -152,7 +165,8 @@ ConvertReport writeGridJob(GridJob& job, const fs::path& output) {
     }
   };
   job.report.output = output;
-  job.report.bytesOut = writeOutput(output, job.options.output, grids, job.listing.metadata, std::nullopt, check);
+  job.report.bytesOut =
+      writeOutput(output, job.options.output, grids, job.listing.metadata, std::nullopt, check, job.report.notes);
   return std::move(job.report);
 }
 

@@ -11,10 +11,6 @@ namespace umbrick {
 namespace {
 namespace fs = std::filesystem;
 
-bool isRereadable(const fs::path& input) {
-  return !fs::exists(input) || fs::is_regular_file(input) || fs::is_directory(input);
-}
-
 // Returns the value that most of the border has, or else the median of the border: measured or simulated floats
 // seldom repeat, and one that does by chance says nothing.
 BorderMode typicalBorder(const fs::path& input, const SourceOptions& options) {
@@ -35,7 +31,7 @@ LoadedVolume loadVolume(const std::filesystem::path& input, const ConvertOptions
   reading.output = {};
   reading.verify = false;
   VolumeJob job = std::move(volumeJobs({input}, settled(reading)).front());
-  if (!options.build.background && isRereadable(input)) {
+  if (!options.build.background && !isPipe(input)) {
     job.report.background = typicalBorder(input, job.options.source);
     job.options.build.background = job.report.background->value;
   }

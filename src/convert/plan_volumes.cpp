@@ -16,12 +16,12 @@ std::vector<VolumePlan> planVolumes(const std::vector<fs::path>& inputs, const C
   PlanOptions plan;
   plan.codec = options.output.codec.value_or(VdbCodec::blosc);
   std::vector<VolumePlan> plans;
-  for (VolumeJob& job : volumeJobs(inputs, settled(options))) {
-    const auto source = openJob(job);
+  std::vector<VolumeJob> jobs = volumeJobs(inputs, settled(options));
+  openEach(jobs, [&](VoxelSource& source, VolumeJob& job) {
     BuildOptions build = job.options.build;
-    build.progress = beginPass(options.progress, ConvertStage::planning, job.input, unpackedBytes(source->info()));
-    plans.push_back({job.input, job.report.background, planGrid(*source, build, plan)});
-  }
+    build.progress = beginPass(options.progress, ConvertStage::planning, job.input, unpackedBytes(source.info()));
+    plans.push_back({job.input, job.report.background, planGrid(source, build, plan)});
+  });
   return plans;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/volume_job.h"
 
+#include <limits>
 #include <utility>
 
+#include "convert/background.h"
 #include "convert/check_verified.h"
 #include "convert/grid_names.h"
 #include "convert/pass.h"
@@ -15,6 +17,8 @@
 namespace umbrick {
 namespace {
 namespace fs = std::filesystem;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 std::unique_ptr<VoxelSource> openFiltered(const VolumeJob& job, ReadNotes& notes) {
   return openFiltered(job.input, job.options.source, job.options.build.background.value_or(0), notes);
@@ -35,6 +39,30 @@ void describeResampling(openvdb::FloatGrid& grid, const ResampleReport& report) 
   grid.insertMeta("resample_error_rms", openvdb::DoubleMetadata(report.rms));
   grid.insertMeta("resample_integral_before", openvdb::DoubleMetadata(report.integralBefore));
   grid.insertMeta("resample_integral_after", openvdb::DoubleMetadata(report.integralAfter));
+}
+
+// Looks at how much of a volume stays, so that a background that leaves out nothing is noticed.
+void judgeBackground(const openvdb::FloatGrid& grid, ConvertedGrid& report) {
+  constexpr double kNearlyAll = 0.95;
+  const std::uint64_t active = report.build.activeVoxels, all = report.build.voxels;
+  if (2 * active <= all) return;
+  if (const auto usual = usualValue(grid); usual && 2 * usual->voxels > all) report.usual = usual;
+  if (static_cast<double>(active) > kNearlyAll * static_cast<double>(all)) report.borderMedian = borderMedian(grid);
+}
+
+// The background is the border's where that is asked for, or where limits would keep the usual one.
+void settleBackground(VolumeJob& job) {
+  BuildOptions& build = job.options.build;
+  const bool asked = job.options.source.backgroundFromBorder, given = build.background.has_value();
+  if (!asked) refuseKept(job.input, build, given ? *build.background : -kInfinity, "as was asked for");
+  const bool usualFits = given || !keepsBackground(build, 0);
+  if (!asked && usualFits) return;
+  if (!asked && isPipe(job.input)) refuseKept(job.input, build, 0, "the usual one");
+  job.report.background = findBackground(job.input, job.options.source);
+  build.background = job.report.background->value;
+  refuseKept(job.input, build, *build.background, "as on the border of the volume");
+  if (!asked)
+    job.settled = "the background is that of the border of the volume, since the usual 0 lies above the limit";
 }
 
 // Reads the grid of the job back from the file and compares it with the volume.
@@ -66,11 +94,18 @@ std::vector<VolumeJob> volumeJobs(const std::vector<fs::path>& inputs, const Con
 
 std::unique_ptr<VoxelSource> openJob(VolumeJob& job) {
   if (job.options.verify) expectFile(job.input, "options.verify");
-  if (job.options.source.backgroundFromBorder) {
-    job.report.background = findBackground(job.input, job.options.source);
-    job.options.build.background = job.report.background->value;
-  }
+  settleBackground(job);
   return openFiltered(job, *job.notes);
+}
+
+void openEach(std::vector<VolumeJob>& jobs, const std::function<void(VoxelSource& source, VolumeJob& job)>& use) {
+  World world;
+  for (VolumeJob& job : jobs) {
+    if (!job.options.source.world && &job != &jobs.front()) job.options.source.world = world;
+    const auto source = openJob(job);
+    world = completed(world, worldOf(source->info()));
+    use(*source, job);
+  }
 }
 
 void buildVolume(VoxelSource& source, VolumeJob& job) {
@@ -79,6 +114,7 @@ void buildVolume(VoxelSource& source, VolumeJob& job) {
   BuiltGrid built = buildGrid(source, passOf(job, ConvertStage::converting, source.info()));
   report.volumeType = source.info().type;
   report.notes = source.info().notes;
+  if (!job.settled.empty()) report.notes.push_back(job.settled);
   job.bytesIn = source.info().fileBytes;
   if (job.options.isosurface) report.isosurface = replaceByIsosurface(job.input, *job.options.isosurface, built);
   if (!job.unit.empty()) built.grid->insertMeta("value_unit", openvdb::StringMetadata(job.unit));
@@ -102,7 +138,9 @@ ConvertReport writeVolumes(std::span<VolumeJob> jobs, const fs::path& output) {
   const auto type = first.report.isosurface ? VoxelType::f32 : first.report.volumeType;
   ConvertReport report;
   report.output = output;
-  report.bytesOut = writeOutput(output, first.options.output, grids, {}, type, check);
+  for (VolumeJob& job : jobs)
+    if (!job.options.isosurface) judgeBackground(*job.grid, job.report);
+  report.bytesOut = writeOutput(output, first.options.output, grids, {}, type, check, report.notes);
   for (VolumeJob& job : jobs) {
     report.bytesIn += job.bytesIn;
     report.grids.push_back(std::move(job.report));

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -20,6 +21,7 @@ struct VolumeJob {
   std::string unit;
   std::unique_ptr<ReadNotes> notes = std::make_unique<ReadNotes>();  // sources hold on to its place
   std::shared_ptr<openvdb::FloatGrid> grid;
+  std::string settled;  // how its background was found where nobody asked for it; becomes a note
   std::int64_t bytesIn = 0;
   ConvertedGrid report;
 };
@@ -31,6 +33,9 @@ std::vector<VolumeJob> volumeJobs(const std::vector<std::filesystem::path>& inpu
 /// Finds the background where that is asked for.
 /// @return the source to build the grid from, which must not outlive the job
 std::unique_ptr<VoxelSource> openJob(VolumeJob& job);
+
+/// Opens one after the other and calls `use`. Each is brought to the world of those before it.
+void openEach(std::vector<VolumeJob>& jobs, const std::function<void(VoxelSource& source, VolumeJob& job)>& use);
 
 /// Reads the source to its end.
 void buildVolume(VoxelSource& source, VolumeJob& job);

@@ -8,6 +8,7 @@
 #include "umbrick/convert/options_error.h"
 #include "umbrick/grid/grid_filters.h"
 #include "umbrick/ingest/open_volume.h"
+#include "umbrick/ingest/world.h"
 #include "umbrick/vdb/read_grid.h"
 
 namespace umbrick {
@@ -24,22 +25,14 @@ std::unique_ptr<VoxelSource> cropped(const SourceOptions& options, std::unique_p
   return options.crop ? cropSource(std::move(source), *options.crop) : std::move(source);
 }
 
-// A mask may state its place in another unit of length.
-std::unique_ptr<VoxelSource> inUnitOf(const VoxelSource& source, std::unique_ptr<VoxelSource> mask) {
-  const auto unit = [](const VoxelSource& of) {
-    const auto found = of.info().metadata.find("length_unit");
-    return found == of.info().metadata.end() ? std::string() : found->second;
-  };
-  const std::string wanted = unit(source), found = unit(*mask);
-  const bool known = wanted == "nm" || wanted == "um" || wanted == "mm" || wanted == "cm" || wanted == "m";
-  if (!known || found.empty() || found == wanted) return mask;
-  return inLengthUnit(std::move(mask), wanted);
-}
-
 }  // namespace
 
+bool isPipe(const fs::path& input) {
+  return fs::exists(input) && !fs::is_regular_file(input) && !fs::is_directory(input);
+}
+
 void expectFile(const fs::path& input, const std::string& field) {
-  if (fs::exists(input) && !fs::is_regular_file(input) && !fs::is_directory(input))
+  if (isPipe(input))
     throw OptionsError(input.string() + ": " + field + " reads the input twice: expected a file, found a pipe");
 }
 
@@ -54,10 +47,13 @@ ScalarGrid readMaskGrid(const fs::path& mask) try { return readScalarGrid(mask);
 std::unique_ptr<VoxelSource> openFiltered(const fs::path& input, const SourceOptions& options, float background,
                                           ReadNotes& notes) {
   auto source = openInput(input, options.open);
+  if (options.world) source = inWorld(std::move(source), *options.world, /*assumed=*/true);
   if (!options.mask.empty()) {
     auto mask = holdsGrids(options.mask)
                     ? gridSource(options.mask.string(), readMaskGrid(options.mask).grid, source->info().dims)
-                    : inUnitOf(*source, openMask(options));
+                    : openMask(options);
+    // A mask that does not state its world has that of the input, since its voxels must lie at the same places.
+    mask = inWorld(std::move(mask), worldOf(source->info()), /*assumed=*/false);
     source = maskSource(std::move(source), std::move(mask), background, &notes.leftOut);
   }
   source = cropped(options, std::move(source));

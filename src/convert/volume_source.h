@@ -34,6 +34,9 @@ ScalarGrid readMaskGrid(const std::filesystem::path& mask);
 /// Finds the value that most of the border of the volume has.
 BorderMode findBackground(const std::filesystem::path& input, const SourceOptions& options);
 
+/// Whether an input is there that can be read but once.
+bool isPipe(const std::filesystem::path& input);
+
 /// Sources are streams: what wants to see the voxels twice opens them again.
 /// @param field  that wants to  @throw OptionsError  the input is a pipe
 void expectFile(const std::filesystem::path& input, const std::string& field);

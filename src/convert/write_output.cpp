@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "umbrick/convert/options_error.h"
+#include "umbrick/grid/grid_world.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;
@@ -15,6 +16,15 @@ bool isDense(const fs::path& path) { return path.extension() == ".mhd" || path.e
 
 // The file beside a .mhd.
 fs::path voxelsOf(fs::path path) { return path.replace_extension(".raw"); }
+
+// A .nvdb has no metadata but the names of its grids.
+void tellLostWorld(const openvdb::FloatGrid& grid, std::vector<std::string>& notes) {
+  const World world = worldOf(grid);
+  if (world.space.empty() && world.lengthUnit.empty()) return;
+  notes.push_back("NanoVDB has no place for metadata: the file does not say that its world is " + world.space +
+                  (world.space.empty() || world.lengthUnit.empty() ? "" : " and ") +
+                  (world.lengthUnit.empty() ? "" : "in " + world.lengthUnit));
+}
 
 }  // namespace
 
@@ -51,7 +61,7 @@ void checkGridCount(const fs::path& path, const std::vector<std::string>& labels
 
 std::int64_t writeOutput(const fs::path& path, const OutputOptions& output,
                          const std::vector<openvdb::FloatGrid::ConstPtr>& grids, openvdb::MetaMap metadata,
-                         std::optional<VoxelType> type, const NanoCheck& check) {
+                         std::optional<VoxelType> type, const NanoCheck& check, std::vector<std::string>& notes) {
   const WrittenCheck exact = [&](const fs::path& written) { check(written, {}); };
   if (isDense(path)) {
     std::vector<std::string> labels;
@@ -59,9 +69,14 @@ std::int64_t writeOutput(const fs::path& path, const OutputOptions& output,
     checkGridCount(path, labels);
     DenseOptions dense;
     dense.type = type;
-    writeDense(path, *grids.front(), dense, exact);
+    const DenseBox box = writeDense(path, *grids.front(), dense, exact);
+    const std::string space = worldOf(*grids.front()).space;
+    if (box.space != space)
+      notes.push_back("the place is written in " + box.space + ", as " + path.extension().string() +
+                      " has it; the world of the input is " + space);
   } else if (path.extension() == ".nvdb") {
     writeNanoVdb(path, grids, output.nano.value_or(NanoOptions{}), check);
+    tellLostWorld(*grids.front(), notes);
   } else {
     if (!metadata["creator"]) metadata.insertMeta("creator", openvdb::StringMetadata(output.creator));
     writeGrids(path, grids, metadata, output.codec.value_or(VdbCodec::blosc), exact);

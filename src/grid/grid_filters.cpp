@@ -9,6 +9,7 @@
 
 #include "umbrick/core/error.h"
 #include "umbrick/grid/affine_matrix.h"
+#include "umbrick/grid/grid_world.h"
 #include "umbrick/grid/misplaced.h"
 
 namespace umbrick {
@@ -49,6 +50,9 @@ class GridSource : public VoxelSource {
     if (!grid_->transform().isLinear())
       throw InvalidArgument(info_.name + ": expected an affine transform, found " + grid_->transform().mapType());
     info_.indexToWorld = affineMatrix(grid_->transform());
+    const World world = worldOf(*grid_);
+    if (!world.space.empty()) info_.metadata["space"] = world.space;
+    if (!world.lengthUnit.empty()) info_.metadata["length_unit"] = world.lengthUnit;
   }
   double readSlab(std::int64_t count, std::span<float> out) override {
     const int first = static_cast<int>(next_);

@@ -84,6 +84,7 @@ class MaskedSource : public VoxelSource {
       throw InvalidArgument(other.name + ": dims: expected " + text(info_.dims, " x ") + " as in " + info_.name +
                             ", found " + text(other.dims, " x "));
     for (int corner = 0; corner < 8; ++corner) checkCorner(corner);
+    for (const std::string& note : other.notes) info_.notes.push_back("mask " + other.name + ": " + note);
     if (leftOut_) *leftOut_ = 0;
   }
 

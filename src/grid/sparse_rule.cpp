@@ -42,7 +42,7 @@ void SparseTally::add(const SparseTally& other) {
   if (!tooLarge) tooLarge = other.tooLarge;
 }
 
-SparseRule::SparseRule(const std::string& name, const BuildOptions& options, float background)
+SparseRule::SparseRule(const std::string& name, const BuildOptions& options, float background, bool ofGrid)
     : background_(options.background.value_or(background)),
       tolerance_(options.maxError.value_or(options.tolerance)),
       clipBelow_(options.clipBelow.value_or(-kInfinity)),
@@ -50,6 +50,7 @@ SparseRule::SparseRule(const std::string& name, const BuildOptions& options, flo
       step_(options.maxError ? 0 : options.step),
       half_(!options.maxError && options.half),
       merges_(!options.maxError),
+      keepsBackground_(ofGrid && tolerance_ == 0),
       plain_(tolerance_ == 0 && clipBelow_ == -kInfinity && clipAbove_ == kInfinity && !rounds()) {
   if (!std::isfinite(background_))
     throw InvalidArgument(name + ": background: expected a finite number, found " + text(background_));
@@ -90,7 +91,7 @@ bool SparseRule::apply(float& value, std::uint64_t voxels, SparseTally& tally) c
     tally.maxClipChange = std::max(tally.maxClipChange, toBackground);
     return false;
   }
-  if (toBackground <= static_cast<double>(tolerance_)) {
+  if (toBackground <= static_cast<double>(tolerance_) && !keepsBackground_) {
     value = background_;
     tally.leftOut.add(toBackground, static_cast<double>(voxels));
     return false;
@@ -108,6 +109,7 @@ bool SparseRule::keepAll(LeafVoxels& leaf) const {
   std::uint32_t notFinite = 0;
   for (const float value : leaf.value) notFinite |= (std::bit_cast<std::uint32_t>(value) & kExponent) == kExponent;
   if (notFinite) return false;
+  if (keepsBackground_) return true;
   for (openvdb::Index word = 0; word < Leaf::SIZE / 64; ++word) {
     const float* values = leaf.value + 64 * word;
     std::uint64_t differs = 0;

@@ -56,8 +56,10 @@ class SparseRule {
   /// With options.maxError, only what lies that close to the background is left out. How the rest is stored is chosen
   /// when its values are known, see storageWithin.
   /// @param background  used when the options give none
+  /// @param ofGrid      the voxels are those of a grid, which says which of them are active: one that has just the
+  ///                    background stays so, unless a tolerance asks for what is close to it
   /// @throw InvalidArgument  options that buildGrid refuses
-  SparseRule(const std::string& name, const BuildOptions& options, float background);
+  SparseRule(const std::string& name, const BuildOptions& options, float background, bool ofGrid = false);
 
   float background() const { return background_; }
   bool half() const { return half_; }
@@ -79,7 +81,8 @@ class SparseRule {
 
   float background_, tolerance_, clipBelow_, clipAbove_, step_;
   bool half_, merges_;
-  bool plain_;  // only values that are not finite are changed
+  bool keepsBackground_;  // active voxels that have the background stay
+  bool plain_;            // only values that are not finite are changed
 };
 
 /// Returns the options with half, step and tolerance in place of maxError, chosen so that no active value of the tree

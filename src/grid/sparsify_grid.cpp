@@ -115,10 +115,10 @@ BuiltGrid sparsifyGrid(const ScalarGrid& source, const BuildOptions& asked) {
   const float oldBackground = tree.background();
 
   if (options.maxError) {
-    const SparseRule checked(name, options, oldBackground);
+    const SparseRule checked(name, options, oldBackground, /*ofGrid=*/true);
     options = storageWithin(tree, options);
   }
-  const SparseRule rule(name, options, oldBackground);
+  const SparseRule rule(name, options, oldBackground, /*ofGrid=*/true);
   SparseTally tally;
   if (!levelSet) {
     if (rule.background() != oldBackground) {

@@ -32,12 +32,6 @@ std::string shortName(double millimetres) {
   return text + " mm";
 }
 
-// A factor between units is a power of ten but for inches, and is made exact where it is a whole number.
-double ratio(double from, double to) {
-  const double exact = from / to, whole = std::round(exact);
-  return whole >= 1 && std::abs(exact - whole) <= 1e-9 * whole ? whole : exact;
-}
-
 }  // namespace
 
 std::optional<double> millimetresPer(std::string_view unit) {
@@ -57,6 +51,11 @@ std::optional<double> millimetresPer(std::string_view unit) {
   return valueNamed(kUnits, name);
 }
 
+double ratioOfUnits(double from, double to) {
+  const double exact = from / to, whole = std::round(exact);
+  return whole >= 1 && std::abs(exact - whole) <= 1e-9 * whole ? whole : exact;
+}
+
 void useLengthUnit(VolumeInfo& info, const glm::dvec3& millimetres) {
   const glm::dmat4 own = info.indexToWorld;
   info.metadata["length_unit"] = "mm";
@@ -67,7 +66,7 @@ void useLengthUnit(VolumeInfo& info, const glm::dvec3& millimetres) {
   const auto become = [&](double unit) {
     info.indexToWorld = own;
     for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 4; ++column) info.indexToWorld[column][row] *= ratio(millimetres[row], unit);
+      for (int column = 0; column < 4; ++column) info.indexToWorld[column][row] *= ratioOfUnits(millimetres[row], unit);
     info.metadata["length_unit"] = shortName(unit);
     return !isSmall(info.indexToWorld);
   };
@@ -107,7 +106,7 @@ void changeLengthUnit(VolumeInfo& info, const std::string& unit) {
   const std::string to = known ? unit : own == info.metadata.end() ? "mm" : own->second;
   const auto after = millimetresPer(to);
   if (!after || to == from) return;  // a unit of the file that has no short name, such as inches, stays mm
-  scaleWorld(info.indexToWorld, glm::dvec3(ratio(*before, *after)));
+  scaleWorld(info.indexToWorld, glm::dvec3(ratioOfUnits(*before, *after)));
   info.metadata["length_unit"] = to;
   std::erase_if(info.notes,
                 [](const std::string& note) { return note.starts_with("voxels are too small for OpenVDB"); });

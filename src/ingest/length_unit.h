@@ -14,6 +14,10 @@ namespace umbrick {
 /// that is no known unit of length.
 std::optional<double> millimetresPer(std::string_view unit);
 
+/// How many of the second unit the first one is, both in millimetres: exact where that is a whole number, as it is for
+/// all units but inches.
+double ratioOfUnits(double from, double to);
+
 /// Takes the place for one in the file's own unit, makes it mm and states so. Voxels that OpenVDB cannot hold in mm are
 /// in the file's unit if that is smaller, or in um, nm or pm.
 /// @param millimetres  of the unit along each axis of the world

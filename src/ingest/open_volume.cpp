@@ -5,13 +5,14 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
 #include <sstream>
 #include <string_view>
 
 #include "ingest/dicom/dicom_series.h"
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
+#include "ingest/placed_source.h"
 #include "ingest/streams/packed_stream.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/dicom_volume.h"
@@ -22,6 +23,7 @@
 #include "umbrick/ingest/npy_volume.h"
 #include "umbrick/ingest/nrrd_volume.h"
 #include "umbrick/ingest/vtk_volume.h"
+#include "umbrick/ingest/world.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;
@@ -37,7 +39,7 @@ struct Format {
 constexpr std::size_t kMagicBytes = 352;
 
 DicomOptions dicomOptions(const OpenOptions& options) {
-  return {options.series, options.where, options.spacing, options.origin, options.evenSlices};
+  return {options.series, options.where, options.spacing, options.origin, options.overridePlace, options.evenSlices};
 }
 
 std::vector<Format> formats() {
@@ -138,28 +140,55 @@ std::optional<Format> formatOf(const fs::path& path) {
   return std::nullopt;
 }
 
-// A source that is put where the caller says.
-class PlacedSource : public VoxelSource {
- public:
-  PlacedSource(std::unique_ptr<VoxelSource> source, VolumeInfo info) : source_(std::move(source)) {
-    info_ = std::move(info);
-  }
-  double readSlab(std::int64_t count, std::span<float> out) override { return source_->readSlab(count, out); }
-  void skipSlices(std::int64_t count) override { source_->skipSlices(count); }
-  bool skipsFast() const override { return source_->skipsFast(); }
-  std::optional<VoxelType> storedType() const override { return source_->storedType(); }
-  void readStored(std::int64_t count, std::span<std::byte> out) override { source_->readStored(count, out); }
-
- private:
-  std::unique_ptr<VoxelSource> source_;
-};
-
 // The world in a unit that OpenVDB can hold, unless one was asked for.
 std::unique_ptr<VoxelSource> withUnit(std::unique_ptr<VoxelSource> source, const std::string& unit) {
   if (!unit.empty()) return source;
   VolumeInfo info = source->info();
   enlargeUnstated(info);
   if (info.notes.size() == source->info().notes.size()) return source;
+  return std::make_unique<PlacedSource>(std::move(source), std::move(info));
+}
+
+void checkNumbers(const fs::path& path, const char* field, const std::optional<glm::dvec3>& numbers, bool positive) {
+  if (!numbers) return;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!std::isfinite((*numbers)[axis]) || (positive && !((*numbers)[axis] > 0)))
+      throw InvalidArgument(path.string() + ": " + field + ": expected " + (positive ? "positive " : "") +
+                            "finite numbers, found " + std::to_string((*numbers)[axis]));
+}
+
+std::string text(const glm::dvec3& v) {
+  std::ostringstream out;
+  out.precision(6);
+  out << v.x << ' ' << v.y << ' ' << v.z;
+  return out.str();
+}
+
+// Puts a volume where the options say. @param stated  the file states a place, whose axes keep their directions
+std::unique_ptr<VoxelSource> placed(std::unique_ptr<VoxelSource> source, const OpenOptions& options, bool stated) {
+  VolumeInfo info = source->info();
+  glm::dmat4& place = info.indexToWorld;
+  const std::string unit = info.metadata.contains("length_unit") ? ' ' + info.metadata["length_unit"] : "";
+  if (options.spacing) {
+    const glm::dvec3 own(glm::length(glm::dvec3(place[0])), glm::length(glm::dvec3(place[1])),
+                         glm::length(glm::dvec3(place[2])));
+    for (int axis = 0; axis < 3; ++axis) {
+      if (stated) {
+        place[axis] *= (*options.spacing)[axis] / own[axis];
+      } else {
+        place[axis] = glm::dvec4(0);
+        place[axis][axis] = (*options.spacing)[axis];
+      }
+    }
+    if (stated)
+      info.notes.push_back("the spacing is " + text(*options.spacing) + unit + ", in place of the file's " + text(own));
+  }
+  if (options.origin) {
+    if (stated)
+      info.notes.push_back("the first voxel is at " + text(*options.origin) + unit + ", in place of the file's " +
+                           text(glm::dvec3(place[3])));
+    place[3] = glm::dvec4(*options.origin, 1);
+  }
   return std::make_unique<PlacedSource>(std::move(source), std::move(info));
 }
 
@@ -175,40 +204,20 @@ std::unique_ptr<VoxelSource> openPlaced(const fs::path& path, const OpenOptions&
   }
   auto source = inUnit(format->open(path, options));
   if (!options.spacing && !options.origin) return source;
-  if (format->row.name == "DICOM") return source;  // which has looked at them: a series may state a part of its place
-  if (format->placed)
-    throw InvalidArgument(path.string() + ": spacing and origin: " + format->row.name + " states its own");
-  glm::dmat4 place = source->info().indexToWorld;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (options.spacing) {
-      if (!((*options.spacing)[axis] > 0) || !std::isfinite((*options.spacing)[axis]))
-        throw InvalidArgument(path.string() + ": spacing: expected positive finite numbers, found " +
-                              std::to_string((*options.spacing)[axis]));
-      place[axis] = glm::dvec4(0);
-      place[axis][axis] = (*options.spacing)[axis];
-    }
-    if (options.origin) {
-      if (!std::isfinite((*options.origin)[axis]))
-        throw InvalidArgument(path.string() + ": origin: expected finite numbers, found " +
-                              std::to_string((*options.origin)[axis]));
-      place[3][axis] = (*options.origin)[axis];
-    }
-  }
-  VolumeInfo info = source->info();
-  info.indexToWorld = place;
-  return std::make_unique<PlacedSource>(std::move(source), std::move(info));
+  // DICOM has looked at them: a series may state a part of its place.
+  if (format->row.name == "DICOM" && !options.overridePlace) return source;
+  if (format->placed && !options.overridePlace)
+    throw StatedPlace(path.string() + ": spacing and origin: " + format->row.name + " states its own");
+  checkNumbers(path, "spacing", options.spacing, true);
+  checkNumbers(path, "origin", options.origin, false);
+  return placed(std::move(source), options, format->placed);
 }
 
 }  // namespace
 
 std::unique_ptr<VoxelSource> openVolume(const fs::path& path, const OpenOptions& options) {
-  return withUnit(openPlaced(path, options), options.lengthUnit);
-}
-
-std::unique_ptr<VoxelSource> inLengthUnit(std::unique_ptr<VoxelSource> source, const std::string& unit) {
-  VolumeInfo info = source->info();
-  changeLengthUnit(info, unit);
-  return std::make_unique<PlacedSource>(std::move(source), std::move(info));
+  auto source = withUnit(openPlaced(path, options), options.lengthUnit);
+  return options.space.empty() ? std::move(source) : inSpace(std::move(source), options.space);
 }
 
 std::optional<std::string> formatOfName(const fs::path& path) {

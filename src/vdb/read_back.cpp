@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "umbrick/core/error.h"
+#include "umbrick/core/patient_space.h"
 #include "umbrick/grid/affine_matrix.h"
+#include "umbrick/grid/grid_world.h"
 #include "umbrick/grid/misplaced.h"
 #include "umbrick/grid/scalar_grid.h"
 #include "umbrick/ingest/open_volume.h"
@@ -25,6 +27,8 @@ FloatGrid::ConstPtr readDense(const fs::path& file, const FloatGrid& written) {
   const auto unit = written.getMetadata<openvdb::StringMetadata>("length_unit");
   for (const char* known : {"nm", "um", "mm", "cm", "m"})
     if (unit && unit->value() == known) open.lengthUnit = known;
+  const std::string space = worldOf(written).space;
+  if (patientAxes(space)) open.space = space;
   const auto source = openVolume(file, open);
   const VolumeInfo& info = source->info();
   const glm::i64vec3 dims(box.dim().x(), box.dim().y(), box.dim().z());

@@ -15,8 +15,10 @@
 #include <type_traits>
 
 #include "umbrick/core/error.h"
+#include "umbrick/core/patient_space.h"
 #include "umbrick/core/pending_file.h"
 #include "umbrick/core/pending_pair.h"
+#include "umbrick/grid/grid_world.h"
 #include "umbrick/vdb/write_volume.h"
 
 namespace umbrick {
@@ -67,7 +69,9 @@ struct Place {
   openvdb::Vec3d axis[3], origin;
 };
 
-Place placeOf(const fs::path& path, const openvdb::FloatGrid& grid, const openvdb::Coord& first) {
+// @param space  that of the header, where it is not that of the grid
+Place placeOf(const fs::path& path, const openvdb::FloatGrid& grid, const openvdb::Coord& first,
+              const std::string& space) {
   if (!grid.transform().isLinear())
     throw InvalidArgument(path.string() + ": expected a grid with an affine transform, found " +
                           grid.transform().mapType());
@@ -75,6 +79,12 @@ Place placeOf(const fs::path& path, const openvdb::FloatGrid& grid, const openvd
   Place place;
   for (int i = 0; i < 3; ++i) place.axis[i] = {map(i, 0), map(i, 1), map(i, 2)};
   place.origin = grid.indexToWorld(first);
+  const auto turn = changeOfSpace(worldOf(grid).space, space);
+  if (!turn) return place;
+  for (openvdb::Vec3d* vector : {&place.axis[0], &place.axis[1], &place.axis[2], &place.origin}) {
+    const glm::dvec3 turned(*turn * glm::dvec4((*vector)[0], (*vector)[1], (*vector)[2], 0));
+    *vector = {turned.x, turned.y, turned.z};
+  }
   return place;
 }
 
@@ -89,17 +99,20 @@ std::string sizes(const glm::i64vec3& dims) {
   return std::to_string(dims.x) + ' ' + std::to_string(dims.y) + ' ' + std::to_string(dims.z);
 }
 
-std::string metadataOf(const openvdb::FloatGrid& grid, const char* key) {
-  const auto text = grid.getMetadata<openvdb::StringMetadata>(key);
-  return text ? text->value() : std::string();
-}
-
 // The unit of length, where headers have a name for it.
 std::string lengthUnitOf(const openvdb::FloatGrid& grid) {
-  const std::string stated = metadataOf(grid, "length_unit");
+  const std::string stated = worldOf(grid).lengthUnit;
   for (const char* known : {"mm", "um", "nm", "pm", "cm", "m"})
     if (stated == known) return stated;
   return {};
+}
+
+// The space in which a header states the place: .mhd means LPS, and .nrrd has words for three spaces. Numbers of a grid
+// that does not say which way its axes point stay as they are.
+std::string spaceOf(const openvdb::FloatGrid& grid, bool nrrd) {
+  const std::string own = worldOf(grid).space;
+  if (!patientAxes(own) || (nrrd && (own == "RAS" || own == "LAS"))) return own;
+  return "LPS";
 }
 
 std::string nrrdHeader(const openvdb::FloatGrid& grid, const DenseBox& box, const Place& place) {
@@ -111,7 +124,7 @@ std::string nrrdHeader(const openvdb::FloatGrid& grid, const DenseBox& box, cons
     return std::is_signed_v<T> ? "int32" : "uint32";
   });
   const auto vector = [](const openvdb::Vec3d& v) { return '(' + text(v, ",") + ')'; };
-  const std::string space = metadataOf(grid, "space");
+  const std::string& space = box.space;
   std::string out = "NRRD0004\ntype: " + std::string(type) + "\ndimension: 3\n";
   if (space == "LPS")
     out += "space: left-posterior-superior\n";
@@ -210,7 +223,8 @@ DenseBox writeDense(const fs::path& path, const openvdb::FloatGrid& grid, const 
             << bytes;
     throw InvalidArgument(message.str());
   }
-  const Place place = placeOf(path, grid, active.min());
+  box.space = spaceOf(grid, nrrd);
+  const Place place = placeOf(path, grid, active.min(), box.space);
   if (nrrd) {
     PendingFile pending(path);
     writeWhole(path, pending.path(), [&](std::ostream& out) {

@@ -71,3 +71,37 @@ TEST_CASE("Inputs that cannot stand beside each other are refused in one line, a
   check("a.nrrd short.nrrd", 1, "short.nrrd: ");
   check("a.nrrd missing.nrrd", 1, "missing.nrrd: no such file");
 }
+
+TEST_CASE("Worlds that differ are brought to one, which is said in a line", "[tools]") {
+  const TemporaryFolder folder;
+  const auto write = [&](const char* name, const char* space) {
+    writeBytes(folder.path() / name, std::string("NRRD0004\ntype: uint8\ndimension: 3\nspace: ") + space +
+                                         "\nsizes: 2 2 2\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"
+                                         "space origin: (10,20,30)\nencoding: raw\n\n" +
+                                         std::string(8, '\5'));
+  };
+  write("l.nrrd", "LPS");
+  write("r.nrrd", "RAS");
+  const ProgramResult both = runProgram(folder, "convert l.nrrd r.nrrd -o x.vdb");
+  CHECK(both.status == 0);
+  CHECK_THAT(both.err, Contains("r.nrrd: its world is turned from RAS to LPS, that of l.nrrd"));
+  const nlohmann::json grids = gridsOf(folder, "x.vdb");
+  CHECK(grids.at(1).at("world_bounds").at("max").at(0) == -10);
+  CHECK(grids.at(1).at("metadata").at("space") == "LPS");
+  const ProgramResult turned = runProgram(folder, "convert l.nrrd --space ras -o y.mhd");
+  CHECK(turned.status == 0);
+  CHECK_THAT(turned.err, Contains("LPS to RAS") && Contains("y.mhd: the place is written in LPS"));
+}
+
+TEST_CASE("An empty or a full result is said in a line that names the option", "[tools]") {
+  const TemporaryFolder folder;
+  writeBytes(folder.path() / "v.nrrd",
+             "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nspacings: 1 1 1\n"
+             "encoding: raw\n\n" +
+                 std::string(64, '\7'));
+  CHECK_THAT(runProgram(folder, "convert v.nrrd -o x.vdb").err,
+             Contains("100.0 % of its voxels are 7 and active") && Contains("--background auto or 7"));
+  CHECK_THAT(runProgram(folder, "convert v.nrrd --background 7 -o x.vdb").err, Contains("nothing is left"));
+  CHECK_THAT(runProgram(folder, "convert v.nrrd --threshold -5 --background 0 -o x.vdb").err,
+             Contains("--background: what is left out lies below -5"));
+}

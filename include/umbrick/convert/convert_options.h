@@ -13,14 +13,18 @@
 #include "umbrick/grid/build_grid.h"
 #include "umbrick/grid/isosurface.h"
 #include "umbrick/ingest/open_volume.h"
+#include "umbrick/ingest/world.h"
 
 namespace umbrick {
 
 /// How the inputs are read, and which part of them. They are masked first, then cropped, then resampled.
 struct SourceOptions {
-  OpenOptions open = {};  // layout of headerless raw, DICOM series, spacing and origin; for volumes only
-  /// A volume of the size and place of the input, or a file with one scalar grid: where it is 0, the input becomes
-  /// background. Empty: no mask.
+  OpenOptions open = {};  // layout of headerless raw, DICOM series, spacing and origin; for volumes only, but `space`
+  /// The input is brought to this world where both state theirs. Of several inputs, those without get that of the
+  /// first. For volumes only.
+  std::optional<World> world = {};
+  /// A volume of the size and place of the input, whose world is brought to that of the input, or a file with one
+  /// scalar grid: where it is 0, the input becomes background. Empty: no mask.
   std::filesystem::path mask = {};
   OpenOptions openMask = {};          // how the mask is opened where it is a volume
   std::optional<IndexBox> crop = {};  // only these voxels, which stay where they are in the world; of grids by index

@@ -11,6 +11,7 @@
 #include "umbrick/grid/isosurface.h"
 #include "umbrick/grid/resample.h"
 #include "umbrick/grid/source_filters.h"
+#include "umbrick/grid/usual_value.h"
 #include "umbrick/grid/verify.h"
 
 namespace umbrick {
@@ -20,9 +21,14 @@ struct ConvertedGrid {
   std::filesystem::path input;
   std::string label;  // name of the grid, with "[k]" behind it where several of an input file share it
   std::optional<VoxelType> volumeType;  // of the voxels as the input stores them; none where it was a grid
-  std::vector<std::string> notes;       // of the volume, as VolumeInfo has them
+  std::vector<std::string> notes;       // of the volume, as VolumeInfo has them, or of a grid whose world was changed
   BuildReport build;
   std::optional<BorderMode> background;  // what the border of the volume had
+  /// Of a volume more than half of which is active: the value that more than half of all its voxels have, which as a
+  /// background would leave them out.
+  std::optional<UsualValue> usual;
+  /// Of a volume nearly all of which is active: the median of its border, grid units.
+  std::optional<float> borderMedian;
   std::optional<std::uint64_t> masked;   // voxels that the mask made background
   std::optional<ResampleReport> resampled;
   std::optional<IsosurfaceReport> isosurface;
@@ -42,8 +48,9 @@ struct ConvertReport {
   std::filesystem::path output;
   std::vector<ConvertedGrid> grids;  // in the order in which they were written
   std::vector<LeftOutGrid> leftOut;
-  std::int64_t bytesIn = 0;   // of the files that hold the inputs, packed as they are
-  std::int64_t bytesOut = 0;  // of the files that were written
+  std::vector<std::string> notes;  // of the file that was written, a line each without its name
+  std::int64_t bytesIn = 0;        // of the files that hold the inputs, packed as they are
+  std::int64_t bytesOut = 0;       // of the files that were written
 };
 
 }  // namespace umbrick

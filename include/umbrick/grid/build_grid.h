@@ -88,9 +88,9 @@ struct BuiltGrid {
 BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options = {});
 
 /// Does the same for a grid, whose class, transform and metadata stay. Active voxels and tiles are treated like the
-/// voxels of a dense volume. Inactive ones keep their value and state, except that those that hold the old background
-/// follow it. A level set is only rounded to half, and only where that is asked for, since its surface needs the values
-/// on both sides of it.
+/// voxels of a dense volume, but that without a tolerance those that have just the background stay active. Inactive
+/// ones keep their value and state, except that those that hold the old background follow it. A level set is only
+/// rounded to half, and only where that is asked for, since its surface needs the values on both sides of it.
 /// @throw InvalidArgument  as buildGrid
 BuiltGrid sparsifyGrid(const ScalarGrid& grid, const BuildOptions& options = {});
 

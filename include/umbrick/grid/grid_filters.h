@@ -21,7 +21,8 @@ void cropGrid(openvdb::FloatGrid& grid, const IndexBox& box);
 ///                         farther off than a thousandth of a voxel, or the grid is a level set
 std::uint64_t maskGrid(openvdb::FloatGrid& grid, const openvdb::FloatGrid& mask);
 
-/// Reads the voxels (0, 0, 0) to dims - 1 of a grid, active or not, as a dense volume.
+/// Reads the voxels (0, 0, 0) to dims - 1 of a grid, active or not, as a dense volume, which states the
+/// world that the grid states.
 /// @param name  what messages call the volume
 /// @throw InvalidArgument  the transform is not affine
 std::unique_ptr<VoxelSource> gridSource(std::string name, std::shared_ptr<const openvdb::FloatGrid> grid,

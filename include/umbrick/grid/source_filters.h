@@ -15,6 +15,7 @@ namespace umbrick {
 std::unique_ptr<VoxelSource> cropSource(std::unique_ptr<VoxelSource> source, const IndexBox& box);
 
 /// Makes a source in which voxels where the mask is 0 are `background`. A mask voxel that is NaN counts as not 0.
+/// Notes of the mask become notes of the source.
 /// @param leftOut  if not null, becomes the number of voxels that this changes
 /// @throw InvalidArgument  the mask has other dims, or places a corner farther off than a thousandth of a voxel
 std::unique_ptr<VoxelSource> maskSource(std::unique_ptr<VoxelSource> source, std::unique_ptr<VoxelSource> mask,

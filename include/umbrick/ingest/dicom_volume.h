@@ -50,6 +50,8 @@ struct DicomOptions {
   /// InstanceNumber from `origin` on, which is 0 where there is none.
   std::optional<glm::dvec3> spacing = {};
   std::optional<glm::dvec3> origin = {};
+  /// Spacing and origin are taken where the series states none, and are no mistake where it does.
+  bool overridePlace = false;
   /// Slices that are not evenly spaced are interpolated, linearly along the normal, to even ones.
   bool evenSlices = false;
 };

@@ -20,11 +20,17 @@ struct OpenOptions {
   /// file states none, its numbers are taken for this unit. Empty: mm, or smaller where voxels are too small for
   /// OpenVDB.
   std::string lengthUnit = {};
+  /// Which way the axes of the world point: three letters such as "LPS" or "RAS". Of a file that does not say it, the
+  /// numbers are taken for that space. Empty or "file": as in the file.
+  std::string space = {};
   std::string series = {};                 // of DICOM: the UID of a series, or its number in the list, from 1
   std::vector<std::string> where = {};     // of DICOM: only slices with this "Tag=value", see DicomOptions
   bool evenSlices = false;                 // of DICOM: slices that are not evenly spaced are interpolated
   std::optional<glm::dvec3> spacing = {};  // world units between voxel centres, for formats that state no place
   std::optional<glm::dvec3> origin = {};   // world position of the first voxel's centre, for the same formats
+  /// Spacing and origin also take the place of what the file states. They are in the unit that the file states; the
+  /// directions of its axes stay.
+  bool overridePlace = false;
 };
 
 /// No format is known by the name or the first bytes of the file: OpenOptions::raw has to say what its bytes mean.
@@ -32,16 +38,17 @@ struct UnknownFormat : InvalidArgument {
   using InvalidArgument::InvalidArgument;
 };
 
+/// A place was given for a file that states its own: OpenOptions::overridePlace takes the one that was given.
+struct StatedPlace : InvalidArgument {
+  using InvalidArgument::InvalidArgument;
+};
+
 /// Opens a volume. Its format is told by the extension of its name, or else by its first bytes.
 /// @throw UnknownFormat    no format is known by that name or those bytes, and `raw` is not given
-/// @throw InvalidArgument  spacing or origin for a format that states its own, or not positive and finite; the formats
-///                         throw it too
+/// @throw StatedPlace      spacing or origin for a format that states its own, without overridePlace
+/// @throw InvalidArgument  they are not positive and finite; there is no such space; the formats throw it too
 /// @throw IoError          as the formats do
 std::unique_ptr<VoxelSource> openVolume(const std::filesystem::path& path, const OpenOptions& options = {});
-
-/// A volume whose world is in another unit, which its metadata then state.
-/// @param unit  nm, um, mm, cm, m or "file"  @throw InvalidArgument  another one
-std::unique_ptr<VoxelSource> inLengthUnit(std::unique_ptr<VoxelSource> source, const std::string& unit);
 
 /// The name of the format that the extension of `path` stands for, or nothing.
 std::optional<std::string> formatOfName(const std::filesystem::path& path);

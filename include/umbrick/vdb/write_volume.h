@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "umbrick/core/pending_file.h"
@@ -56,10 +57,13 @@ struct DenseOptions {
 struct DenseBox {
   glm::i64vec3 first{0}, dims{0};  // first voxel in index space of the grid, and number of voxels
   VoxelType type = VoxelType::f32;
+  std::string space;  // in which the header states the place, such as "LPS"; empty where nothing is known
 };
 
 /// Writes the box of the active voxels with all values in it, whole or not at all, as a .nrrd, or as a .mhd beside a
-/// .raw of the same stem (PendingPair). The place of the voxels is that of the grid, rotation and shear included.
+/// .raw of the same stem (PendingPair). The place of the voxels is that of the grid, rotation and shear included. A
+/// .mhd means LPS: a grid that states another space of a patient is turned to it, and in a .nrrd one whose space has no
+/// word there.
 /// @throw IoError          a file is not writable, or the disk is full
 /// @throw InvalidArgument  no active voxel, a box beyond maxBytes, a transform that is not affine, or another extension
 DenseBox writeDense(const std::filesystem::path& path, const openvdb::FloatGrid& grid, const DenseOptions& options = {},

@@ -6,6 +6,7 @@
 
 #include "ingest/dicom/dicom_frames.h"
 #include "ingest/header_text.h"
+#include "umbrick/ingest/open_volume.h"
 
 namespace umbrick {
 namespace {
@@ -33,7 +34,8 @@ struct Lack {
 void checkOptions(const std::string& name, const Lack& lack, const DicomOptions& options) {
   const auto check = [&](const char* field, const std::optional<glm::dvec3>& given, bool lacking, bool positive) {
     if (!given) return;
-    if (!lacking) throw InvalidArgument(name + ": " + field + ": this DICOM series states its own");
+    if (!lacking && !options.overridePlace)
+      throw StatedPlace(name + ": " + field + ": this DICOM series states its own");
     for (int axis = 0; axis < 3; ++axis)
       if (!std::isfinite((*given)[axis]) || (positive && !((*given)[axis] > 0)))
         throw InvalidArgument(name + ": " + field + ": expected " + (positive ? "positive " : "") +
