@@ -34,11 +34,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kWords{{
 
 // What an option can do about an error of a reader.
 std::string hintOf(const std::exception& error) {
-  if (dynamic_cast<const SeveralPhases*>(&error)) return "; convert --where Tag=value picks";
+  if (dynamic_cast<const SeveralPhases*>(&error)) return "; --where Tag=value picks";
   if (dynamic_cast<const OddSlices*>(&error)) return "; it is left out where --series names the series";
   if (dynamic_cast<const UnplacedSlices*>(&error)) return "; give --spacing";
   if (dynamic_cast<const UnevenSlices*>(&error)) return "; convert --resample interpolates to an even grid";
   if (dynamic_cast<const SeveralGrids*>(&error)) return "; give --grid";
+  if (dynamic_cast<const UnknownFormat*>(&error)) return ": give --dims and --type";
   if (dynamic_cast<const StatedPlace*>(&error)) return "; convert --override takes yours";
   return {};
 }

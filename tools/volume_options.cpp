@@ -48,6 +48,11 @@ void addVolumeOptions(CLI::App& command, VolumeOptions& o) {
       ->group(group);
   command.add_option("--series", o.series, "of a DICOM folder: the UID of a series, or its number in the list")
       ->group(group);
+  command
+      .add_option("--where", o.where,
+                  "of DICOM: only slices whose tag has this value, as AcquisitionNumber=2; may be repeated [all]")
+      ->allow_extra_args(false)
+      ->group(group);
   command.add_option("--dims", o.dims, "of headerless raw: voxels along x (fastest), y, z")->expected(3)->group(group);
   command.add_option("--type", o.type, "of headerless raw: u8, i8, u16, i16, u32, i32, i64, u64, f16, f32 or f64")
       ->check(voxelType())
@@ -71,6 +76,7 @@ void addVolumeOptions(CLI::App& command, VolumeOptions& o) {
 void applyVolumeOptions(const VolumeOptions& o, VolumeReference& volume) {
   if (o.grid) volume.grid = *o.grid;
   if (!o.series.empty()) volume.series = o.series;
+  if (!o.where.empty()) volume.where = o.where;
   const auto vector = [](const std::vector<double>& numbers) { return glm::dvec3(numbers[0], numbers[1], numbers[2]); };
   if (o.spacing) volume.spacing = vector(*o.spacing);
   if (o.origin) volume.origin = vector(*o.origin);

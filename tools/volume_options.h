@@ -13,6 +13,7 @@ namespace umbrick::tools {
 
 struct VolumeOptions {
   std::optional<std::string> grid;
+  std::vector<std::string> where;
   std::string series, type, endian = "little";
   std::vector<std::int64_t> dims;
   std::int64_t headerBytes = 0;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "ingest/array_lists.h"
 #include "ingest/hdf5_handle.h"
 #include "ingest/hdf5_meaning.h"
 #include "ingest/header_text.h"
@@ -268,6 +269,28 @@ class Hdf5Source : public VoxelSource {
 };
 
 }  // namespace
+
+std::vector<ArrayRow> listHdf5Arrays(const fs::path& path) {
+  const Quiet quiet;
+  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  std::vector<ArrayRow> rows;
+  const auto add = [](hid_t in, const char* name, const H5O_info_t* info, void* user) -> herr_t {
+    if (info->type != H5O_TYPE_DATASET) return 0;
+    const Handle dataset(H5Dopen2(in, name, H5P_DEFAULT), H5Dclose);
+    if (!dataset.good()) return 0;
+    const std::vector<hsize_t> shape = shapeOf(dataset.get());
+    const auto type = numberType(dataset.get());
+    const std::size_t axes = axesOf(shape).size();
+    static_cast<std::vector<ArrayRow>*>(user)->push_back(
+        {std::string("/") + name, shape.empty() ? "one value" : shapeText(shape),
+         type ? std::string(voxelTypeName(type->stored)) : typeText(dataset.get()),
+         type.has_value() && (axes == 2 || axes == 3)});
+    return 0;
+  };
+  if (!file.good() || H5Ovisit2(file.get(), H5_INDEX_NAME, H5_ITER_INC, add, &rows, H5O_INFO_BASIC) < 0)
+    throw IoError(path.string() + ": expected an HDF5 file, found: " + complaint());
+  return rows;
+}
 
 bool isHdf5Dataset(const fs::path& path) { return !split(path).dataset.empty(); }
 

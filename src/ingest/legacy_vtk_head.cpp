@@ -39,24 +39,43 @@ class LegacyHeadReader {
       : path_(path), name_(name), in_(path, std::ios::binary) {}
 
   LegacyHead read() {
-    if (!line().starts_with("# vtk DataFile Version")) failField(path_, "first line", "# vtk DataFile Version", line_);
-    line();  // the title
-    const std::string form = lower(trimmed(filledLine()));
-    if (form != "ascii" && form != "binary") failField(path_, "third line", "ASCII or BINARY", form);
-    head_.ascii = form == "ascii";
+    begin();
     while (!atVoxels()) {
     }
     head_.bytes = static_cast<std::int64_t>(in_.tellg());
     return head_;
   }
 
+  // Passes everything, and tells what it was.
+  std::vector<ArrayRow> list() {
+    begin();
+    listing_ = true;
+    try {
+      while (!atVoxels()) {
+      }
+    } catch (const EndOfFile&) {
+    }
+    return std::move(rows_);
+  }
+
  private:
+  struct EndOfFile {};
+
+  void begin() {
+    if (!line().starts_with("# vtk DataFile Version")) failField(path_, "first line", "# vtk DataFile Version", line_);
+    line();  // the title
+    const std::string form = lower(trimmed(filledLine()));
+    if (form != "ascii" && form != "binary") failField(path_, "third line", "ASCII or BINARY", form);
+    head_.ascii = form == "ascii";
+  }
+
   // Where the file ends, what was passed is told.
   const std::string& line() {
     line_.clear();
     char c = 0;
     while (in_.get(c) && c != '\n')
       if (line_.push_back(c); line_.size() > kMaxVtkLine) failField(path_, "head", "lines of text", line_);
+    if (!in_ && listing_) throw EndOfFile{};
     if (!in_)
       failField(path_, "head",
                 name_.empty() ? "SCALARS or a FIELD with one number for each of the points or cells"
@@ -121,7 +140,8 @@ class LegacyHeadReader {
   }
 
   // Whether these are the voxels that are looked for.
-  bool isVoxels(const Values& values) const {
+  bool isVoxels(const Values& values) const { return !listing_ && couldBeVoxels(values); }
+  bool couldBeVoxels(const Values& values) const {
     return count_ && values.tuples == *count_ && values.components == 1 && legacyType(values.type) &&
            (name_.empty() ? values.name.substr(0, 8) != "vtkGhost" : values.name == name_);
   }
@@ -136,6 +156,14 @@ class LegacyHeadReader {
   }
 
   void pass(const Values& values) {
+    const auto type = legacyType(values.type);
+    const std::string many = values.components == 1 ? "" : std::to_string(values.components) + " x ";
+    if (listing_)
+      rows_.push_back({values.name,
+                       std::to_string(values.tuples) + (!count_ || values.tuples != *count_ ? " values"
+                                                        : head_.cells                       ? " cells"
+                                                                                            : " points"),
+                       many + (type ? std::string(voxelTypeName(*type)) : values.type), couldBeVoxels(values)});
     if (count_)
       passed_ += (passed_.empty() ? "" : ", ") + values.name + " of " + std::to_string(values.components) + " x " +
                  values.type;
@@ -151,7 +179,7 @@ class LegacyHeadReader {
     values.components = *components;
     if (!lower(filledLine()).starts_with("lookup_table")) failField(path_, "line after SCALARS", "LOOKUP_TABLE", line_);
     if (isVoxels(values)) return take(values);
-    if (values.components == 1 && !legacyType(values.type) && (name_.empty() || name_ == values.name))
+    if (!listing_ && values.components == 1 && !legacyType(values.type) && (name_.empty() || name_ == values.name))
       failField(path_, "type of the scalars", "unsigned_char to double", values.type);
     pass(values);
     return false;
@@ -257,11 +285,14 @@ class LegacyHeadReader {
   std::ifstream in_;
   std::string line_, passed_;
   std::optional<std::int64_t> count_;  // of points or cells, once their data have begun
-  bool fits_ = false;
+  bool fits_ = false, listing_ = false;
+  std::vector<ArrayRow> rows_;
   LegacyHead head_;
 };
 
 }  // namespace
+
+std::vector<ArrayRow> listLegacyArrays(const fs::path& path) { return LegacyHeadReader(path, {}).list(); }
 
 LegacyHead readLegacyHead(const fs::path& path, const std::string& name) { return LegacyHeadReader(path, name).read(); }
 

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "umbrick/ingest/list_arrays.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
@@ -24,5 +26,8 @@ struct LegacyHead {
 /// @param name  of the array; empty: any
 /// @throw IoError  no structured points, or no such array
 LegacyHead readLegacyHead(const std::filesystem::path& path, const std::string& name);
+
+/// Lists the arrays of the whole file.
+std::vector<ArrayRow> listLegacyArrays(const std::filesystem::path& path);
 
 }  // namespace umbrick

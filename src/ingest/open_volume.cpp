@@ -227,6 +227,11 @@ std::optional<std::string> formatOfName(const fs::path& path) {
   return std::nullopt;
 }
 
+std::optional<std::string> formatOfFile(const fs::path& path) {
+  const auto format = formatOf(path);
+  return format ? std::optional(format->row.name) : std::nullopt;
+}
+
 std::vector<FormatRow> listFormats() {
   std::vector<FormatRow> rows;
   for (const Format& format : formats()) rows.push_back(format.row);

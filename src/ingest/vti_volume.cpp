@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <expat.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "ingest/array_lists.h"
 #include "ingest/array_name.h"
 #include "ingest/header_text.h"
 #include "ingest/place.h"
@@ -112,15 +114,26 @@ class VtiHeadReader {
   std::optional<std::size_t> section_;  // of point or cell data, when inside one
 };
 
+using enum VoxelType;
+constexpr std::array<std::pair<std::string_view, VoxelType>, 10> kVtiTypes{{{"Int8", i8},
+                                                                            {"UInt8", u8},
+                                                                            {"Int16", i16},
+                                                                            {"UInt16", u16},
+                                                                            {"Int32", i32},
+                                                                            {"UInt32", u32},
+                                                                            {"Int64", i64},
+                                                                            {"UInt64", u64},
+                                                                            {"Float32", f32},
+                                                                            {"Float64", f64}}};
+
 VoxelType vtiTypeOf(const fs::path& path, const std::string& text) {
-  using enum VoxelType;
-  static const std::map<std::string, VoxelType> types{
-      {"Int8", i8},    {"UInt8", u8},  {"Int16", i16},  {"UInt16", u16},  {"Int32", i32},
-      {"UInt32", u32}, {"Int64", i64}, {"UInt64", u64}, {"Float32", f32}, {"Float64", f64}};
-  const auto found = types.find(text);
-  if (found == types.end()) failField(path, "type of the array", "Int8 to UInt64, Float32 or Float64", text);
-  return found->second;
+  const auto found = valueNamed(kVtiTypes, text);
+  if (!found) failField(path, "type of the array", "Int8 to UInt64, Float32 or Float64", text);
+  return *found;
 }
+
+// Marks of points that another piece holds too, or that are blank.
+bool isGhost(const std::string& name) { return name == "vtkGhostType" || name == "vtkGhostLevels"; }
 
 const VtiArray& arrayOf(const fs::path& path, const VtiHead& head, const std::string& wanted) {
   const VtiArray* only = nullptr;
@@ -128,8 +141,7 @@ const VtiArray& arrayOf(const fs::path& path, const VtiHead& head, const std::st
   int count = 0;
   for (const VtiArray& array : head.arrays) {
     const std::string name = get(array.attributes, "Name");
-    // Marks of points that another piece holds too, or that are blank.
-    if (name == "vtkGhostType" || name == "vtkGhostLevels") continue;
+    if (isGhost(name)) continue;
     if (get(array.attributes, "NumberOfComponents", "1") != "1") {
       names +=
           (names.empty() ? "" : ", ") + name + " of " + get(array.attributes, "NumberOfComponents") + " components";
@@ -255,6 +267,21 @@ std::unique_ptr<ByteStream> voxelsOf(const fs::path& path, const VtiHead& head, 
 }
 
 }  // namespace
+
+std::vector<ArrayRow> listVtiArrays(const fs::path& path) {
+  std::vector<ArrayRow> rows;
+  for (const VtiArray& array : VtiHeadReader(path).read().arrays) {
+    const std::string components = get(array.attributes, "NumberOfComponents", "1");
+    const std::string name = get(array.attributes, "Name"), type = get(array.attributes, "type");
+    const bool known =
+        std::any_of(std::begin(kVtiTypes), std::end(kVtiTypes), [&](const auto& row) { return row.first == type; });
+    rows.push_back({name, array.cells ? "cells" : "points",
+                    (components == "1" ? "" : components + " x ") +
+                        (known ? std::string(voxelTypeName(vtiTypeOf(path, type))) : type),
+                    known && components == "1" && !isGhost(name)});
+  }
+  return rows;
+}
 
 std::unique_ptr<VoxelSource> openVti(const fs::path& named) {
   const auto [path, wanted] = splitArrayName(named, ".vti");

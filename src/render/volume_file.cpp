@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume_file.h"
 
-#include <bit>
 #include <exception>
 
 #include "umbrick/convert/holds_grids.h"
@@ -10,6 +9,7 @@
 #include "umbrick/core/names.h"
 #include "umbrick/core/short_number.h"
 #include "umbrick/ingest/frame_sequence.h"
+#include "umbrick/render/open_reference.h"
 #include "umbrick/vdb/grid_listing.h"
 #include "umbrick/vdb/read_grid.h"
 
@@ -17,38 +17,13 @@ namespace umbrick {
 namespace {
 namespace fs = std::filesystem;
 
-RawOptions rawOptions(const VolumeReference& reference) {
-  const RawLayout& layout = *reference.raw;
-  RawOptions raw;
-  raw.dims = layout.dims;
-  const std::optional<VoxelType> type = voxelTypeFromName(layout.type);
-  if (!type)
-    throw InvalidArgument(
-        "volume.raw.type: expected one of u8, i8, u16, i16, u32, i32, i64, u64, f16, f32 or f64, found '" +
-        layout.type + "'");
-  raw.type = *type;
-  raw.endian = layout.bigEndian ? std::endian::big : std::endian::little;
-  raw.headerBytes = layout.headerBytes;
-  raw.bitsStored = layout.bitsStored;
-  raw.spacing = reference.spacing.value_or(raw.spacing);
-  raw.origin = reference.origin.value_or(raw.origin);
-  return raw;
-}
-
 void readVolume(VolumeFile& file, const LoadProgress& progress) {
   const VolumeReference& source = file.source;
   if (!source.grid.empty())
     throw InvalidArgument(source.file.string() + ": volume.grid is for files of grids, and this is a volume: found '" +
                           source.grid + "'");
   ConvertOptions options;
-  OpenOptions& open = options.source.open;
-  open.series = source.series;
-  if (source.raw) {
-    open.raw = rawOptions(source);
-  } else {
-    open.spacing = source.spacing;
-    open.origin = source.origin;
-  }
+  options.source.open = openOptions(source);
   if (progress) options.progress = [&progress](const ConvertProgress& stage) { progress(stage.share); };
   LoadedVolume loaded = loadVolume(source.file, options);
   const auto border = loaded.report.background;

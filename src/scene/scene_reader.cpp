@@ -65,10 +65,12 @@ RawLayout readRawLayout(const JsonValue& value) {
 }
 
 void readVolume(const JsonValue& value, const std::filesystem::path& folder, VolumeReference& volume) {
-  value.allowFields({"file", "grid", "series", "raw", "spacing", "origin"});
+  value.allowFields({"file", "grid", "series", "where", "raw", "spacing", "origin"});
   if (const auto file = value.find("file")) volume.file = folder / file->string();
   if (const auto grid = value.find("grid")) volume.grid = grid->string();
   if (const auto series = value.find("series")) volume.series = series->string();
+  if (const auto where = value.find("where"))
+    for (const JsonValue& condition : where->items()) volume.where.push_back(condition.string());
   if (const auto raw = value.find("raw")) volume.raw = readRawLayout(*raw);
   if (const auto spacing = value.find("spacing")) volume.spacing = readVector(*spacing);
   if (const auto origin = value.find("origin")) volume.origin = readVector(*origin);

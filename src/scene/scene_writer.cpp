@@ -32,6 +32,9 @@ std::string printedVolume(const VolumeReference& volume) {
   JsonFields fields{{"file", jsonString(volume.file.string())}};
   if (!volume.grid.empty()) fields.emplace_back("grid", jsonString(volume.grid));
   if (!volume.series.empty()) fields.emplace_back("series", jsonString(volume.series));
+  std::vector<std::string> where;
+  for (const std::string& condition : volume.where) where.push_back(jsonString(condition));
+  if (!where.empty()) fields.emplace_back("where", jsonArray(where));
   if (volume.raw) fields.emplace_back("raw", printedRaw(*volume.raw));
   if (volume.spacing) fields.emplace_back("spacing", printed(*volume.spacing));
   if (volume.origin) fields.emplace_back("origin", printed(*volume.origin));

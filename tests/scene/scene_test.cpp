@@ -31,6 +31,8 @@ Scene randomScene(std::mt19937& random) {
   };
   Scene scene;
   scene.volume = {"some folder/vol\"1.vdb", "density[1]"};
+  scene.volume.series = "1.2.840.\"3";
+  scene.volume.where = {"AcquisitionNumber=2", "0018,0081=4.6"};
   scene.transfer = random() % 2 ? randomTransferFunction(random, 5) : randomTransferFunction2d(random, 3);
   scene.camera.projection = Projection::orthographic;
   scene.camera.fov = number(0.01, 3.1);

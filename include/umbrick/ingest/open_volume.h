@@ -53,6 +53,10 @@ std::unique_ptr<VoxelSource> openVolume(const std::filesystem::path& path, const
 /// The name of the format that the extension of `path` stands for, or nothing.
 std::optional<std::string> formatOfName(const std::filesystem::path& path);
 
+/// The same for a file or folder that is there, also by its first bytes.
+/// @throw IoError  it cannot be read
+std::optional<std::string> formatOfFile(const std::filesystem::path& path);
+
 struct FormatRow {
   std::string name;
   std::vector<std::string> extensions;  // in lower case, with their dot

@@ -139,6 +139,7 @@ struct VolumeReference {
   std::filesystem::path file;
   std::string grid;                        // of a file of grids: empty, "name" or "name[1]"
   std::string series = {};                 // of DICOM: the UID of a series, or its number in the list, from 1
+  std::vector<std::string> where = {};     // of DICOM: only slices with this "Tag=value"
   std::optional<RawLayout> raw = {};       // of a file without a header
   std::optional<glm::dvec3> spacing = {};  // world units between voxel centres, of formats that state none
   std::optional<glm::dvec3> origin = {};   // world position of the first voxel, of the same formats
@@ -186,8 +187,8 @@ struct Scene : SceneSettings {
 
 /// Reads a scene. A field that the text leaves out keeps its default; an unknown field is an error. File names are
 /// relative to the scene's folder. All fields are optional, and angles are in degrees:
-///   volume     file, grid, series, spacing [x, y, z], origin [x, y, z], raw {dims [x, y, z], type ("u8", ...),
-///              endian ("little", "big"), headerBytes, bitsStored}
+///   volume     file, grid, series, where ["Tag=value", ...], spacing [x, y, z], origin [x, y, z],
+///              raw {dims [x, y, z], type ("u8", ...), endian ("little", "big"), headerBytes, bitsStored}
 ///   camera     projection ("perspective", "orthographic"), size [width, height], fov, near, and either azimuth and
 ///              elevation around the volume, upAxis, frontAxis ("auto", "x", "-x", ...), zoom and pan [right, up], or
 ///              eye, lookAt, up and viewHeight
