@@ -73,6 +73,22 @@ void addPackingOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& com
       ->check(CLI::IsMember(listNames(kQuantise)));
 }
 
+void addTargetOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
+  CLI::Option* to =
+      app.add_option(
+             "--to", command->target,
+             "make a .vdb ready for blender, houdini, unreal or omniverse: its unit of length, the axis that is "
+             "up there, a grid called density, and but for houdini values from 0 (the background, by default "
+             "the border's) to 1 as half floats, with the inverse in the metadata; each change is said [none]")
+          ->check(CLI::IsMember(listNames(kTargets)));
+  app.add_option(
+         "--up", command->up,
+         "for --to: which axis of the input is up: x, y, z, -x, -y or -z [the patient's head; z of volumes, y of "
+         "files of grids]")
+      ->check(CLI::IsMember(listNames(kAxes)))
+      ->needs(to);
+}
+
 // Which grids, and what they are called.
 void addGridOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
   app.add_option("--name", command->options.names,
@@ -227,6 +243,8 @@ OutputOptions outputOptions(const ConvertCommand& command) {
   OutputOptions output;
   if (!command.codec.empty()) output.codec = parseName(kCodecs, command.codec, "--codec");
   if (!command.quantise.empty()) output.nano = NanoOptions{parseName(kQuantise, command.quantise, "--quantise")};
+  if (!command.target.empty()) output.target = parseName(kTargets, command.target, "--to");
+  if (!command.up.empty()) output.up = parseName(kAxes, command.up, "--up");
   output.creator = "umbrick " UMBRICK_VERSION;
   return output;
 }
@@ -257,6 +275,7 @@ void addConvertOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& com
   // In the order of the help.
   addFileOptions(app, command);
   addPackingOptions(app, command);
+  addTargetOptions(app, command);
   addGridOptions(app, command);
   addReadingOptions(app, command);
   addValueOptions(app, command);

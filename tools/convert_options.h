@@ -25,6 +25,7 @@ struct ConvertCommand {
   std::int64_t headerBytes = 0;
   int bitsStored = 0, threads = 0;
   std::optional<std::array<double, 3>> spacing, origin;
+  std::string target, up;                     // names of kTargets and kAxes, or empty
   std::string space;                          // "lps", "ras", "file", or empty
   std::string background;                     // "auto", a number, or empty
   std::optional<float> threshold;             // grid units

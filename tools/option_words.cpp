@@ -15,7 +15,7 @@ namespace umbrick::tools {
 namespace {
 
 // The fields of ConvertOptions that the library's messages name, longer ones before those that they begin with.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kWords{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kWords{{
     {"options.grids", "--grid"},
     {"options.isosurface", "--isosurface"},
     {"options.names", "--name"},
@@ -26,6 +26,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kWords{{
     {"output.nano bits", "--quantise "},
     {"output.nano", "--quantise"},
     {"build.background", "--background"},
+    {"output.target", "--to"},
     {"build.maxError", "--max-error"},
     {"source.backgroundFromBorder", "--background auto"},
     {"source.resample", "--resample"},

@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <future>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -39,23 +40,23 @@ void convertVolumeFrames(const std::vector<FrameFiles>& frames, const ConvertOpt
                          const FrameWritten& written) {
   // A thread opens and reads those that come while one is built and written. Each job is set before the source of its
   // frame is handed on.
-  std::vector<VolumeJob> opened(frames.size());
+  std::vector<std::unique_ptr<VolumeJob>> opened(frames.size());
   std::vector<ReadAhead::Open> volumes;
   for (std::size_t i = 0; i < frames.size(); ++i)
     volumes.push_back([&, i] {
-      VolumeJob job = std::move(volumeJobs({frames[i].input}, optionsOf(frames[i], options)).front());
-      auto source = openJob(job);
-      opened[i] = std::move(job);
+      std::vector<VolumeJob> job = volumeJobs({frames[i].input}, optionsOf(frames[i], options));
+      auto source = openJob(job.front());
+      opened[i] = std::make_unique<VolumeJob>(std::move(job.front()));
       return source;
     });
   ReadAhead ahead(std::move(volumes));
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const ConvertReport report = naming(frames[i], [&] {
       const auto source = ahead.next();
-      buildVolume(*source, opened[i]);
-      return writeVolumes({&opened[i], 1}, frames[i].output);
+      buildVolume(*source, *opened[i]);
+      return writeVolumes({opened[i].get(), 1}, frames[i].output);
     });
-    opened[i] = {};
+    opened[i].reset();
     written(frames[i], report);
   }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/grid_job.h"
 
+#include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -8,6 +10,7 @@
 #include "convert/check_verified.h"
 #include "convert/pass.h"
 #include "convert/replace_by_isosurface.h"
+#include "convert/target_grid.h"
 #include "convert/volume_source.h"
 #include "convert/write_output.h"
 #include "umbrick/convert/holds_grids.h"
@@ -105,13 +108,19 @@ bool keepsLevelSet(const openvdb::FloatGrid& grid, const BuildOptions& build) {
 }
 
 // Makes a grid sparse, and a level set of it where that is asked for.
-openvdb::FloatGrid::ConstPtr build(GridJob& job, std::size_t i, const BuildOptions& options) {
+openvdb::FloatGrid::Ptr build(GridJob& job, std::size_t i, BuildOptions options) {
   ConvertedGrid& row = job.report.grids[i];
   const ScalarGrid source =
       job.grids.empty() ? readFiltered(job, row.label, row.masked, row.notes) : std::exchange(job.grids[i], {});
   if (source.grid->getGridClass() != openvdb::GRID_LEVEL_SET)
     refuseKept(job.input, options, options.background.value_or(source.grid->background()),
                options.background ? "as was asked for" : "that of the grid");
+  // What lies below the background would be below the 0 of the target.
+  if (const auto target = job.options.output.target; target && traitsOf(*target).unitValues &&
+                                                     !job.options.isosurface &&
+                                                     source.grid->getGridClass() != openvdb::GRID_LEVEL_SET)
+    options.clipBelow = std::max(options.clipBelow.value_or(-std::numeric_limits<float>::infinity()),
+                                 options.background.value_or(source.grid->background()));
   row.keptLevelSet = keepsLevelSet(*source.grid, options);
   BuiltGrid built = sparsifyGrid(source, options);
   if (job.options.isosurface) row.isosurface = replaceByIsosurface(job.input, *job.options.isosurface, built);
@@ -120,16 +129,38 @@ openvdb::FloatGrid::ConstPtr build(GridJob& job, std::size_t i, const BuildOptio
 }
 
 // Reads a grid back from the file and compares it with the one it was made of.
-void verify(GridJob& job, std::size_t i, const openvdb::FloatGrid& grid, const fs::path& written,
-            const fs::path& output) {
+void verify(GridJob& job, std::size_t i, const openvdb::FloatGrid& grid, const std::optional<ValueMap>& map,
+            const fs::path& written, const fs::path& output) {
   ConvertedGrid& row = job.report.grids[i];
   const auto back = readBack(written, grid, i);
   BuildOptions options = job.options.build;
   options.progress = beginPass(job.options.progress, ConvertStage::verifying, job.input);
   std::optional<std::uint64_t> again;
   std::vector<std::string> notesAgain;
-  row.verified = verifyGrid(readFiltered(job, row.label, again, notesAgain), *back, options, row.build.quantising.max);
+  row.verified = verifyGrid(readFiltered(job, row.label, again, notesAgain), *unmapped(back, map), options,
+                            row.build.quantising.max);
   checkVerified(output, row.label, *row.verified, row.build);
+}
+
+// Makes the grids ready for a target. @return how their values are found again
+std::vector<std::optional<ValueMap>> prepareForTarget(GridJob& job, const std::vector<openvdb::FloatGrid::Ptr>& grids) {
+  std::vector<std::optional<ValueMap>> maps(grids.size());
+  const OutputOptions& output = job.options.output;
+  if (!output.target) return maps;
+  std::vector<openvdb::FloatGrid*> changed;
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    ConvertedGrid& row = job.report.grids[i];
+    std::optional<double> left;
+    if (job.options.build.maxError) left = *job.options.build.maxError - row.build.maxError;
+    const TargetChange change = prepareFor(output, /*foreign=*/true, left, *grids[i]);
+    maps[i] = change.map;
+    if (change.half) row.build.storage = "half";
+    if (!job.options.isosurface) addQuantising(row.build, change.error, /*activeOnly=*/true);
+    row.notes.insert(row.notes.end(), change.notes.begin(), change.notes.end());
+    changed.push_back(grids[i].get());
+  }
+  if (const std::string line = nameFor(*output.target, changed); !line.empty()) job.report.notes.push_back(line);
+  return maps;
 }
 
 }  // namespace
@@ -156,12 +187,14 @@ ConvertReport writeGridJob(GridJob& job, const fs::path& output) {
   checkGridCount(output, labels);
   BuildOptions options = job.options.build;
   options.progress = beginPass(job.options.progress, ConvertStage::converting, job.input);
-  std::vector<openvdb::FloatGrid::ConstPtr> grids;
-  for (std::size_t i = 0; i < job.report.grids.size(); ++i) grids.push_back(build(job, i, options));
+  std::vector<openvdb::FloatGrid::Ptr> built;
+  for (std::size_t i = 0; i < job.report.grids.size(); ++i) built.push_back(build(job, i, options));
+  const std::vector<std::optional<ValueMap>> maps = prepareForTarget(job, built);
+  const std::vector<openvdb::FloatGrid::ConstPtr> grids(built.begin(), built.end());
   const NanoCheck check = [&](const fs::path& written, const std::vector<QuantiseError>& quantised) {
     for (std::size_t i = 0; i < grids.size(); ++i) {
       if (!quantised.empty()) addQuantising(job.report.grids[i].build, quantised[i], /*activeOnly=*/true);
-      if (job.options.verify) verify(job, i, *grids[i], written, output);
+      if (job.options.verify) verify(job, i, *grids[i], maps[i], written, output);
     }
   };
   job.report.output = output;

@@ -50,19 +50,46 @@ void judgeBackground(const openvdb::FloatGrid& grid, ConvertedGrid& report) {
   if (static_cast<double>(active) > kNearlyAll * static_cast<double>(all)) report.borderMedian = borderMedian(grid);
 }
 
-// The background is the border's where that is asked for, or where limits would keep the usual one.
+bool mapsValues(const ConvertOptions& options) {
+  return options.output.target && traitsOf(*options.output.target).unitValues && !options.isosurface;
+}
+
+// The background is the border's where that is asked for, where limits would keep the usual one, or where it will be
+// the 0 of a target.
 void settleBackground(VolumeJob& job) {
   BuildOptions& build = job.options.build;
   const bool asked = job.options.source.backgroundFromBorder, given = build.background.has_value();
   if (!asked) refuseKept(job.input, build, given ? *build.background : -kInfinity, "as was asked for");
-  const bool usualFits = given || !keepsBackground(build, 0);
+  const bool forTarget = !given && mapsValues(job.options) && !isPipe(job.input);
+  const bool usualFits = given || (!keepsBackground(build, 0) && !forTarget);
   if (!asked && usualFits) return;
   if (!asked && isPipe(job.input)) refuseKept(job.input, build, 0, "the usual one");
-  job.report.background = findBackground(job.input, job.options.source);
+  job.report.background = asked || !forTarget ? findBackground(job.input, job.options.source)
+                                              : typicalBorder(job.input, job.options.source);
   build.background = job.report.background->value;
   refuseKept(job.input, build, *build.background, "as on the border of the volume");
-  if (!asked)
+  if (!asked && !forTarget)
     job.settled = "the background is that of the border of the volume, since the usual 0 lies above the limit";
+}
+
+// Makes the grids ready for a target.
+void prepareForTarget(std::span<VolumeJob> jobs, ConvertReport& report) {
+  const OutputOptions& output = jobs.front().options.output;
+  if (!output.target) return;
+  std::vector<openvdb::FloatGrid*> grids;
+  for (VolumeJob& job : jobs) {
+    BuildReport& build = job.report.build;
+    std::optional<double> left;
+    if (job.options.build.maxError) left = *job.options.build.maxError - build.maxError;
+    const TargetChange change = prepareFor(output, /*foreign=*/false, left, *job.grid);
+    job.map = change.map;
+    if (change.half) build.storage = "half";
+    if (!job.options.isosurface) addQuantising(build, change.error, /*activeOnly=*/false);
+    job.report.notes.insert(job.report.notes.end(), change.notes.begin(), change.notes.end());
+    grids.push_back(job.grid.get());
+  }
+  if (const std::string line = nameFor(*output.target, grids); !line.empty()) report.notes.push_back(line);
+  for (VolumeJob& job : jobs) job.report.label = job.grid->getName();
 }
 
 // Reads the grid of the job back from the file and compares it with the volume.
@@ -71,7 +98,7 @@ void verify(VolumeJob& job, std::size_t place, const fs::path& written, const fs
   ReadNotes again;
   const auto source = openFiltered(job, again);
   const BuildOptions build = passOf(job, ConvertStage::verifying, source->info());
-  job.report.verified = verifyGrid(*source, *back, build, job.report.build.quantising.max);
+  job.report.verified = verifyGrid(*source, *unmapped(back, job.map), build, job.report.build.quantising.max);
   checkVerified(output, build.name, *job.report.verified, job.report.build);
 }
 
@@ -95,6 +122,9 @@ std::vector<VolumeJob> volumeJobs(const std::vector<fs::path>& inputs, const Con
 std::unique_ptr<VoxelSource> openJob(VolumeJob& job) {
   if (job.options.verify) expectFile(job.input, "options.verify");
   settleBackground(job);
+  // What lies below the background would be below the 0 of the target.
+  if (BuildOptions& build = job.options.build; mapsValues(job.options))
+    build.clipBelow = std::max(build.clipBelow.value_or(-kInfinity), build.background.value_or(0));
   return openFiltered(job, *job.notes);
 }
 
@@ -125,6 +155,10 @@ void buildVolume(VoxelSource& source, VolumeJob& job) {
 }
 
 ConvertReport writeVolumes(std::span<VolumeJob> jobs, const fs::path& output) {
+  ConvertReport report;
+  for (VolumeJob& job : jobs)
+    if (!job.options.isosurface) judgeBackground(*job.grid, job.report);
+  prepareForTarget(jobs, report);
   std::vector<openvdb::FloatGrid::ConstPtr> grids;
   for (const VolumeJob& job : jobs) grids.push_back(job.grid);
   const NanoCheck check = [&](const fs::path& written, const std::vector<QuantiseError>& quantised) {
@@ -136,10 +170,7 @@ ConvertReport writeVolumes(std::span<VolumeJob> jobs, const fs::path& output) {
   const VolumeJob& first = jobs.front();
   // Distances are no values of the volume.
   const auto type = first.report.isosurface ? VoxelType::f32 : first.report.volumeType;
-  ConvertReport report;
   report.output = output;
-  for (VolumeJob& job : jobs)
-    if (!job.options.isosurface) judgeBackground(*job.grid, job.report);
   report.bytesOut = writeOutput(output, first.options.output, grids, {}, type, check, report.notes);
   for (VolumeJob& job : jobs) {
     report.bytesIn += job.bytesIn;

@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "convert/target_grid.h"
 #include "convert/volume_source.h"
 #include "umbrick/convert/convert_options.h"
 #include "umbrick/convert/convert_report.h"
@@ -21,7 +23,8 @@ struct VolumeJob {
   std::string unit;
   std::unique_ptr<ReadNotes> notes = std::make_unique<ReadNotes>();  // sources hold on to its place
   std::shared_ptr<openvdb::FloatGrid> grid;
-  std::string settled;  // how its background was found where nobody asked for it; becomes a note
+  std::optional<ValueMap> map;  // of the values of the grid, where a target asks for one
+  std::string settled;          // how its background was found where nobody asked for it; becomes a note
   std::int64_t bytesIn = 0;
   ConvertedGrid report;
 };

@@ -60,6 +60,17 @@ std::unique_ptr<VoxelSource> openFiltered(const fs::path& input, const SourceOpt
   return options.resample ? resampleSource(std::move(source), *options.resample, notes.resampled) : std::move(source);
 }
 
+BorderMode typicalBorder(const fs::path& input, const SourceOptions& options) {
+  constexpr std::uint64_t kLeastShare = 100;  // one border voxel in so many has a value that stands out
+  ReadNotes notes;
+  SourceOptions whole = options;
+  whole.mask.clear();  // what it leaves out becomes background itself
+  whole.resample.reset();
+  BorderMode mode = borderValues(*openFiltered(input, whole, 0, notes));
+  if (mode.voxels * kLeastShare < mode.border) mode.value = mode.median;
+  return mode;
+}
+
 BorderMode findBackground(const fs::path& input, const SourceOptions& options) {
   expectFile(input, "source.backgroundFromBorder");
   return borderMode(*cropped(options, openInput(input, options.open)));

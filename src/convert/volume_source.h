@@ -34,6 +34,10 @@ ScalarGrid readMaskGrid(const std::filesystem::path& mask);
 /// Finds the value that most of the border of the volume has.
 BorderMode findBackground(const std::filesystem::path& input, const SourceOptions& options);
 
+/// Finds the value that most of the border has, or else the median of the border: measured or simulated floats seldom
+/// repeat, and one that does by chance says nothing.
+BorderMode typicalBorder(const std::filesystem::path& input, const SourceOptions& options);
+
 /// Whether an input is there that can be read but once.
 bool isPipe(const std::filesystem::path& input);
 

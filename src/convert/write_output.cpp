@@ -35,6 +35,8 @@ void checkOutput(const fs::path& path, const OutputOptions& options, const std::
     throw OptionsError(path.string() + ": output.codec is for .vdb, not for " + path.extension().string());
   if (options.nano && path.extension() != ".nvdb")
     throw OptionsError(path.string() + ": output.nano is for .nvdb, not for " + path.extension().string());
+  if (options.target && path.extension() != ".vdb")
+    throw OptionsError(path.string() + ": output.target is for .vdb, not for " + path.extension().string());
   if (isDense(path) && inputs.size() > 1)
     throw OptionsError(path.string() + ": expected one input for " + path.extension().string() + ", found " +
                        std::to_string(inputs.size()));

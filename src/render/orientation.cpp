@@ -4,34 +4,12 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <numbers>
-#include <optional>
 #include <vector>
 
 #include "umbrick/core/error.h"
 
 namespace umbrick {
 namespace {
-
-Axis signedAxis(int axis, bool negative) {
-  constexpr Axis kAll[3][2]{{Axis::x, Axis::minusX}, {Axis::y, Axis::minusY}, {Axis::z, Axis::minusZ}};
-  return kAll[axis][negative ? 1 : 0];
-}
-
-// Finds superior and anterior in three letters, each of which says where an axis points: "LPS", "RAS".
-std::optional<Orientation> anatomyOf(const std::string& space) {
-  if (space.size() != 3) return std::nullopt;
-  Orientation found{.up = Axis::automatic, .front = Axis::automatic, .anatomy = true, .reason = "the file's " + space};
-  Axis left = Axis::automatic;
-  for (int axis = 0; axis < 3; ++axis) {
-    const char letter = space[static_cast<std::size_t>(axis)];
-    if (letter == 'S' || letter == 'I') found.up = signedAxis(axis, letter == 'I');
-    if (letter == 'A' || letter == 'P') found.front = signedAxis(axis, letter == 'P');
-    if (letter == 'L' || letter == 'R') left = signedAxis(axis, letter == 'R');
-  }
-  if (found.up == Axis::automatic || found.front == Axis::automatic || left == Axis::automatic) return std::nullopt;
-  found.mirrored = glm::dot(glm::cross(axisDirection(found.up), axisDirection(found.front)), axisDirection(left)) < 0;
-  return found;
-}
 
 struct View {
   std::string_view name;
@@ -45,16 +23,6 @@ constexpr View kViews[]{{"front", false, 0, 0},   {"back", false, 2, 0},     {"l
                         {"right", true, -1, 0},   {"superior", true, 0, 1},  {"inferior", true, 0, -1}};
 
 }  // namespace
-
-Orientation orientationOf(const ScalarGrid& grid, bool foreign, const std::string& creator) {
-  if (const auto anatomy = anatomyOf(grid.metadata("space"))) return *anatomy;
-  if (!foreign || !grid.metadata("source_format").empty()) return {.reason = "the usual of scans"};
-  if (creator.find("Blender") != std::string::npos) return {.reason = "z is up in Blender"};
-  const glm::dvec3 extent = grid.worldBounds().extent();
-  constexpr double kClearlyTaller = 1.2;
-  if (extent.z > kClearlyTaller * extent.y) return {.reason = "the grid is taller along z than along y"};
-  return {.up = Axis::y, .front = usualFront(Axis::y), .reason = "y is up in most files of grids"};
-}
 
 Orbit settledOrbit(const Orbit& orbit, const Orientation& orientation) {
   Orbit settled = orbit;

@@ -11,6 +11,10 @@ if(UMBRICK_TOOLS)
   target_sources(umbrick_tools_tests PRIVATE ${PROJECT_SOURCE_DIR}/tools/progress_pace.cpp)
   target_include_directories(umbrick_tools_tests PRIVATE ${PROJECT_SOURCE_DIR})
 
+  add_test(NAME "tools: Blender reads what --to blender makes"
+           COMMAND ${CMAKE_CURRENT_LIST_DIR}/blender_reads $<TARGET_FILE:umbrick_tool> ${PROJECT_SOURCE_DIR}/assets)
+  set_tests_properties("tools: Blender reads what --to blender makes" PROPERTIES SKIP_RETURN_CODE 77)
+
   add_test(NAME "tools: tools/README.md quotes what --help prints"
            COMMAND ${PROJECT_SOURCE_DIR}/tools/make_readme --check $<TARGET_FILE:umbrick_tool>)
 endif()

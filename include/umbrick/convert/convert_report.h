@@ -29,7 +29,7 @@ struct ConvertedGrid {
   std::optional<UsualValue> usual;
   /// Of a volume nearly all of which is active: the median of its border, grid units.
   std::optional<float> borderMedian;
-  std::optional<std::uint64_t> masked;   // voxels that the mask made background
+  std::optional<std::uint64_t> masked;  // voxels that the mask made background
   std::optional<ResampleReport> resampled;
   std::optional<IsosurfaceReport> isosurface;
   std::optional<VerifyReport> verified;

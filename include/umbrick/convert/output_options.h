@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "umbrick/convert/target.h"
+#include "umbrick/core/axis.h"
 #include "umbrick/grid/vdb_codec.h"
 #include "umbrick/vdb/write_volume.h"
 
@@ -18,6 +20,10 @@ struct OutputOptions {
   /// Of a .nvdb only; 32-bit floats where none are given. With NanoValues::adaptive and no maxError of its own, the
   /// values take half of BuildOptions::maxError, and what is left out or merged the other half.
   std::optional<NanoOptions> nano = {};
+  /// Of a .vdb only: place, names and values are made ready for this program, see TargetTraits. Values of a fog that
+  /// are mapped to 0..1 lose what lies below the background, which is the border's where none is given.
+  std::optional<Target> target = {};
+  Axis up = Axis::automatic;        // which axis of the input is up, for the target; automatic: see orientationOf
   std::string creator = "umbrick";  // is kept as metadata "creator" of a .vdb whose input states none
 };
 
