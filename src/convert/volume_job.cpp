@@ -54,14 +54,15 @@ bool mapsValues(const ConvertOptions& options) {
   return options.output.target && traitsOf(*options.output.target).unitValues && !options.isosurface;
 }
 
-// The background is the border's where that is asked for, where limits would keep the usual one, or where it will be
-// the 0 of a target.
+// The background is the border's where that is asked for, where limits would keep the usual one or a surface would
+// lie below it, or where it will be the 0 of a target.
 void settleBackground(VolumeJob& job) {
   BuildOptions& build = job.options.build;
   const bool asked = job.options.source.backgroundFromBorder, given = build.background.has_value();
   if (!asked) refuseKept(job.input, build, given ? *build.background : -kInfinity, "as was asked for");
   const bool forTarget = !given && mapsValues(job.options) && !isPipe(job.input);
-  const bool usualFits = given || (!keepsBackground(build, 0) && !forTarget);
+  const bool closed = !job.options.isosurface || job.options.isosurface->value > 0;
+  const bool usualFits = given || (!keepsBackground(build, 0) && !forTarget && closed);
   if (!asked && usualFits) return;
   if (!asked && isPipe(job.input)) refuseKept(job.input, build, 0, "the usual one");
   job.report.background = asked || !forTarget ? findBackground(job.input, job.options.source)
@@ -69,7 +70,9 @@ void settleBackground(VolumeJob& job) {
   build.background = job.report.background->value;
   refuseKept(job.input, build, *build.background, "as on the border of the volume");
   if (!asked && !forTarget)
-    job.settled = "the background is that of the border of the volume, since the usual 0 lies above the limit";
+    job.settled =
+        "the background is that of the border of the volume, since the usual 0 lies above the limit or the value of "
+        "the surface";
 }
 
 // Makes the grids ready for a target.

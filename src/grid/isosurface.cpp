@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/grid/isosurface.h"
 
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/FastSweeping.h>
 #include <openvdb/tools/Interpolation.h>
-#include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/Morphology.h>
+#include <openvdb/tools/Prune.h>
 #include <openvdb/tools/SignedFloodFill.h>
-#include <openvdb/tools/VolumeToMesh.h>
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
@@ -14,6 +16,8 @@
 
 #include "grid/isosurface_error.h"
 #include "grid/sparse_rule.h"
+#include "grid/surface_band.h"
+#include "grid/surface_distance.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/range.h"
 #include "umbrick/grid/affine_matrix.h"
@@ -23,8 +27,6 @@ namespace umbrick {
 namespace {
 
 using openvdb::FloatGrid;
-using Points = std::vector<openvdb::Vec3s>;
-using Quads = std::vector<openvdb::Vec4I>;
 
 template <class... Parts>
 [[noreturn]] void refuse(const ScalarGrid& volume, const Parts&... parts) {
@@ -55,13 +57,6 @@ Range rangeOf(const openvdb::FloatTree& tree) {
   return range;
 }
 
-// Meshes the surface in index coordinates of the volume, since world coordinates of 32 bits are too coarse far
-// from the origin.
-void mesh(const FloatGrid& volume, float value, Points& points, Quads& quads) {
-  const auto unplaced = FloatGrid::create(std::const_pointer_cast<openvdb::FloatTree>(volume.treePtr()));
-  openvdb::tools::volumeToMesh(*unplaced, points, quads, value);
-}
-
 // Returns a transform whose voxels are cubes of the smallest spacing, as a matrix for column vectors from
 // index to world.
 glm::dmat4 cubicPlace(const glm::dmat4& place) {
@@ -90,20 +85,59 @@ openvdb::math::Transform::Ptr transformOf(const FloatGrid& volume, const glm::dm
   return openvdb::math::Transform::createLinearTransform(rowMatrix(place));
 }
 
-// Makes distances, which have no sign yet, negative where the volume has the value or more.
-void setSigns(FloatGrid& levelSet, const FloatGrid& volume, float value, const glm::dmat4& toVolume) {
-  openvdb::tree::LeafManager<openvdb::FloatTree> leaves(levelSet.tree());
+// Returns the value at a voxel of another lattice.
+template <class Access>
+float sampleAt(const Access& volume, const glm::dmat4& toVolume, const openvdb::Coord& at) {
+  const glm::dvec4 p = toVolume * glm::dvec4(at.x(), at.y(), at.z(), 1);
+  return openvdb::tools::BoxSampler::sample(volume, openvdb::Vec3d(p.x, p.y, p.z));
+}
+
+// Returns the volume at some voxels of another lattice, which are active.
+FloatGrid::Ptr sampled(const FloatGrid& volume, const openvdb::MaskTree& band, const glm::dmat4& toVolume) {
+  const auto fog =
+      FloatGrid::create(std::make_shared<openvdb::FloatTree>(band, volume.background(), openvdb::TopologyCopy()));
+  openvdb::tree::LeafManager<openvdb::FloatTree> leaves(fog->tree());
   leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
     const auto access = volume.getConstAccessor();
+    for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) voxel.setValue(sampleAt(access, toVolume, voxel.getCoord()));
+  });
+  return fog;
+}
+
+// Makes a band wider, by sweeps that solve the eikonal equation to first order (OpenVDB's FastSweeping.h, after Zhao,
+// "A fast sweeping method for Eikonal equations", 2004).
+FloatGrid::Ptr widened(const FloatGrid& band, float halfWidth) {
+  const int more = static_cast<int>(std::ceil(halfWidth - band.background()));
+  const FloatGrid::Ptr wide = openvdb::tools::dilateSdf(band, more, openvdb::tools::NN_FACE_EDGE_VERTEX);
+  openvdb::tools::changeLevelSetBackground(wide->tree(), halfWidth);
+  openvdb::tree::LeafManager<openvdb::FloatTree> leaves(wide->tree());
+  leaves.foreach ([halfWidth](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
     for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
-      const openvdb::Coord at = voxel.getCoord();
-      const glm::dvec4 p = toVolume * glm::dvec4(at.x(), at.y(), at.z(), 1);
-      const float here = openvdb::tools::BoxSampler::sample(access, openvdb::Vec3d(p.x, p.y, p.z));
-      const float distance = std::abs(*voxel);
-      voxel.setValue(here >= value ? -distance : distance);
+      if (std::abs(*voxel) < halfWidth) continue;
+      voxel.setValue(std::copysign(halfWidth, *voxel));
+      voxel.setValueOff();
     }
   });
-  openvdb::tools::signedFloodFill(levelSet.tree());
+  openvdb::tools::pruneInactive(wide->tree());
+  openvdb::tools::signedFloodFill(wide->tree());
+  return wide;
+}
+
+// Distances in voxels become distances in the world.
+void scale(FloatGrid& levelSet, double voxel) {
+  openvdb::tree::LeafManager<openvdb::FloatTree> leaves(levelSet.tree());
+  leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
+    for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
+      leaf.setValueOnly(i, static_cast<float>(voxel * double(leaf.getValue(i))));
+  });
+  auto tile = levelSet.tree().beginValueAll();
+  tile.setMaxDepth(openvdb::FloatTree::ValueAllIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    const bool active = tile.isValueOn();
+    tile.setValue(static_cast<float>(voxel * double(*tile)));
+    tile.setActiveState(active);
+  }
+  levelSet.tree().root().setBackground(static_cast<float>(voxel * double(levelSet.background())), false);
 }
 
 void describeSurface(FloatGrid& levelSet, const FloatGrid& volume, const IsosurfaceOptions& options,
@@ -122,26 +156,35 @@ void describeSurface(FloatGrid& levelSet, const FloatGrid& volume, const Isosurf
 Isosurface makeIsosurface(const ScalarGrid& volume, const IsosurfaceOptions& options) {
   openvdb::initialize();
   check(volume, options);
-  Points points;
-  Quads quads;
-  mesh(*volume.grid, options.value, points, quads);
-  if (quads.empty()) {
+  const glm::dmat4 before = volume.indexToWorld(), place = cubicPlace(before);
+  const glm::dmat4 toLevelSet = place == before ? glm::dmat4(1) : glm::inverse(place) * before;
+  const std::uint64_t crossings = countCrossings(volume.grid->tree(), options.value);
+  if (crossings == 0) {
     const Range range = rangeOf(volume.grid->tree());
     refuse(volume, "expected a value that the volume crosses, from ", range.min, " to ", range.max, ", found ",
            options.value);
   }
-  const glm::dmat4 before = volume.indexToWorld(), place = cubicPlace(before);
-  const glm::dmat4 toLevelSet = place == before ? glm::dmat4(1) : glm::inverse(place) * before;
-  for (openvdb::Vec3s& point : points) {
-    const glm::dvec4 p = toLevelSet * glm::dvec4(point[0], point[1], point[2], 1);
-    point = openvdb::Vec3s(float(p.x), float(p.y), float(p.z));
+  const bool same = place == before;
+  const glm::dmat4 toVolume = glm::inverse(toLevelSet);
+  const auto isInside = [&]() -> std::function<bool(const openvdb::Coord&)> {
+    return [access = volume.grid->getConstAccessor(), toVolume, same, value = options.value](const openvdb::Coord& at) {
+      return (same ? access.getValue(at) : sampleAt(access, toVolume, at)) >= value;
+    };
+  };
+  std::vector<LeafDiscs> discs = surfaceDiscs(volume.grid->tree(), options.value, /*activeOnly=*/false, toLevelSet);
+  if (!same) {
+    // Edges of the volume are longer than those of the level set, which needs a disc for each of its own edges too.
+    openvdb::MaskTree band = surfaceVoxels(volume.grid->tree(), options.value, toLevelSet);
+    openvdb::tools::dilateActiveValues(band, 1);
+    const auto fog = sampled(*volume.grid, band, toVolume);
+    const auto between = surfaceDiscs(fog->tree(), options.value, /*activeOnly=*/true);
+    discs.insert(discs.end(), between.begin(), between.end());
   }
-  const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec4I> surface(points, quads);
   Isosurface out;
-  out.grid = openvdb::tools::meshToVolume<FloatGrid>(
-      surface, *transformOf(*volume.grid, before, place), options.halfWidth, options.halfWidth,
-      openvdb::tools::UNSIGNED_DISTANCE_FIELD | openvdb::tools::DISABLE_RENORMALIZATION);
-  setSigns(*out.grid, *volume.grid, options.value, glm::inverse(toLevelSet));
+  out.grid = distanceBand(discs, std::min(options.halfWidth, kMostDirect), isInside);
+  if (options.halfWidth > kMostDirect) out.grid = widened(*out.grid, options.halfWidth);
+  out.grid->setTransform(transformOf(*volume.grid, before, place));
+  scale(*out.grid, glm::length(glm::dvec3(place[0])));
   measureIsosurface(volume.grid->tree(), options.value, *out.grid, toLevelSet, out.report);
   out.report.voxelSize = glm::length(glm::dvec3(place[0]));
   out.report.activeVoxels = out.grid->activeVoxelCount();

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "grid/crossing_edges.h"
 #include "grid/sparse_rule.h"
 
 namespace umbrick {
@@ -30,20 +31,10 @@ class Measure {
           const glm::dmat4& toLevelSet)
       : volume_(volume), levelSet_(levelSet), value_(value), toLevelSet_(toLevelSet) {}
 
-  // Adds the edges from a voxel to those behind it along each axis. Edges to voxels before it are added too where no
-  // leaf is that counts them as its own.
-  void addEdges(const Coord& at, float here, Crossings& sum) {
-    for (int axis = 0; axis < 3; ++axis)
-      for (const int side : {-1, 1}) {
-        Coord next = at;
-        next[axis] += side;
-        if (side > 0 || !volume_.probeConstLeaf(next)) addEdge(at, here, next, sum);
-      }
-  }
-
-  void addEdge(const Coord& at, float here, const Coord& next, Crossings& sum) {
-    const float there = volume_.getValue(next);
-    if ((here < value_) == (there < value_)) return;
+  void add(const Coord& at, int axis, int side, Crossings& sum) const {
+    Coord next = at;
+    next[axis] += side;
+    const float here = volume_.getValue(at), there = volume_.getValue(next);
     const double share = (double(value_) - double(here)) / (double(there) - double(here));
     const openvdb::Vec3d from = at.asVec3d(), point = from + (next.asVec3d() - from) * share;
     const glm::dvec4 p = toLevelSet_ * glm::dvec4(point[0], point[1], point[2], 1);
@@ -52,27 +43,11 @@ class Measure {
     ++sum.count;
   }
 
-  bool inLeaf(const Coord& at) { return volume_.probeConstLeaf(at) != nullptr; }
-
  private:
   Access volume_, levelSet_;
   float value_;
   const glm::dmat4& toLevelSet_;
 };
-
-// Adds the edges that cross a face of a tile with no leaf beyond it.
-void addTile(Measure& measure, const openvdb::CoordBBox& box, float here, Crossings& sum) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int side : {-1, 1}) {
-      openvdb::CoordBBox face = box;
-      (side > 0 ? face.min() : face.max())[axis] = side > 0 ? box.max()[axis] : box.min()[axis];
-      for (const Coord& at : face) {
-        Coord next = at;
-        next[axis] += side;
-        if (!measure.inLeaf(next)) measure.addEdge(at, here, next, sum);
-      }
-    }
-}
 
 }  // namespace
 
@@ -82,20 +57,21 @@ void measureIsosurface(const openvdb::FloatTree& volume, float value, const open
   Crossings all = tbb::parallel_deterministic_reduce(
       leaves.leafRange(16), Crossings{},
       [&](const auto& range, Crossings sum) {
-        Measure measure(volume, value, levelSet.tree(), toLevelSet);
+        const Measure measure(volume, value, levelSet.tree(), toLevelSet);
+        CrossingEdges edges(volume, value);
         for (auto leaf = range.begin(); leaf; ++leaf)
-          for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
-            measure.addEdges(leaf->offsetToGlobalCoord(i), leaf->getValue(i), sum);
+          edges.inLeaf(*leaf, [&](const Coord& at, int axis, int side) { measure.add(at, axis, side, sum); });
         return sum;
       },
       [](Crossings a, const Crossings& b) {
         a.add(b);
         return a;
       });
-  Measure measure(volume, value, levelSet.tree(), toLevelSet);
-  auto tile = volume.cbeginValueOn();
-  tile.setMaxDepth(openvdb::FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) addTile(measure, tile.getBoundingBox(), *tile, all);
+  const Measure measure(volume, value, levelSet.tree(), toLevelSet);
+  CrossingEdges edges(volume, value);
+  eachTileOf(volume, [&](const openvdb::CoordBBox& box, float here) {
+    edges.inTile(box, here, [&](const Coord& at, int axis, int side) { measure.add(at, axis, side, all); });
+  });
   const double voxel = levelSet.voxelSize()[0];
   report.crossings = all.count;
   report.maxError = all.distance.max / voxel;

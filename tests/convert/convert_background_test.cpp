@@ -101,3 +101,14 @@ TEST_CASE("A result that is mostly one value, or nearly all active, is reported"
   CHECK(!sparse.usual);
   CHECK(!sparse.borderMedian);
 }
+
+TEST_CASE("A surface below the usual background gets that of the border", "[convert]") {
+  const Scan scan;
+  ConvertOptions options = noisyOptions();
+  options.isosurface = IsosurfaceOptions{-300};
+  const ConvertReport report = convert({scan.input}, scan.out, options);
+  CHECK(report.grids[0].background->value == -1000);
+  CHECK_THAT(report.grids[0].notes.at(0), Contains("border"));
+  CHECK(report.grids[0].isosurface->crossings == 6 * 16 * 16);
+  CHECK(readScalarGrid(scan.out).isLevelSet());
+}

@@ -90,6 +90,38 @@ TEST_CASE("Voxels that are not cubes become cubes of the smallest spacing", "[gr
   }
 }
 
+// Beyond five voxels distances are swept, to first order: some percent of what is beyond.
+TEST_CASE("A wide band reaches as far as it is asked to", "[grid]") {
+  const glm::dvec3 centre(40);
+  const Isosurface surface = makeIsosurface(ball({81, 81, 81}, glm::dmat4(1), centre, 20), {5000, 12});
+  CHECK(surface.grid->background() == 12);
+  TestRandom random(5);
+  double worst = 0;
+  for (int i = 0; i < 400; ++i) {
+    const glm::dvec3 direction = glm::normalize(random.point(glm::dvec3(-1), glm::dvec3(1)));
+    for (const double offset : {-10.0, -7.0, -4.0, 4.0, 7.0, 10.0})
+      worst = std::max(worst, std::abs(distanceAt(surface, centre + (20 + offset) * direction) - offset));
+  }
+  CHECK(worst < 0.35);
+  CHECK(distanceAt(surface, centre) == -12);
+  CHECK(surface.report.maxError < 0.1);
+}
+
+// Along each edge of the volume the value is crossed where it should be, whatever the values: thin sheets, lone voxels
+// and noise keep their surface, also between the voxels of another lattice.
+TEST_CASE("The isosurface of noise keeps all of its crossings", "[grid]") {
+  TestRandom random(9);
+  const auto noise = [&](const glm::ivec3&) { return random.uniform(0, 1); };
+  for (const glm::dvec3& spacing : {glm::dvec3(1), glm::dvec3(1, 1, 2.7)}) {
+    const ScalarGrid volume =
+        withTransform(makeFilled({20, 20, 20}, glm::ivec3(0), noise), glm::scale(glm::dmat4(1), spacing));
+    const Isosurface surface = makeIsosurface(volume, {0.5f});
+    CHECK(surface.report.crossings > 8000);
+    CHECK(surface.report.maxError < 0.5);
+    CHECK(surface.report.rmsError < 0.08);
+  }
+}
+
 TEST_CASE("Cavities are outside, and so is what lies beyond the faces of a volume", "[grid]") {
   // The volume is a shell of radii 6 to 13 around (15, 15, 15), cut by the face x = 15.
   const auto value = [](const glm::ivec3& at) {

@@ -29,9 +29,10 @@ struct Isosurface {
 };
 
 /// Makes a grid of signed distance in world units, negative inside, of OpenVDB's class "level set". It has the metadata
-/// of the volume, and isosurface_value, isosurface_error_max and isosurface_error_rms (in voxels). OpenVDB's tools mesh
-/// the surface and measure distances to the mesh. The side of the surface on which a voxel lies is told by its value,
-/// so cavities are outside too.
+/// of the volume, and isosurface_value, isosurface_error_max and isosurface_error_rms (in voxels). Each edge between two
+/// voxels that crosses the value gets a small disc of the surface, at right angles to the gradient, and a voxel the
+/// distance to the nearest disc, up to five voxels from the surface; what is farther is swept from there by OpenVDB's
+/// dilateSdf. The side of the surface on which a voxel lies is told by its value, so cavities are outside too.
 ///
 /// The voxels of a level set are cubes. A grid whose voxels are cubes keeps its transform, rotation included. For
 /// another grid the cubes have its smallest spacing and lie along its own axes where these are at right angles,
