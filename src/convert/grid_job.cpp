@@ -184,7 +184,7 @@ void readGrids(GridJob& job) {
 ConvertReport writeGridJob(GridJob& job, const fs::path& output) {
   std::vector<std::string> labels;
   for (const ConvertedGrid& row : job.report.grids) labels.push_back(row.label);
-  checkGridCount(output, labels);
+  checkGridCount(output, job.options.output, labels);
   BuildOptions options = job.options.build;
   options.progress = beginPass(job.options.progress, ConvertStage::converting, job.input);
   std::vector<openvdb::FloatGrid::Ptr> built;

@@ -14,7 +14,8 @@
 namespace umbrick {
 
 /// Refuses several grids for a format that holds one. @throw OptionsError  names some of them
-void checkGridCount(const std::filesystem::path& output, const std::vector<std::string>& labels);
+void checkGridCount(const std::filesystem::path& output, const OutputOptions& options,
+                    const std::vector<std::string>& labels);
 
 /// @param type   of the voxels of the source, for the dense formats
 /// @param check  is given the file before it takes its name, and the errors of grids that are quantised, else none

@@ -4,6 +4,7 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
@@ -72,8 +73,20 @@ std::vector<char> planeOf(const Image& image, int c, Convert convert) {
 
 half toHalf(float value) { return half(std::isfinite(value) ? std::clamp(value, -kLargestHalf, kLargestHalf) : value); }
 
-void writePlanes(const std::string& path, int width, int height, const std::vector<ChannelRows>& planes,
-                 const std::map<std::string, std::string>& metadata) {
+// What OpenEXR writes to.
+class ExrStream : public Imf::OStream {
+ public:
+  ExrStream(std::ostream& out, const std::string& name) : OStream(name.c_str()), out_(out) {}
+  void write(const char bytes[], int count) override { out_.write(bytes, count); }
+  std::uint64_t tellp() override { return static_cast<std::uint64_t>(std::streamoff(out_.tellp())); }
+  void seekp(std::uint64_t place) override { out_.seekp(static_cast<std::streamoff>(place)); }
+
+ private:
+  std::ostream& out_;
+};
+
+void writePlanes(std::ostream& out, const std::string& name, int width, int height,
+                 const std::vector<ChannelRows>& planes, const std::map<std::string, std::string>& metadata) {
   Imf::Header header(width, height);
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const auto& [key, text] : metadata) header.insert(key, Imf::StringAttribute(text));
@@ -84,7 +97,8 @@ void writePlanes(const std::string& path, int width, int height, const std::vect
     buffer.insert(plane.name, Imf::Slice(plane.type, const_cast<char*>(plane.bytes.data()), size,
                                          size * static_cast<std::size_t>(width)));
   }
-  Imf::OutputFile file(path.c_str(), header);
+  ExrStream stream(out, name);
+  Imf::OutputFile file(stream, header);
   file.setFrameBuffer(buffer);
   file.writePixels(height);
 }
@@ -185,8 +199,9 @@ void writeExr(const std::filesystem::path& path, const std::vector<ImageLayer>& 
     }
   try {
     const Image& first = layers.front().image;
-    writePlanes(pending.path().string(), first.width, first.height, planes, options.metadata);
+    writePlanes(pending.stream(), path.string(), first.width, first.height, planes, options.metadata);
   } catch (const std::exception& error) {
+    pending.flush();  // says why, where OpenEXR's words hide that the file could not be written
     throw IoError(path.string() + ": cannot write: " + error.what());
   }
   pending.commit();

@@ -13,6 +13,7 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <ostream>
 #include <vector>
 
 #include "core/text_file.h"
@@ -69,10 +70,24 @@ struct Encoder {
   ~Encoder() { png_destroy_write_struct(&png, &info); }
 };
 
-bool writeBytes(Encoder& encoder, std::FILE* file, int width, int height, const std::uint8_t* bytes, png_text* texts,
+// Hands bytes to the stream. No exception may pass through libpng, which is told of it; the stream keeps the reason.
+void toStream(png_structp png, png_bytep bytes, png_size_t count) {
+  bool written = false;
+  try {
+    static_cast<std::ostream*>(png_get_io_ptr(png))
+        ->write(reinterpret_cast<const char*>(bytes), static_cast<std::streamsize>(count));
+    written = true;
+  } catch (const std::exception&) {
+    written = false;
+  }
+  if (!written) png_error(png, "cannot write");
+}
+void flushNothing(png_structp) {}
+
+bool writeBytes(Encoder& encoder, std::ostream& out, int width, int height, const std::uint8_t* bytes, png_text* texts,
                 int textCount) {
   if (setjmp(png_jmpbuf(encoder.png))) return false;
-  png_init_io(encoder.png, file);
+  png_set_write_fn(encoder.png, &out, toStream, flushNothing);
   png_set_IHDR(encoder.png, encoder.info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
                PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB_gAMA_and_cHRM(encoder.png, encoder.info, PNG_sRGB_INTENT_PERCEPTUAL);
@@ -137,17 +152,15 @@ void writePng(const std::filesystem::path& path, const Image& image, const PngOp
   PendingFile pending(path);
   const std::vector<std::uint8_t> bytes = encoded(image, options);
   const auto fail = [&](const std::string& reason) { throw IoError(path.string() + ": cannot write: " + reason); };
-  File file(std::fopen(pending.path().c_str(), "wb"));
-  if (!file) fail(std::strerror(errno));
   Encoder encoder;
   encoder.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &encoder.report, onError, onWarning);
   encoder.info = encoder.png ? png_create_info_struct(encoder.png) : nullptr;
   if (!encoder.info) fail("out of memory");
-  if (!writeBytes(encoder, file.get(), image.width, image.height, bytes.data(), texts.data(),
-                  static_cast<int>(texts.size())))
+  if (!writeBytes(encoder, pending.stream(), image.width, image.height, bytes.data(), texts.data(),
+                  static_cast<int>(texts.size()))) {
+    pending.flush();  // says why, if it is the file that could not be written
     fail(encoder.report.message.data());
-  // Closing writes what is still buffered, so it can fail as well.
-  if (std::fclose(file.release()) != 0) fail(std::strerror(errno));
+  }
   pending.commit();
 }
 

@@ -46,6 +46,17 @@ std::vector<Place> extremes(const std::vector<double>& axis, double low, double 
   return places;
 }
 
+// Returns the largest of the leaves [first, last) of a tree that findMaxima makes.
+double largestOf(const std::vector<double>& tree, std::size_t first, std::size_t last) {
+  double largest = 0;
+  const std::size_t leaves = tree.size() / 2;
+  for (first += leaves, last += leaves; first < last; first /= 2, last /= 2) {
+    if (first % 2 == 1) largest = std::max(largest, tree[first++]);
+    if (last % 2 == 1) largest = std::max(largest, tree[--last]);
+  }
+  return largest;
+}
+
 double mix(double a, double b, double weight) { return a + (b - a) * weight; }
 Medium mix(const Medium& a, const Medium& b, double weight) {
   return {a.albedo + (b.albedo - a.albedo) * weight, mix(a.sigma_t, b.sigma_t, weight)};
@@ -100,6 +111,16 @@ TransferFunction::TransferFunction(std::vector<Point> points) {
     values_.push_back(values[i]);
     media_.push_back(points[i].medium);
   }
+  findMaxima();
+}
+
+// A parent is the larger of its two children, node i of nodes 2 i and 2 i + 1. So the majorant of a function of a
+// million points takes some twenty steps, whatever the range.
+void TransferFunction::findMaxima() {
+  const std::size_t leaves = media_.size();
+  maxima_.resize(2 * leaves);
+  for (std::size_t i = 0; i < leaves; ++i) maxima_[leaves + i] = media_[i].sigma_t;
+  for (std::size_t i = leaves; i-- > 1;) maxima_[i] = std::max(maxima_[2 * i], maxima_[2 * i + 1]);
 }
 
 TransferFunction::TransferFunction(std::vector<double> values, std::vector<double> gradients,
@@ -138,6 +159,13 @@ bool TransferFunction::isTransparent(const Range& value, const Range& gradient) 
 
 double TransferFunction::majorant(const Range& value, const Range& gradient) const {
   if (value.empty() || (is2d() && gradient.empty())) return 0;
+  if (!is2d()) {
+    // The function is linear between points: its maximum is at an end of the range, or at a point between.
+    const auto first = std::upper_bound(values_.begin(), values_.end(), double(value.min)) - values_.begin();
+    const auto last = std::upper_bound(values_.begin(), values_.end(), double(value.max)) - values_.begin();
+    const double ends = std::max((*this)(value.min).sigma_t, (*this)(value.max).sigma_t);
+    return std::max(ends, largestOf(maxima_, static_cast<std::size_t>(first), static_cast<std::size_t>(last)));
+  }
   // The function is bilinear in each cell, so its maximum is at a corner of a cell or of the ranges.
   const std::vector<Place> rows = extremes(gradients_, gradient.min, gradient.max);
   double largest = 0;
@@ -187,6 +215,7 @@ TransferFunction TransferFunction::scaled(double factor) const {
     result.media_[i].sigma_t *= factor;
     checkMedium(result.media_[i], i);
   }
+  if (!is2d()) result.findMaxima();
   return result;
 }
 

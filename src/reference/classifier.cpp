@@ -2,6 +2,18 @@
 #include "reference/classifier.h"
 
 namespace umbrick {
+namespace {
+
+// Returns the integral over the first `extent` of a stretch, which may be negative below the first control point.
+MediumIntegral integralOf(const LinearStretch& stretch, double extent) {
+  const double half = extent / 2, third = extent * extent / 3;
+  return {extent * (stretch.sigma_t + half * stretch.sigmaSlope),
+          extent * (stretch.sigma_t * stretch.albedo +
+                    half * (stretch.sigma_t * stretch.albedoSlope + stretch.sigmaSlope * stretch.albedo) +
+                    third * stretch.sigmaSlope * stretch.albedoSlope)};
+}
+
+}  // namespace
 
 Classifier::Classifier(const TransferFunction& transfer) : transfer_(transfer) {
   if (is2d()) return;
@@ -18,6 +30,18 @@ Classifier::Classifier(const TransferFunction& transfer) : transfer_(transfer) {
       stretches_[i] = {values_[i - 1], low.sigma_t, (high.sigma_t - low.sigma_t) / extent, low.albedo,
                        (high.albedo - low.albedo) / extent};
   }
+  if (count <= kMostCrossed) return;
+  integrals_.resize(count + 1);  // nothing below the first point
+  for (std::size_t i = 1; i < count; ++i) {
+    const MediumIntegral part = integralOf(stretches_[i], values_[i] - values_[i - 1]), &before = integrals_[i];
+    integrals_[i + 1] = {before.sigma_t + part.sigma_t, before.sigma_s + part.sigma_s};
+  }
+}
+
+MediumIntegral Classifier::integral(double value) const {
+  const std::size_t index = locate(value);
+  const MediumIntegral part = integralOf(stretches_[index], value - stretches_[index].origin);
+  return {integrals_[index].sigma_t + part.sigma_t, integrals_[index].sigma_s + part.sigma_s};
 }
 
 Cubic Classifier::throughThirds(const std::array<double, 4>& y, double begin, double h) {

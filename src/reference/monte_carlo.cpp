@@ -161,7 +161,7 @@ std::optional<PixelResult> MonteCarloPixel::integrate(int x, int y) {
   const int round = static_cast<int>(rays.size()), rounds = options_.samples / round;
   for (int i = 1; i <= rounds; ++i) {
     const int paths = i * round;
-    if (paths / 256 != (paths - round) / 256 && !goOn_()) return std::nullopt;
+    if (paths / 16 != (paths - round) / 16 && !goOn_()) return std::nullopt;
     Found mean{};
     for (const auto& [ray, part] : rays) {
       if (part.empty()) continue;

@@ -135,6 +135,13 @@ QuadraturePixel::Arriving QuadraturePixel::arrivingAt(const IndexRay& ray, doubl
   const glm::dvec3 point = ray.at(t);
   for (const auto& [direction, radiance, share] : lights_) {
     ++counts_.lightRays;
+    // Some rays take long by themselves, through many cells or many points of the transfer function.
+    constexpr std::uint64_t kCellsBetween = 4096;
+    if (counts_.cells - askedAt_ > kCellsBetween) {
+      askedAt_ = counts_.cells;
+      if (!goOn_()) stopped_ = true;
+      if (stopped_) return sum;
+    }
     const IndexRay light(point, direction);
     const Interval part = space_.region.clip(light, 0);
     double tau = 0;

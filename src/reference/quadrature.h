@@ -76,6 +76,7 @@ class QuadraturePixel {
   ReferenceOptions options_;
   GoOn goOn_;
   bool stopped_ = false;
+  std::uint64_t askedAt_ = 0;  // cells that were met when goOn was asked last
   double step_, voxelEdge_;
   EyeRayOptions eyeOptions_;
   Field::Accessor accessor_;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/vdb/read_back.h"
 
+#include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "umbrick/core/error.h"
@@ -50,12 +52,19 @@ FloatGrid::ConstPtr readDense(const fs::path& file, const FloatGrid& written) {
   return grid;
 }
 
+// Tells by the first bytes, since a file that has not taken its name may have none.
+bool isDense(const fs::path& file) {
+  char first[5]{};
+  std::ifstream(file, std::ios::binary).read(first, sizeof first);
+  const std::string_view text(first, sizeof first);
+  return text.starts_with("NRRD") || text.starts_with("Objec");
+}
+
 }  // namespace
 
 FloatGrid::ConstPtr readBack(const fs::path& file, const FloatGrid& written, std::size_t index) {
-  const std::string extension = file.extension().string();
   FloatGrid::ConstPtr found;
-  if (extension == ".nrrd" || extension == ".mhd") {
+  if (isDense(file)) {
     found = readDense(file, written);
   } else {
     const GridListing listing = listGrids(file);

@@ -4,17 +4,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <functional>
 #include <limits>
 #include <sstream>
 #include <string>
 #include <type_traits>
 
 #include "umbrick/core/error.h"
+#include "umbrick/core/output.h"
 #include "umbrick/core/patient_space.h"
 #include "umbrick/core/pending_file.h"
 #include "umbrick/core/pending_pair.h"
@@ -185,24 +182,21 @@ void writeVoxels(std::ostream& out, const openvdb::FloatGrid& grid, const DenseB
   }
 }
 
-// Writes a file whole. @param fill  writes its content
-void writeWhole(const fs::path& path, const fs::path& pending, const std::function<void(std::ostream&)>& fill) {
-  try {
-    std::ofstream out;
-    out.exceptions(std::ios::failbit | std::ios::badbit);
-    out.open(pending, std::ios::binary | std::ios::trunc);
-    fill(out);
-    out.close();
-  } catch (const std::ios_base::failure&) {
-    throw IoError(path.string() + ": cannot write: " + std::strerror(errno));
-  }
-}
-
 }  // namespace
+
+fs::path voxelFileOf(const fs::path& header) {
+  const Output output = outputAt(header);
+  std::error_code missing;
+  const auto folderOf = [](const fs::path& file) { return fs::absolute(file).parent_path(); };
+  if (output.path != header && !fs::equivalent(folderOf(header), folderOf(output.path), missing))
+    throw IoError(header.string() + ": cannot write: is a link to another folder, where its .raw would not be found; " +
+                  "name " + output.path.string());
+  return fs::path(output.path).replace_extension(".raw");
+}
 
 DenseBox writeDense(const fs::path& path, const openvdb::FloatGrid& grid, const DenseOptions& options,
                     const WrittenCheck& check) {
-  const bool nrrd = path.extension() == ".nrrd";
+  const bool nrrd = options.nrrd || path.extension() == ".nrrd";
   if (!nrrd && path.extension() != ".mhd")
     throw InvalidArgument(path.string() + ": expected a name that ends in .nrrd or .mhd");
   const openvdb::CoordBBox active = grid.evalActiveVoxelBoundingBox();
@@ -227,16 +221,14 @@ DenseBox writeDense(const fs::path& path, const openvdb::FloatGrid& grid, const 
   const Place place = placeOf(path, grid, active.min(), box.space);
   if (nrrd) {
     PendingFile pending(path);
-    writeWhole(path, pending.path(), [&](std::ostream& out) {
-      out << nrrdHeader(grid, box, place);
-      writeVoxels(out, grid, box);
-    });
+    pending.stream() << nrrdHeader(grid, box, place);
+    writeVoxels(pending.stream(), grid, box);
     if (check) check(pending.path());
     pending.commit();
   } else {
-    const fs::path voxels = fs::path(path).replace_extension(".raw");
-    PendingPair pending(path, voxels);
-    writeWhole(voxels, pending.dataPath(), [&](std::ostream& out) { writeVoxels(out, grid, box); });
+    PendingPair pending(path, voxelFileOf(path));
+    writeVoxels(pending.data().stream(), grid, box);
+    pending.data().stream().flush();
     pending.writeHeader([&](const std::string& name) { return metaImageHeader(grid, box, place, name); });
     if (check) check(pending.headerPath());
     pending.commit();

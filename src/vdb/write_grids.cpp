@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <openvdb/io/Archive.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
 #include "umbrick/grid/vdb_codec.h"
@@ -26,15 +22,10 @@ void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::Fl
   openvdb::initialize();
   PendingFile pending(path);
   try {
-    std::ofstream out;
-    out.exceptions(std::ios::failbit | std::ios::badbit);
-    out.open(pending.path(), std::ios::binary | std::ios::trunc);
     Writer writer;
     writer.setCompression(compressionOf(codec));
-    writer.write(out, openvdb::GridCPtrVec(grids.begin(), grids.end()), /*seekable=*/true, metadata);
-    out.close();
-  } catch (const std::ios_base::failure&) {
-    throw IoError(path.string() + ": cannot write: " + std::strerror(errno));
+    writer.write(pending.stream(), openvdb::GridCPtrVec(grids.begin(), grids.end()), /*seekable=*/true, metadata);
+    pending.stream().flush();
   } catch (const openvdb::Exception& error) {
     throw IoError(path.string() + ": cannot write: " + error.what());
   }

@@ -5,10 +5,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <sstream>
 
@@ -111,18 +108,15 @@ std::vector<QuantiseError> writeNanoVdb(const std::filesystem::path& path,
   PendingFile pending(path);
   std::vector<QuantiseError> errors;
   try {
-    std::ofstream out;
-    out.exceptions(std::ios::failbit | std::ios::badbit);
-    out.open(pending.path(), std::ios::binary | std::ios::trunc);
     // Each grid is a segment of its own, so that no more than one is in memory twice.
     for (const auto& grid : grids) {
       const NanoGridData nano = toNano(*grid, options);
       errors.push_back(nano.error);
-      nanovdb::io::writeGrid(out, nano.handle);
+      nanovdb::io::writeGrid(pending.stream(), nano.handle);
     }
-    out.close();
-  } catch (const std::ios_base::failure&) {
-    throw IoError(path.string() + ": cannot write: " + std::strerror(errno));
+    pending.stream().flush();
+  } catch (const IoError&) {
+    throw;
   } catch (const Error& error) {
     throw InvalidArgument(path.string() + ": " + error.what());
   } catch (const openvdb::Exception& error) {

@@ -25,7 +25,7 @@ TEST_CASE("A pending file appears only when it is committed", "[core]") {
   writeTextFile(target, "old");
   {
     PendingFile pending(target);
-    std::ofstream(pending.path()) << "half";
+    pending.stream() << "half" << std::flush;
     CHECK(readText(target) == "old");
   }
   CHECK(readText(target) == "old");

@@ -3,11 +3,14 @@
 #include "umbrick/core/pending_pair.h"
 
 #include <fcntl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <cerrno>
+#include <string_view>
+#include <vector>
 
 #include "support/files.h"
 #include "support/temporary_folder.h"
@@ -20,6 +23,7 @@ namespace {
 // The process ends before the call that changes a folder for which this is 0; less than 0 means that it never ends so.
 int callsLeft = -1;
 bool hardLinks = true;
+std::string failingTarget;  // a rename to this name fails
 
 void count() {
   if (callsLeft == 0) _exit(9);
@@ -31,11 +35,16 @@ void count() {
 // These take the place of the functions of the C library, for all of this program.
 extern "C" int rename(const char* from, const char* to) noexcept {
   count();
-  return renameat(AT_FDCWD, from, AT_FDCWD, to);
+  if (!failingTarget.empty() && to == failingTarget) {
+    errno = EIO;
+    return -1;
+  }
+  return static_cast<int>(syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
 }
-extern "C" int link(const char* from, const char* to) noexcept {
+extern "C" int linkat(int fromFolder, const char* from, int toFolder, const char* to, int flags) noexcept {
   count();
-  if (hardLinks) return linkat(AT_FDCWD, from, AT_FDCWD, to, 0);
+  const bool unnamed = std::string_view(from).starts_with("/proc/");  // every file may be given a first name
+  if (hardLinks || unnamed) return static_cast<int>(syscall(SYS_linkat, fromFolder, from, toFolder, to, flags));
   errno = EPERM;
   return -1;
 }
@@ -52,9 +61,9 @@ struct Pair {
 
   void write(const std::string& version) const {
     PendingPair pending(header, data);
-    writeBytes(pending.dataPath(), version + " voxels");
+    pending.data().write(version + " voxels");
     pending.writeHeader([&](const std::string& name) { return version + ' ' + name; });
-    CHECK(readBytes(pending.headerPath()) == version + ' ' + pending.dataPath().filename().string());
+    CHECK(readBytes(pending.headerPath()) == version + ' ' + pending.data().path().filename().string());
     pending.commit();
   }
   // Writes a new pair in a process of its own, which ends before call number `calls`.
@@ -113,12 +122,71 @@ TEST_CASE("Where a file cannot have two names, no header describes other data th
   hardLinks = true;
 }
 
+TEST_CASE("A rename of the data that fails leaves the old pair, and nothing beside it", "[core]") {
+  for (const bool old : {true, false}) {
+    CAPTURE(old);
+    const Pair pair;
+    if (old) pair.write("old");
+    failingTarget = pair.data.string();
+    CHECK_THROWS_WITH(pair.write("new"), Catch::Contains("v.raw: cannot write: Input/output error"));
+    failingTarget.clear();
+    if (old) CHECK(pair.voxels() == "old voxels");
+    CHECK(std::distance(fs::directory_iterator(pair.folder.path()), fs::directory_iterator()) == (old ? 2 : 0));
+  }
+}
+
+TEST_CASE("After a pair that was killed at any step, the next one leaves two files", "[core]") {
+  int calls = 0;
+  for (bool done = false; !done; ++calls) {
+    CAPTURE(calls);
+    const Pair pair;
+    pair.write("old");
+    done = pair.writeKilled(calls);
+    // The one that comes next may be killed before it begins to change anything, and spares what a header names.
+    pair.writeKilled(0);
+    CHECK(pair.voxels() == pair.version() + " voxels");
+    pair.write("end");
+    CHECK(pair.voxels() == "end voxels");
+    std::string names;
+    for (const auto& entry : fs::directory_iterator(pair.folder.path()))
+      names += entry.path().filename().string() + ' ';
+    CAPTURE(names);
+    CHECK(std::distance(fs::directory_iterator(pair.folder.path()), fs::directory_iterator()) == 2);
+  }
+}
+
+TEST_CASE("Many writers of one pair at once leave the pair of one of them", "[core]") {
+  constexpr int kRounds = 10, kWriters = 6;
+  for (int round = 0; round < kRounds; ++round) {
+    const Pair pair;
+    std::vector<pid_t> writers;
+    for (int i = 0; i < kWriters; ++i) {
+      writers.push_back(fork());
+      if (writers.back() > 0) continue;
+      for (int turn = 0; turn < 5; ++turn) pair.write("w" + std::to_string(i) + std::to_string(turn));
+      _exit(0);
+    }
+    for (const pid_t writer : writers) {
+      int status = 0;
+      waitpid(writer, &status, 0);
+      CHECK(status == 0);
+    }
+    CHECK(pair.voxels() == pair.version() + " voxels");
+    CHECK(std::distance(fs::directory_iterator(pair.folder.path()), fs::directory_iterator()) == 2);
+  }
+}
+
+TEST_CASE("A pair is not written to a stream", "[core]") {
+  const Pair pair;
+  CHECK_THROWS_WITH(PendingPair("/dev/null", pair.data), Catch::Contains("is one file, where a pair has two"));
+}
+
 TEST_CASE("A pair that is not committed leaves the old one, and nothing beside it", "[core]") {
   const Pair pair;
   pair.write("old");
   {
     PendingPair pending(pair.header, pair.data);
-    writeBytes(pending.dataPath(), "half");
+    pending.data().write("half");
   }
   CHECK(pair.voxels() == "old voxels");
   CHECK(std::distance(fs::directory_iterator(pair.folder.path()), fs::directory_iterator()) == 2);

@@ -52,7 +52,7 @@ TEST_CASE("The falling side of a step counts in every range that comes from belo
 TEST_CASE("The majorant bounds the function tightly over random ranges", "[optics]") {
   std::mt19937 random(3);
   for (int repeat = 0; repeat < 200; ++repeat) {
-    const TransferFunction f = randomTransferFunction(random, 6);
+    const TransferFunction f = randomTransferFunction(random, repeat % 4 == 0 ? 300 : repeat % 4 * 3);
     float low = uniform(random, -20, 120), high = uniform(random, -20, 120);
     if (low > high) std::swap(low, high);
     double largest = 0;

@@ -16,6 +16,8 @@ namespace umbrick {
 /// How an output is packed. Its format is told by its extension: .vdb, .nvdb, or the dense box of the active voxels as
 /// .nrrd or as .mhd with a .raw beside it.
 struct OutputOptions {
+  /// ".vdb", ".nvdb" or ".nrrd", of a name whose extension is none of these, as that of a stream.
+  std::string format = {};
   std::optional<VdbCodec> codec = {};  // of a .vdb only; blosc where none is given
   /// Of a .nvdb only; 32-bit floats where none are given. With NanoValues::adaptive and no maxError of its own, the
   /// values take half of BuildOptions::maxError, and what is left out or merged the other half.

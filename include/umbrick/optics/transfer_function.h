@@ -78,7 +78,10 @@ class TransferFunction {
  private:
   std::vector<double> values_, gradients_;
   std::vector<Medium> media_;
+  std::vector<double> maxima_;  // of sigma_t over control points, as a binary tree; of a 1D function only
   std::string unit_;
+
+  void findMaxima();
 };
 
 /// Reads the project's JSON of a 1D or a 2D function,

@@ -8,7 +8,7 @@
 
 namespace umbrick {
 
-/// Reads a grid back from a file that writeGrids, writeNanoVdb or writeDense made; the extension says which. A dense
+/// Reads a grid back from a file that writeGrids, writeNanoVdb or writeDense made. A dense
 /// file does not tell what is active. Of it one gets `written` with the values that the file has in the box of the
 /// active voxels, and voxels whose values differ are active.
 /// @param index  place of the grid in the file, in the order in which grids were written

@@ -51,6 +51,7 @@ struct DenseOptions {
   /// exactly; else they are stored as f32.
   std::optional<VoxelType> type = {};
   std::int64_t maxBytes = std::int64_t(1) << 34;  // at most so many bytes of voxels are written: 16 GiB
+  bool nrrd = false;                              // also where the name does not end in .nrrd, as that of a stream
 };
 
 /// The box and the type that were written.
@@ -59,6 +60,10 @@ struct DenseBox {
   VoxelType type = VoxelType::f32;
   std::string space;  // in which the header states the place, such as "LPS"; empty where nothing is known
 };
+
+/// Returns the .raw of a .mhd: beside what it is a link to, if it is one.
+/// @throw IoError  a link to another folder, where the data would not be found
+std::filesystem::path voxelFileOf(const std::filesystem::path& header);
 
 /// Writes the box of the active voxels with all values in it, whole or not at all, as a .nrrd, or as a .mhd beside a
 /// .raw of the same stem (PendingPair). The place of the voxels is that of the grid, rotation and shear included. A
