@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/vdb/read_back.h"
 
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "umbrick/ingest/open_volume.h"
 #include "umbrick/vdb/grid_listing.h"
 #include "umbrick/vdb/read_grid.h"
+#include "umbrick/vdb/read_vectors.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;
@@ -50,27 +52,44 @@ FloatGrid::ConstPtr readDense(const fs::path& file, const FloatGrid& written) {
   return grid;
 }
 
+// Checks what a grid has besides its values.
+template <class Grid>
+void checkBack(const fs::path& file, const Grid& written, const Grid& found) {
+  const std::string name = file.string() + ": grid \"" + written.getName() + '"';
+  if (found.background() != written.background()) {
+    std::ostringstream text;
+    text << name << ": background: expected " << written.background() << ", found " << found.background();
+    throw IoError(text.str());
+  }
+  if (const auto other = misplacedCorner(written, found, 1e-6))
+    throw IoError(name + ": place of voxel " + vectorText(other->voxel) + ": expected " + vectorText(other->expected) +
+                  ", found " + vectorText(other->found));
+}
+
+// The label of a grid by its place in the file.
+std::string labelAt(const fs::path& file, std::size_t index) {
+  const GridListing listing = listGrids(file);
+  if (index >= listing.grids.size())
+    throw IoError(file.string() + ": expected " + std::to_string(index + 1) + " grids or more, found " +
+                  std::to_string(listing.grids.size()));
+  return listing.grids[index].label;
+}
+
 }  // namespace
 
 FloatGrid::ConstPtr readBack(const fs::path& file, const FloatGrid& written, std::size_t index) {
   const std::string extension = file.extension().string();
-  FloatGrid::ConstPtr found;
-  if (extension == ".nrrd" || extension == ".mhd") {
-    found = readDense(file, written);
-  } else {
-    const GridListing listing = listGrids(file);
-    if (index >= listing.grids.size())
-      throw IoError(file.string() + ": expected " + std::to_string(index + 1) + " grids or more, found " +
-                    std::to_string(listing.grids.size()));
-    found = readScalarGridAnyTransform(file, listing.grids[index].label).grid;
-  }
-  const std::string name = file.string() + ": grid \"" + written.getName() + '"';
-  if (found->background() != written.background())
-    throw IoError(name + ": background: expected " + std::to_string(written.background()) + ", found " +
-                  std::to_string(found->background()));
-  if (const auto other = misplacedCorner(written, *found, 1e-6))
-    throw IoError(name + ": place of voxel " + vectorText(other->voxel) + ": expected " + vectorText(other->expected) +
-                  ", found " + vectorText(other->found));
+  const bool dense = extension == ".nrrd" || extension == ".mhd";
+  const FloatGrid::ConstPtr found =
+      dense ? readDense(file, written) : readScalarGridAnyTransform(file, labelAt(file, index)).grid;
+  checkBack(file, written, *found);
+  return found;
+}
+
+openvdb::Vec3SGrid::ConstPtr readVectorsBack(const fs::path& file, const openvdb::Vec3SGrid& written,
+                                             std::size_t index) {
+  const openvdb::Vec3SGrid::ConstPtr found = readVectorGrid(file, labelAt(file, index));
+  checkBack(file, written, *found);
   return found;
 }
 

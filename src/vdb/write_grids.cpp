@@ -23,6 +23,11 @@ class Writer : public openvdb::io::Archive {
 
 void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
                 const openvdb::MetaMap& metadata, VdbCodec codec, const WrittenCheck& check) {
+  writeAnyGrids(path, openvdb::GridCPtrVec(grids.begin(), grids.end()), metadata, codec, check);
+}
+
+void writeAnyGrids(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+                   const openvdb::MetaMap& metadata, VdbCodec codec, const WrittenCheck& check) {
   openvdb::initialize();
   PendingFile pending(path);
   try {
@@ -31,7 +36,7 @@ void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::Fl
     out.open(pending.path(), std::ios::binary | std::ios::trunc);
     Writer writer;
     writer.setCompression(compressionOf(codec));
-    writer.write(out, openvdb::GridCPtrVec(grids.begin(), grids.end()), /*seekable=*/true, metadata);
+    writer.write(out, grids, /*seekable=*/true, metadata);
     out.close();
   } catch (const std::ios_base::failure&) {
     throw IoError(path.string() + ": cannot write: " + std::strerror(errno));
