@@ -26,7 +26,22 @@ void tellLostWorld(const openvdb::FloatGrid& grid, std::vector<std::string>& not
                   (world.lengthUnit.empty() ? "" : "in " + world.lengthUnit));
 }
 
+// The grids as formats want them that hold no others. @throw OptionsError  one is no grid of floats
+std::vector<openvdb::FloatGrid::ConstPtr> floatGrids(const fs::path& path, const openvdb::GridCPtrVec& grids) {
+  std::vector<openvdb::FloatGrid::ConstPtr> out;
+  for (const auto& grid : grids)
+    if (out.push_back(openvdb::gridConstPtrCast<openvdb::FloatGrid>(grid)); !out.back()) refuseVectors(path);
+  return out;
+}
+
 }  // namespace
+
+void refuseVectors(const fs::path& path) {
+  if (path.extension() != ".vdb")
+    throw OptionsError(path.string() +
+                       ": expected a .vdb for a grid of vec3; of its numbers one is chosen by "
+                       "source.open.parts.component, and options.eachComponent makes a grid of each");
+}
 
 void checkOutput(const fs::path& path, const OutputOptions& options, const std::vector<fs::path>& inputs) {
   if (path.extension() != ".vdb" && path.extension() != ".nvdb" && !isDense(path))
@@ -61,9 +76,9 @@ void checkGridCount(const fs::path& path, const std::vector<std::string>& labels
                      (labels.size() > kMostNamed ? ", ..." : ""));
 }
 
-std::int64_t writeOutput(const fs::path& path, const OutputOptions& output,
-                         const std::vector<openvdb::FloatGrid::ConstPtr>& grids, openvdb::MetaMap metadata,
-                         std::optional<VoxelType> type, const NanoCheck& check, std::vector<std::string>& notes) {
+std::int64_t writeOutput(const fs::path& path, const OutputOptions& output, const openvdb::GridCPtrVec& grids,
+                         openvdb::MetaMap metadata, std::optional<VoxelType> type, const NanoCheck& check,
+                         std::vector<std::string>& notes) {
   const WrittenCheck exact = [&](const fs::path& written) { check(written, {}); };
   if (isDense(path)) {
     std::vector<std::string> labels;
@@ -71,17 +86,19 @@ std::int64_t writeOutput(const fs::path& path, const OutputOptions& output,
     checkGridCount(path, labels);
     DenseOptions dense;
     dense.type = type;
-    const DenseBox box = writeDense(path, *grids.front(), dense, exact);
-    const std::string space = worldOf(*grids.front()).space;
+    const openvdb::FloatGrid::ConstPtr first = floatGrids(path, grids).front();
+    const openvdb::FloatGrid& values = *first;
+    const DenseBox box = writeDense(path, values, dense, exact);
+    const std::string space = worldOf(values).space;
     if (box.space != space)
       notes.push_back("the place is written in " + box.space + ", as " + path.extension().string() +
                       " has it; the world of the input is " + space);
   } else if (path.extension() == ".nvdb") {
-    writeNanoVdb(path, grids, output.nano.value_or(NanoOptions{}), check);
-    tellLostWorld(*grids.front(), notes);
+    writeNanoVdb(path, floatGrids(path, grids), output.nano.value_or(NanoOptions{}), check);
+    tellLostWorld(*floatGrids(path, grids).front(), notes);
   } else {
     if (!metadata["creator"]) metadata.insertMeta("creator", openvdb::StringMetadata(output.creator));
-    writeGrids(path, grids, metadata, output.codec.value_or(VdbCodec::blosc), exact);
+    writeAnyGrids(path, grids, metadata, output.codec.value_or(VdbCodec::blosc), exact);
   }
   const auto bytes = static_cast<std::int64_t>(fs::file_size(path));
   return path.extension() == ".mhd" ? bytes + static_cast<std::int64_t>(fs::file_size(voxelsOf(path))) : bytes;
