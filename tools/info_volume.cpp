@@ -13,6 +13,7 @@
 #include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/ingest/list_arrays.h"
 #include "umbrick/ingest/open_volume.h"
+#include "umbrick/ingest/volume_parts.h"
 #include "umbrick/ingest/volume_values.h"
 #include "umbrick/render/open_reference.h"
 
@@ -26,14 +27,18 @@ struct Described {
   std::vector<DicomSeries> series;
   std::vector<ArrayRow> arrays;
   std::optional<VolumeInfo> volume;  // nothing where there are several and none is picked
+  bool several = false;              // the volume has several frames or components, none of which is picked
   std::optional<VolumeValues> values;
 };
 
 // Takes several volumes of which none is picked for something to list.
-std::optional<VolumeInfo> openOrList(const fs::path& file, const OpenOptions& open, const Described& found) try {
+std::optional<VolumeInfo> openOrList(const fs::path& file, const OpenOptions& open, Described& found) try {
   return openVolume(file, open)->info();
 } catch (const SeveralSeries&) {
   return std::nullopt;
+} catch (const SeveralParts& several) {
+  found.several = true;
+  return several.info;
 } catch (const IoError&) {
   // Arrays of which none is the only one.
   const auto volumes =
@@ -62,7 +67,8 @@ Described describeInput(const fs::path& input, const VolumeOptions& options, int
     found.arrays = listArrays(file);
   }
   found.volume = openOrList(file, open, found);
-  if (found.volume && !isPipe(file)) found.values = volumeValues([&] { return openVolume(file, open); }, bins);
+  if (found.volume && !found.several && !isPipe(file))
+    found.values = volumeValues([&] { return openVolume(file, open); }, bins);
   return found;
 }
 
@@ -72,6 +78,22 @@ nlohmann::json toJson(const DicomSeries& series) {
           {"description", series.description},
           {"modality", series.modality},
           {"files", series.files.size()}};
+}
+
+nlohmann::json toJson(const VolumeLabel& label) {
+  nlohmann::json out{{"name", label.name}, {"value", label.value}};
+  if (label.component != 0) out["component"] = label.component;
+  if (label.colour) out["colour"] = jsonVector(*label.colour);
+  return out;
+}
+
+std::string pickText(const VolumeInfo& info) {
+  std::string text;
+  if (info.frames > 1) text = "--frame 0 to " + std::to_string(info.frames - 1);
+  if (info.components > 1)
+    text += (text.empty() ? "" : ", ") + std::string("--component 0 to ") + std::to_string(info.components - 1) +
+            " or magnitude";
+  return text;
 }
 
 nlohmann::json toJson(const ArrayRow& array) {
@@ -87,18 +109,22 @@ void addList(nlohmann::json& out, const char* key, const Rows& rows) {
 
 nlohmann::json toJson(const VolumeInfo& info) {
   nlohmann::json out{{"dims", jsonVector(info.dims)}, {"type", voxelTypeName(info.type)},
-                     {"file_bytes", info.fileBytes},  {"index_to_world", jsonMatrix(info.indexToWorld)},
+                     {"file_bytes", info.fileBytes},  {"components", info.components},
+                     {"frames", info.frames},         {"index_to_world", jsonMatrix(info.indexToWorld)},
                      {"metadata", info.metadata},     {"notes", info.notes}};
   nlohmann::json spacing = nlohmann::json::array();
   for (int axis = 0; axis < 3; ++axis) spacing.push_back(glm::length(glm::dvec3(info.indexToWorld[axis])));
   out["spacing"] = spacing;
   out["origin"] = jsonVector(info.indexToWorld[3]);
+  if (info.components > 1) out["meaning"] = meaningName(info.meaning);
+  addList(out, "labels", info.labels);
   return out;
 }
 
 nlohmann::json toJson(const Described& found) {
   nlohmann::json out{{"file", found.input.string()}};
   if (found.volume) out["volume"] = toJson(*found.volume);
+  if (found.volume && found.several) out["to_pick"] = pickText(*found.volume);
   if (found.values) {
     out["values"] = {{"non_finite", found.values->nonFinite}, {"histogram", found.values->histogram}};
     if (!found.values->histogram.empty()) {
@@ -156,7 +182,11 @@ void printVolume(const VolumeInfo& info) {
   const auto bytes = info.dims.x * info.dims.y * info.dims.z * voxelBytes(info.type);
   printLine("voxels", text(info.dims, " x ") + ' ' + std::string(voxelTypeName(info.type)) + ", " +
                           std::to_string(bytes) + " bytes unpacked");
+  if (info.frames > 1) printLine("frames", std::to_string(info.frames));
+  if (info.components > 1) printLine("components", std::to_string(info.components) + ", " + meaningName(info.meaning));
   printPlace(info);
+  for (const VolumeLabel& label : info.labels)
+    printLine("label", std::to_string(label.value) + (label.name.empty() ? "" : ": " + oneLine(label.name)));
   printSource(info.metadata);
   for (const auto& [key, value] : info.metadata)
     if (!isUsualSource(key)) printLine(key, oneLine(value));
@@ -198,6 +228,7 @@ void print(const Described& found) {
   else
     std::cout << "several volumes\n";
   if (found.volume) printVolume(*found.volume);
+  if (found.volume && found.several) printLine("to pick one", pickText(*found.volume));
   printSeries(found);
   printArrays(found);
   if (found.values) printValues(*found.values);

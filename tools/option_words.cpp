@@ -52,9 +52,10 @@ std::string hintOf(const std::exception& error) {
   if (dynamic_cast<const UnknownFormat*>(&error)) return ": give --dims and --type";
   if (dynamic_cast<const StatedPlace*>(&error)) return "; convert --override takes yours";
   if (dynamic_cast<const VectorGridFound*>(&error)) return "; render --component x, y, z or magnitude shows a vec3";
-  if (const auto* several = dynamic_cast<const SeveralParts*>(&error))
-    return several->info.frames > 1 ? "; give --frame N, or convert all with -o and a numbered name, as out_%04d.vdb"
-                                    : "; give --component N or --component magnitude";
+  if (dynamic_cast<const SeveralParts*>(&error))
+    return std::string_view(error.what()).find(": a sequence of ") != std::string_view::npos
+               ? "; give --frame N, or convert all with -o and a numbered name, as out_%04d.vdb"
+               : "; give --component N or --component magnitude";
   return {};
 }
 

@@ -131,7 +131,7 @@ TEST_CASE("Failed conversions exit 1 with one line and leave nothing behind", "[
   failing.check("convert short.raw --dims 10 10 1 --type u8 --crop 0 0 0 9 10 0 -o o.vdb", 1,
                 "inside (0 0 0) to (9 9 0), found (0 0 0) to (9 10 0)");
   failing.check("info broken.vdb", 1, "truncated or corrupt");
-  failing.check("info short.raw", 1, "expected a .vdb file");
+  failing.check("info short.raw", 1, "headerless raw");
   failing.check("info none.vdb", 1, "no such file");
   // No file says how much there is: what would not fit is refused before it is asked for.
   failing.check("convert /dev/zero --dims 1000000 1000000 8 --type u8 -o x.vdb", 1,

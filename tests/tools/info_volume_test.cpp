@@ -104,7 +104,7 @@ TEST_CASE("info lists the arrays of a legacy VTK file, also behind the voxels", 
   std::string rows;
   for (const auto& row : info.at("arrays"))
     rows += row.at("name").get<std::string>() + (row.at("volume") == true ? "+ " : "- ");
-  CHECK(rows == "TIME- first+ flow- last+ ");
+  CHECK(rows == "TIME- first+ flow+ last+ ");
 }
 
 TEST_CASE("info of a numbered sequence describes its first frame and counts the others", "[tools]") {
@@ -115,4 +115,30 @@ TEST_CASE("info of a numbered sequence describes its first frame and counts the 
   CHECK(info.at("frames").at("first") == 2);
   CHECK(info.at("frames").at("last") == 7);
   CHECK(info.at("volume").at("dims") == nlohmann::json({3, 2, 2}));
+}
+
+TEST_CASE("info tells of volumes with several frames, components or labels, and how one is picked", "[tools]") {
+  const TemporaryFolder folder;
+  writeBytes(folder.path() / "c.nrrd",
+             "NRRD0004\ntype: uint8\ndimension: 5\nsizes: 3 3 2 2 2\nkinds: RGB-color domain domain domain list\n"
+             "encoding: raw\n\n" +
+                 std::string(72, '\4'));
+  const nlohmann::json both = infoOf(folder, "c.nrrd");
+  CHECK(both.at("volume").at("components") == 3);
+  CHECK(both.at("volume").at("frames") == 2);
+  CHECK(both.at("volume").at("meaning") == "colour");
+  CHECK(both.at("to_pick") == "--frame 0 to 1, --component 0 to 2 or magnitude");
+  CHECK(!both.contains("values"));
+  CHECK_THAT(runProgram(folder, "info c.nrrd").out, Contains("components     3, colour") && Contains("to pick one"));
+  CHECK(infoOf(folder, "c.nrrd --frame 1 --component 2").at("values").at("max") == 4);
+
+  writeBytes(folder.path() / "l.seg.nrrd",
+             "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 2 2\nencoding: raw\nSegment0_Name:=liver\n"
+             "Segment0_LabelValue:=5\nSegment0_Color:=1 0 0.5\n\n" +
+                 kVoxels);
+  const nlohmann::json labels = infoOf(folder, "l.seg.nrrd").at("volume").at("labels");
+  REQUIRE(labels.size() == 1);
+  CHECK(labels.at(0).at("name") == "liver");
+  CHECK(labels.at(0).at("value") == 5);
+  CHECK(labels.at(0).at("colour") == nlohmann::json({1.0, 0.0, 0.5}));
 }
