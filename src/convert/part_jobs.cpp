@@ -38,7 +38,7 @@ class Refusal {
 };
 
 void checkVectorOptions(const VolumeJob& job, const fs::path& output) {
-  refuseVectors(output);
+  refuseVectors(output, job.options.output);
   const Refusal refuse(job,
                        "a grid of vec3: choose one of its numbers by source.open.parts.component, or a grid of each "
                        "by options.eachComponent");

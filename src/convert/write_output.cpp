@@ -41,25 +41,22 @@ void tellLostWorld(const openvdb::FloatGrid& grid, std::vector<std::string>& not
                   (world.lengthUnit.empty() ? "" : "in " + world.lengthUnit));
 }
 
-[[noreturn]] void failVectors(const fs::path& path) {
-  throw OptionsError(path.string() +
-                     ": expected a .vdb for a grid of vec3; of its numbers one is chosen by "
-                     "source.open.parts.component, and options.eachComponent makes a grid of each");
-}
-
 // The grids as formats want them that hold no others. @throw OptionsError  one is no grid of floats
-std::vector<openvdb::FloatGrid::ConstPtr> floatGrids(const fs::path& path, const openvdb::GridCPtrVec& grids) {
+std::vector<openvdb::FloatGrid::ConstPtr> floatGrids(const fs::path& path, const OutputOptions& output,
+                                                     const openvdb::GridCPtrVec& grids) {
   std::vector<openvdb::FloatGrid::ConstPtr> out;
   for (const auto& grid : grids)
-    if (out.push_back(openvdb::gridConstPtrCast<openvdb::FloatGrid>(grid)); !out.back()) failVectors(path);
+    if (out.push_back(openvdb::gridConstPtrCast<openvdb::FloatGrid>(grid)); !out.back()) refuseVectors(path, output);
   return out;
 }
 
 }  // namespace
 
-void refuseVectors(const fs::path& path) {
-  const fs::path extension = path.extension();
-  if (extension == ".nvdb" || extension == ".mhd" || extension == ".nrrd") failVectors(path);
+void refuseVectors(const fs::path& path, const OutputOptions& output) {
+  if (formatOf(path, output) != ".vdb")
+    throw OptionsError(path.string() +
+                       ": expected a .vdb for a grid of vec3; of its numbers one is chosen by "
+                       "source.open.parts.component, and options.eachComponent makes a grid of each");
 }
 
 void checkOutput(const fs::path& path, const OutputOptions& options, const std::vector<fs::path>& inputs) {
@@ -114,7 +111,7 @@ std::int64_t writeOutput(const fs::path& path, const OutputOptions& output, cons
     DenseOptions dense;
     dense.type = type;
     dense.nrrd = format == ".nrrd";
-    const openvdb::FloatGrid::ConstPtr first = floatGrids(path, grids).front();
+    const openvdb::FloatGrid::ConstPtr first = floatGrids(path, output, grids).front();
     const openvdb::FloatGrid& values = *first;
     const DenseBox box = writeDense(path, values, dense, exact);
     const std::string space = worldOf(values).space;
@@ -122,9 +119,8 @@ std::int64_t writeOutput(const fs::path& path, const OutputOptions& output, cons
       notes.push_back("the place is written in " + box.space + ", as " + format +
                       " has it; the world of the input is " + space);
   } else if (format == ".nvdb") {
-    const std::vector<openvdb::FloatGrid::ConstPtr> values = floatGrids(path, grids);
-    writeNanoVdb(path, values, output.nano.value_or(NanoOptions{}), counted);
-    tellLostWorld(*values.front(), notes);
+    writeNanoVdb(path, floatGrids(path, output, grids), output.nano.value_or(NanoOptions{}), counted);
+    tellLostWorld(*floatGrids(path, output, grids).front(), notes);
   } else {
     if (!metadata["creator"]) metadata.insertMeta("creator", openvdb::StringMetadata(output.creator));
     writeAnyGrids(path, grids, metadata, output.codec.value_or(VdbCodec::blosc), exact);

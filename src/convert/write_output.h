@@ -18,7 +18,7 @@ void checkGridCount(const std::filesystem::path& output, const OutputOptions& op
                     const std::vector<std::string>& labels);
 
 /// Refuses grids of vec3 for formats other than .vdb. @throw OptionsError
-void refuseVectors(const std::filesystem::path& output);
+void refuseVectors(const std::filesystem::path& path, const OutputOptions& output);
 
 /// @param type   of the voxels of the source, for the dense formats
 /// @param check  is given the file before it takes its name, and the errors of grids that are quantised, else none

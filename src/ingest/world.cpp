@@ -76,6 +76,7 @@ std::unique_ptr<VoxelSource> inSpace(std::unique_ptr<VoxelSource> source, const 
   if (own == space) return source;
   if (const auto turn = changeOfSpace(own, space)) {
     info.indexToWorld = *turn * info.indexToWorld;
+    info.vectorToWorld = glm::dmat3(*turn) * info.vectorToWorld;
     info.notes.push_back("its world is turned from " + own + " to " + space);
   } else if (own.empty()) {
     info.notes.push_back("the file does not say which way its axes point: they are taken for " + space);
