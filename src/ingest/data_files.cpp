@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ingest/header_text.h"
+#include "ingest/parts.h"
 #include "ingest/streams/dense_source.h"
 #include "umbrick/core/error.h"
 
@@ -36,7 +37,7 @@ std::vector<fs::path> dataFiles(const HeaderFields& fields, const DataFileField&
 std::unique_ptr<ByteStream> openDataFiles(VolumeInfo& info, const std::string& fieldTitle, const fs::path& header,
                                           std::int64_t headerBytes, const std::vector<fs::path>& files,
                                           const OpenShare& open) {
-  const std::int64_t total = *volumeBytes(info.dims, info.type);
+  const std::int64_t total = *arrayBytes(info);
   const auto count = static_cast<std::int64_t>(std::max<std::size_t>(files.size(), 1));
   if (total / voxelBytes(info.type) % count != 0)
     throw IoError(info.name + ": " + fieldTitle + ": expected files of equal size, found " + std::to_string(count) +

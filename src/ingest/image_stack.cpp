@@ -10,6 +10,7 @@
 
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
+#include "ingest/parts.h"
 #include "ingest/place.h"
 #include "ingest/provenance.h"
 #include "ingest/slice_files.h"
@@ -73,7 +74,8 @@ void checkFiles(const SliceImages& first, Stack& stack, VolumeInfo& info) {
     const auto images = openPages(file);
     const auto size = [](const SliceImages& of) {
       return std::to_string(of.width) + " x " + std::to_string(of.height) + " " +
-             std::string(voxelTypeName(of.layout.type));
+             std::string(voxelTypeName(of.layout.type)) +
+             (of.components > 1 ? " of " + std::to_string(of.components) + " components" : "");
     };
     if (size(*images) != size(first))
       throw IoError(file.string() + ": expected " + size(first) + " as in " + firstName.string() + ", found " +
@@ -121,7 +123,7 @@ class StackSource : public VoxelSource {
   StackSource(VolumeInfo info, Stack stack) : stack_(std::move(stack)) { info_ = std::move(info); }
 
   double readSlab(std::int64_t count, std::span<float> out) override {
-    const auto voxels = static_cast<std::size_t>(info_.dims.x * info_.dims.y);
+    const auto voxels = static_cast<std::size_t>(info_.dims.x * info_.dims.y * info_.components);
     slice_.resize(voxels * static_cast<std::size_t>(voxelBytes(info_.type)));
     double error = 0;
     for (std::int64_t i = 0; i < count; ++i) {
@@ -159,7 +161,7 @@ void SliceImages::promise(std::int64_t count) {
   throw IoError("expected an image for each of " + std::to_string(count) + " slices");
 }
 
-std::unique_ptr<VoxelSource> openImageStack(const fs::path& path) {
+std::unique_ptr<VoxelSource> openImageStack(const fs::path& path, const PartChoice& parts) {
   VolumeInfo info;
   info.name = path.string();
   Stack stack;
@@ -173,7 +175,9 @@ std::unique_ptr<VoxelSource> openImageStack(const fs::path& path) {
   checkFiles(*first, stack, info);
   info.type = first->layout.type;
   info.dims = {first->width, first->height, std::ssize(stack.slices)};
-  const auto bytes = volumeBytes(info.dims, info.type);
+  info.components = info.valuesPerVoxel = first->components;
+  if (info.components > 1) info.meaning = VoxelMeaning::colour;
+  const auto bytes = arrayBytes(info);
   // No packing of images makes a hundred thousand pixels of one byte, so such a head is false.
   if (!bytes || *bytes / 100000 > info.fileBytes * 8)
     throw IoError(info.name + ": expected images that their files can hold, found " + describeBytes(info) + " in " +
@@ -184,7 +188,7 @@ std::unique_ptr<VoxelSource> openImageStack(const fs::path& path) {
     info.notes.push_back("0 stands for white: values are kept as they are stored");
   }
   placeStack(stack.place, info);
-  return std::make_unique<StackSource>(std::move(info), std::move(stack));
+  return pickComponents(std::make_unique<StackSource>(std::move(info), std::move(stack)), parts);
 }
 
 }  // namespace umbrick

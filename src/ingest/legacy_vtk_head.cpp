@@ -31,6 +31,7 @@ std::optional<VoxelType> legacyType(const std::string& text) {
 struct Values {
   std::string name, type;
   std::int64_t tuples = 0, components = 1;
+  VoxelMeaning meaning = VoxelMeaning::scalar;
 };
 
 class LegacyHeadReader {
@@ -40,7 +41,11 @@ class LegacyHeadReader {
 
   LegacyHead read() {
     begin();
-    while (!atVoxels()) {
+    try {
+      while (!atVoxels()) {
+      }
+    } catch (const NoSingleNumbers&) {
+      return *several_;
     }
     head_.bytes = static_cast<std::int64_t>(in_.tellg());
     return head_;
@@ -60,6 +65,7 @@ class LegacyHeadReader {
 
  private:
   struct EndOfFile {};
+  struct NoSingleNumbers {};  // the file ends, and had arrays of several numbers alone
 
   void begin() {
     if (!line().starts_with("# vtk DataFile Version")) failField(path_, "first line", "# vtk DataFile Version", line_);
@@ -76,6 +82,7 @@ class LegacyHeadReader {
     while (in_.get(c) && c != '\n')
       if (line_.push_back(c); line_.size() > kMaxVtkLine) failField(path_, "head", "lines of text", line_);
     if (!in_ && listing_) throw EndOfFile{};
+    if (!in_ && several_) throw NoSingleNumbers();
     if (!in_)
       failField(path_, "head",
                 name_.empty() ? "SCALARS or a FIELD with one number for each of the points or cells"
@@ -123,7 +130,7 @@ class LegacyHeadReader {
       while (!trimmed(line()).empty()) {
       }
     } else {
-      passAttribute(key, parts);
+      return attributeAtVoxels(key, parts);
     }
     return false;
   }
@@ -142,7 +149,9 @@ class LegacyHeadReader {
   // Whether these are the voxels that are looked for.
   bool isVoxels(const Values& values) const { return !listing_ && couldBeVoxels(values); }
   bool couldBeVoxels(const Values& values) const {
-    return count_ && values.tuples == *count_ && values.components == 1 && legacyType(values.type) &&
+    constexpr std::int64_t kMostComponents = 65536;
+    return count_ && values.tuples == *count_ && values.components >= 1 && values.components <= kMostComponents &&
+           (values.components == 1 || !name_.empty() || listing_) && legacyType(values.type) &&
            (name_.empty() ? values.name.substr(0, 8) != "vtkGhost" : values.name == name_);
   }
 
@@ -152,7 +161,22 @@ class LegacyHeadReader {
                 std::to_string(*count_));
     head_.array = values.name;
     head_.type = *legacyType(values.type);
+    head_.components = values.components;
+    head_.meaning = values.meaning;
     return true;
+  }
+
+  // Keeps the first array of several numbers, in case that there is none of one.
+  void keepSeveral(const Values& values) {
+    if (several_ || !name_.empty() || !fits_ || values.components < 2 || values.components > 4 ||
+        values.tuples != *count_ || !legacyType(values.type))
+      return;
+    several_ = head_;
+    several_->array = values.name;
+    several_->type = *legacyType(values.type);
+    several_->components = values.components;
+    several_->meaning = values.meaning;
+    several_->bytes = static_cast<std::int64_t>(in_.tellg());
   }
 
   void pass(const Values& values) {
@@ -168,6 +192,7 @@ class LegacyHeadReader {
       passed_ += (passed_.empty() ? "" : ", ") + values.name + " of " + std::to_string(values.components) + " x " +
                  values.type;
     if (passed_.size() > 200) passed_.resize(200);
+    if (count_) keepSeveral(values);
     skipValues(values);
   }
 
@@ -209,16 +234,18 @@ class LegacyHeadReader {
   }
 
   // Attributes of points or cells that are no scalars.
-  void passAttribute(const std::string& key, const std::vector<std::string>& parts) {
+  bool attributeAtVoxels(const std::string& key, const std::vector<std::string>& parts) {
     static const std::map<std::string, std::int64_t> components{
         {"vectors", 3}, {"normals", 3}, {"tensors", 9}, {"tensors6", 6}, {"global_ids", 1}, {"pedigree_ids", 1}};
     Values values{parts.size() > 1 ? parts[1] : "", parts.size() > 2 ? parts[2] : "", count_.value_or(0), 1};
     const std::int64_t third = parts.size() > 2 ? integer(parts[2]).value_or(-1) : -1;
     if (const auto found = components.find(key); found != components.end() && count_ && parts.size() == 3) {
       values.components = found->second;
+      if (key == "vectors" || key == "normals") values.meaning = VoxelMeaning::vector;
     } else if (key == "color_scalars" && count_ && third > 0 && third < 256) {
       values.components = third;
       values.type = head_.ascii ? "float" : "unsigned_char";
+      values.meaning = VoxelMeaning::colour;
     } else if (key == "lookup_table" && third >= 0 && third < kMostValues) {
       values.tuples = third;
       values.components = 4;
@@ -229,7 +256,9 @@ class LegacyHeadReader {
     } else {
       failField(path_, "head", "a keyword of structured points, then SCALARS or FIELD", line_);
     }
+    if (key != "lookup_table" && isVoxels(values)) return take(values);
     pass(values);
+    return false;
   }
 
   void skipValues(const Values& values) {
@@ -288,6 +317,7 @@ class LegacyHeadReader {
   bool fits_ = false, listing_ = false;
   std::vector<ArrayRow> rows_;
   LegacyHead head_;
+  std::optional<LegacyHead> several_;  // the first array of several numbers
 };
 
 }  // namespace

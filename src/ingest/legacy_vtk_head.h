@@ -18,11 +18,13 @@ struct LegacyHead {
   std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};
   VoxelType type = VoxelType::u8;
   std::string array;
+  std::int64_t components = 1;
+  VoxelMeaning meaning = VoxelMeaning::scalar;
   std::int64_t bytes = 0;  // where the voxels begin
 };
 
 /// Reads up to the first array of one number for each point or cell, or to that of the name. What lies behind it is
-/// left alone.
+/// left alone. Where the file has none, the first array of several numbers is taken.
 /// @param name  of the array; empty: any
 /// @throw IoError  no structured points, or no such array
 LegacyHead readLegacyHead(const std::filesystem::path& path, const std::string& name);

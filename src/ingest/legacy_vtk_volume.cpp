@@ -4,6 +4,7 @@
 #include "ingest/array_name.h"
 #include "ingest/header_text.h"
 #include "ingest/legacy_vtk_head.h"
+#include "ingest/parts.h"
 #include "ingest/place.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
@@ -14,7 +15,7 @@
 
 namespace umbrick {
 namespace fs = std::filesystem;
-std::unique_ptr<VoxelSource> openLegacyVtk(const fs::path& named) {
+std::unique_ptr<VoxelSource> openLegacyVtk(const fs::path& named, const PartChoice& parts) {
   const auto [path, array] = splitArrayName(named, ".vtk");
   VolumeInfo info;
   info.name = named.string();
@@ -28,7 +29,9 @@ std::unique_ptr<VoxelSource> openLegacyVtk(const fs::path& named) {
     info.indexToWorld[3][a] = head.origin[axis] + (head.cells ? 0.5 * head.spacing[axis] : 0.0);
   }
   info.type = head.type;
-  const auto bytes = volumeBytes(info.dims, info.type);
+  info.components = head.components;
+  info.meaning = head.meaning;
+  const auto bytes = arrayBytes(info);
   if (!bytes)
     failField(
         path, "DIMENSIONS", "1 to 2147483647 voxels along each axis and less than 2^63 bytes in all",
@@ -44,9 +47,12 @@ std::unique_ptr<VoxelSource> openLegacyVtk(const fs::path& named) {
   if (const std::int64_t least = head.ascii ? *bytes / voxelBytes(info.type) * 2 - 1 : *bytes; left < least)
     throw IoError(path.string() + ": expected " + describeBytes(info) + " after a header of " +
                   std::to_string(head.bytes) + ", found " + std::to_string(left) + (head.ascii ? " of text" : ""));
-  auto rest = openPlain(path, head.bytes);
-  auto voxels = head.ascii ? decimalStream(std::move(rest), info.type, path.string()) : std::move(rest);
-  return std::make_unique<DenseSource>(std::move(info), layout, firstBytes(std::move(voxels), *bytes), "");
+  guessMeaning(info);
+  const auto open = [path = path, head, type = info.type, bytes = *bytes] {
+    auto rest = openPlain(path, head.bytes);
+    return firstBytes(head.ascii ? decimalStream(std::move(rest), type, path.string()) : std::move(rest), bytes);
+  };
+  return openParts(std::move(info), PartAxes{}, layout, parts, open);
 }
 
 }  // namespace umbrick

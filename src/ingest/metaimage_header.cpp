@@ -14,6 +14,7 @@
 #include "ingest/header_lines.h"
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
+#include "ingest/parts.h"
 #include "ingest/place.h"
 #include "ingest/streams/dense_source.h"
 
@@ -108,10 +109,15 @@ class MetaHeaderReader {
       if (!(sizes[i] >= 1 && sizes[i] < 2147483648.0) || sizes[i] != std::floor(sizes[i]))
         fields_.fail("DimSize", "numbers from 1 to 2147483647", fields_.value("DimSize"));
       if (i < 3) header_.info.dims[static_cast<int>(i)] = static_cast<std::int64_t>(sizes[i]);
-      if (i >= 3 && sizes[i] != 1) fields_.fail("DimSize", "a volume of two or three axes", fields_.value("DimSize"));
+      if (i == 3) header_.info.frames = static_cast<std::int64_t>(sizes[i]);
+      if (i > 3 && sizes[i] != 1)
+        fields_.fail("DimSize", "a volume of two or three axes, and one of frames", fields_.value("DimSize"));
     }
-    if (fields_.has("ElementNumberOfChannels") && fields_.value("ElementNumberOfChannels") != "1")
-      fields_.fail("ElementNumberOfChannels", "1", fields_.value("ElementNumberOfChannels"));
+    if (!fields_.has("ElementNumberOfChannels")) return;
+    const auto channels = integer(fields_.value("ElementNumberOfChannels"));
+    if (!channels || *channels < 1 || *channels > 65536)
+      fields_.fail("ElementNumberOfChannels", "1 to 65536", fields_.value("ElementNumberOfChannels"));
+    header_.info.components = *channels;
   }
 
   void readLayout() {
@@ -119,8 +125,8 @@ class MetaHeaderReader {
     const auto typeFound = valueNamed(kMetaTypes, type);
     if (!typeFound) fields_.fail("ElementType", "a scalar type from MET_CHAR to MET_DOUBLE", type);
     header_.info.type = header_.layout.type = *typeFound;
-    if (!volumeBytes(header_.info.dims, header_.info.type))
-      fields_.fail("DimSize", "less than 2^63 bytes in all", fields_.value("DimSize"));
+    if (!arrayBytes(header_.info)) fields_.fail("DimSize", "less than 2^63 bytes in all", fields_.value("DimSize"));
+    guessMeaning(header_.info);
     header_.ascii = !flag("BinaryData", false) && fields_.has("BinaryData");
     header_.compressed = flag("CompressedData", false);
     if (header_.ascii && header_.compressed) fields_.fail("CompressedData", "False with BinaryData = False", "True");

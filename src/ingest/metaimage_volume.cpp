@@ -7,6 +7,7 @@
 
 #include "ingest/data_files.h"
 #include "ingest/metaimage_header.h"
+#include "ingest/parts.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
 #include "ingest/streams/packed_stream.h"
@@ -30,19 +31,25 @@ std::unique_ptr<ByteStream> openMetaShare(const MetaHeader& header, const fs::pa
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openMetaImage(const fs::path& path, bool strict) {
+std::unique_ptr<VoxelSource> openMetaImage(const fs::path& path, bool strict, const PartChoice& parts) {
   const std::int64_t ownBytes = checkedFileSize(path);
   const auto header = std::make_shared<const MetaHeader>(readMetaHeader(path));
   VolumeInfo info = header->info;
   info.fileBytes = std::max<std::int64_t>(ownBytes, 0);
   addProvenance(info, path, "MetaImage");
   const auto longer = strict || header->files.empty() ? nullptr : std::make_shared<std::vector<std::string>>();
-  auto bytes = openDataFiles(info, "ElementDataFile", path, header->headerBytes, header->files,
-                             [header, longer](const fs::path& file, std::int64_t offset, std::int64_t share) {
-                               return openMetaShare(*header, file, offset, share, longer.get());
-                             });
+  const std::int64_t ownSize = info.fileBytes;
+  const auto openAll = [header, longer, path, ownSize](VolumeInfo& of) {
+    of.fileBytes = ownSize;
+    return openDataFiles(of, "ElementDataFile", path, header->headerBytes, header->files,
+                         [header, longer](const fs::path& file, std::int64_t offset, std::int64_t share) {
+                           return openMetaShare(*header, file, offset, share, longer.get());
+                         });
+  };
+  auto first = openAll(info);  // looks at all files before the first voxel is read
   if (longer) info.notes.insert(info.notes.end(), longer->begin(), longer->end());
-  return std::make_unique<DenseSource>(std::move(info), header->layout, std::move(bytes), "");
+  auto open = openOnceMore(std::move(first), [openAll, of = info]() mutable { return openAll(of); });
+  return openParts(std::move(info), PartAxes{}, header->layout, parts, open);
 }
 
 }  // namespace umbrick

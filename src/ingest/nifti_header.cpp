@@ -52,6 +52,7 @@ NiftiHeader version1(const Fields& fields) {
   const std::string magic = fields.text(344, 4);
   if (magic != "n+1" && magic != "ni1") return header;  // Analyze, which has other fields from here on
   header.kind = magic == "n+1" ? NiftiHeader::Kind::single : NiftiHeader::Kind::pair;
+  header.intent = fields.get<std::int16_t>(68);
   header.slope = fields.get<float>(112);
   header.inter = fields.get<float>(116);
   header.spaceUnit = fields.get<std::uint8_t>(123) & 7;
@@ -70,6 +71,7 @@ NiftiHeader version2(const Fields& fields) {
   fields.get<std::int64_t>(16, header.dim);
   fields.get<double>(104, header.pixdim);
   header.voxOffset = fields.get<std::int64_t>(168);
+  header.intent = fields.get<std::int32_t>(504);
   header.slope = fields.get<double>(176);
   header.inter = fields.get<double>(184);
   header.description = fields.text(240, 80);

@@ -20,6 +20,7 @@ struct NiftiHeader {
   std::array<std::int64_t, 8> dim{};
   std::array<double, 8> pixdim{};
   int datatype = 0;
+  int intent = 0;  // intent_code: 1006 and 1007 vectors, 2003 and 2004 colours, 1002 labels
   std::int64_t voxOffset = 0;
   double slope = 0, inter = 0;
   int spaceUnit = 0;  // code of xyzt_units: 1 metres, 2 millimetres, 3 microns

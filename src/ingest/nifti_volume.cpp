@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/ingest/nifti_volume.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
 #include "ingest/nifti_header.h"
+#include "ingest/parts.h"
 #include "ingest/place.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
@@ -20,25 +22,38 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-std::optional<VoxelType> voxelType(int datatype) {
+// How one voxel is stored.
+struct NiftiType {
+  int code = 0;
+  VoxelType type = VoxelType::u8;
+  std::int64_t components = 1;  // side by side
+};
+
+std::optional<NiftiType> niftiType(int datatype) {
   using enum VoxelType;
-  static constexpr std::array<std::pair<int, VoxelType>, 10> kTypes{
-      {{2, u8}, {4, i16}, {8, i32}, {16, f32}, {64, f64}, {256, i8}, {512, u16}, {768, u32}, {1024, i64}, {1280, u64}}};
-  for (const auto& [code, type] : kTypes)
-    if (code == datatype) return type;
+  static constexpr std::array<NiftiType, 14> kTypes{{{2, u8},
+                                                     {4, i16},
+                                                     {8, i32},
+                                                     {16, f32},
+                                                     {32, f32, 2},
+                                                     {64, f64},
+                                                     {128, u8, 3},
+                                                     {256, i8},
+                                                     {512, u16},
+                                                     {768, u32},
+                                                     {1024, i64},
+                                                     {1280, u64},
+                                                     {1792, f64, 2},
+                                                     {2304, u8, 4}}};
+  for (const NiftiType& type : kTypes)
+    if (type.code == datatype) return type;
   return std::nullopt;
 }
 
 // Names a type that is not read, with its code.
 std::string datatypeName(int datatype) {
-  static constexpr std::array<std::pair<int, const char*>, 8> kNames{{{0, "none"},
-                                                                      {1, "bits"},
-                                                                      {32, "complex numbers of 64 bits"},
-                                                                      {128, "RGB colours"},
-                                                                      {1536, "floats of 128 bits"},
-                                                                      {1792, "complex numbers of 128 bits"},
-                                                                      {2048, "complex numbers of 256 bits"},
-                                                                      {2304, "RGBA colours"}}};
+  static constexpr std::array<std::pair<int, const char*>, 4> kNames{
+      {{0, "none"}, {1, "bits"}, {1536, "floats of 128 bits"}, {2048, "complex numbers of 256 bits"}}};
   std::string name = "an unknown type";
   for (const auto& [code, known] : kNames)
     if (code == datatype) name = known;
@@ -136,7 +151,7 @@ void place(const NiftiHeader& header, VolumeInfo& info) {
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openNifti(const fs::path& path) {
+std::unique_ptr<VoxelSource> openNifti(const fs::path& path, const PartChoice& parts) {
   checkedFileSize(path);
   const fs::path headerPath = isPairName(path) ? partner(path, ".hdr") : path;
   const std::int64_t headerBytes = checkedFileSize(headerPath);
@@ -149,19 +164,32 @@ std::unique_ptr<VoxelSource> openNifti(const fs::path& path) {
   if (header.dim[0] < 2 || header.dim[0] > 7) failField(path, "dim[0]", "2 to 7", std::to_string(header.dim[0]));
   for (std::size_t axis = 1; axis <= static_cast<std::size_t>(header.dim[0]); ++axis) {
     const std::string field = "dim[" + std::to_string(axis) + "]", found = std::to_string(header.dim[axis]);
-    if (axis <= 3) {
-      if (header.dim[axis] < 1 || header.dim[axis] > 2147483647)
-        failField(path, field, "a number from 1 to 2147483647", found);
-      info.dims[static_cast<int>(axis) - 1] = header.dim[axis];
-    } else if (header.dim[axis] > 1) {
-      failField(path, field, "1, since one volume of one component is read", found);
-    }
+    if (axis <= 3 && (header.dim[axis] < 1 || header.dim[axis] > 2147483647))
+      failField(path, field, "a number from 1 to 2147483647", found);
+    if (axis <= 3) info.dims[static_cast<int>(axis) - 1] = header.dim[axis];
+    if (axis == 4) info.frames = std::max<std::int64_t>(header.dim[axis], 1);
+    if (axis == 5) info.components = std::max<std::int64_t>(header.dim[axis], 1);
+    if (axis > 5 && header.dim[axis] > 1)
+      failField(path, field, "1, since two axes beside those of space are read", found);
   }
-  const auto type = voxelType(header.datatype);
+  const auto type = niftiType(header.datatype);
   if (!type)
-    failField(path, "datatype", "integers of 8 to 64 bits or floats of 32 or 64", datatypeName(header.datatype));
-  info.type = *type;
-  if (!volumeBytes(info.dims, info.type)) failField(path, "dim", "less than 2^63 bytes in all", "more");
+    failField(path, "datatype", "integers of 8 to 64 bits, floats, colours or complex numbers",
+              datatypeName(header.datatype));
+  info.type = type->type;
+  PartAxes axes{3, 3, true};
+  if (type->components > 1) {
+    if (info.components > 1)
+      failField(path, "dim[5]", "1 with colours and complex numbers", std::to_string(info.components));
+    info.components = type->components;
+    axes.components = 0;
+  }
+  if (header.datatype == 128 || header.datatype == 2304 || header.intent == 2003 || header.intent == 2004)
+    info.meaning = VoxelMeaning::colour;
+  else if (header.intent == 1006 || header.intent == 1007 || type->components == 2)
+    info.meaning = VoxelMeaning::vector;
+  guessMeaning(info);
+  if (!arrayBytes(info)) failField(path, "dim", "less than 2^63 bytes in all", "more");
   if (header.voxOffset < 0) failField(path, "vox_offset", "a number from 0", "another");
 
   const bool nifti = header.kind != NiftiHeader::Kind::analyze;
@@ -169,7 +197,8 @@ std::unique_ptr<VoxelSource> openNifti(const fs::path& path) {
   place(header, info);
   if (!trimmed(header.description).empty()) info.metadata["nifti_description"] = header.description;
   VoxelLayout layout{info.type, header.endian};
-  if (nifti && std::isfinite(header.slope) && header.slope != 0) {
+  const bool colours = header.datatype == 128 || header.datatype == 2304;  // which the standard never scales
+  if (nifti && !colours && std::isfinite(header.slope) && header.slope != 0) {
     if (!std::isfinite(header.inter)) failField(path, "scl_inter", "a finite number", std::to_string(header.inter));
     layout.slope = header.slope;
     layout.intercept = header.inter;
@@ -177,8 +206,10 @@ std::unique_ptr<VoxelSource> openNifti(const fs::path& path) {
 
   const fs::path voxels = header.kind == NiftiHeader::Kind::single ? headerPath : partner(headerPath, ".img");
   info.fileBytes = checkedFileSize(voxels) + (voxels == headerPath ? 0 : headerBytes);
-  auto bytes = openVoxels(info, voxels, header.voxOffset);
-  return std::make_unique<DenseSource>(std::move(info), layout, std::move(bytes), "");
+  auto first = openVoxels(info, voxels, header.voxOffset);
+  auto open = openOnceMore(std::move(first),
+                           [info, voxels, offset = header.voxOffset] { return openVoxels(info, voxels, offset); });
+  return openParts(std::move(info), axes, layout, parts, open);
 }
 
 }  // namespace umbrick

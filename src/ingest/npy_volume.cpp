@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ingest/header_text.h"
+#include "ingest/parts.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
 #include "ingest/streams/packed_stream.h"
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kNpyMaxHeader = 1 << 16, kNpyMaxAxes = 32;
+constexpr std::int64_t kNpyMostComponents = 4;
 
 struct NpyHeader {
   VoxelLayout layout;
@@ -92,7 +94,12 @@ std::vector<std::int64_t> shapeOf(const fs::path& path, const std::string& text)
   if (!tuple || !trimmed(rest).empty()) failField(path, "shape", "a tuple of positive integers", text);
   for (std::size_t i = shape.size(); i-- > 0 && shape.size() > 3;)
     if (shape[i] == 1) shape.erase(shape.begin() + static_cast<std::ptrdiff_t>(i));
-  if (shape.size() < 2 || shape.size() > 3) failField(path, "shape", "an array of two or three axes", text);
+  const bool components = shape.size() > 3 && shape.back() <= kNpyMostComponents;
+  if (shape.size() < 2 || shape.size() > 4 + (components ? 1 : 0))
+    failField(path, "shape",
+              "an array of two or three axes, beside which may stand one of frames and a last one of 1 to 4 "
+              "components",
+              text);
   return shape;
 }
 
@@ -127,24 +134,47 @@ NpyHeader readHeader(const fs::path& path) {
   return header;
 }
 
+// Takes the axes that are not of space out of the shape.
+PartAxes takeParts(NpyHeader& header, VolumeInfo& info) {
+  std::vector<std::int64_t>& shape = header.shape;
+  PartAxes axes;
+  if (shape.size() > 3 && shape.back() <= kNpyMostComponents) {
+    info.components = shape.back();
+    shape.pop_back();
+    axes.components = header.fortran ? 3 : 0;
+  }
+  if (shape.size() > 3) {
+    info.frames = header.fortran ? shape.back() : shape.front();
+    shape.erase(header.fortran ? shape.end() - 1 : shape.begin());
+    axes.framesFirst = true;  // in Fortran order components are the slowest axis of all
+  }
+  return axes;
+}
+
 }  // namespace
 
-std::unique_ptr<VoxelSource> openNpy(const fs::path& path) {
+std::unique_ptr<VoxelSource> openNpy(const fs::path& path, const PartChoice& parts) {
   const std::int64_t size = checkedFileSize(path);
   if (size < 0) throw IoError(path.string() + ": expected a file, found a pipe or device");
   NpyHeader header = readHeader(path);
-  if (!header.fortran) std::reverse(header.shape.begin(), header.shape.end());
   VolumeInfo info;
   info.name = path.string();
+  const PartAxes axes = takeParts(header, info);
+  if (!header.fortran) std::reverse(header.shape.begin(), header.shape.end());
   info.dims = glm::i64vec3(header.shape[0], header.shape[1], header.shape.size() > 2 ? header.shape[2] : 1);
   info.type = header.layout.type;
   info.fileBytes = size;
   addProvenance(info, path, "NumPy");
   info.metadata["numpy_order"] = header.fortran ? "Fortran: indexed [x, y, z]" : "C: indexed [z, y, x]";
-  if (!volumeBytes(info.dims, info.type))
-    failField(path, "shape", "each from 1 to 2147483647 and less than 2^63 bytes in all", "more");
-  auto voxels = openVoxels(info, path, header.bytes);
-  return std::make_unique<DenseSource>(std::move(info), header.layout, std::move(voxels), "");
+  if (!arrayBytes(info)) failField(path, "shape", "each from 1 to 2147483647 and less than 2^63 bytes in all", "more");
+  guessMeaning(info);
+  if (info.frames > 1)
+    info.notes.push_back("the " + std::string(header.fortran ? "last" : "first") + " axis, of " +
+                         std::to_string(info.frames) + ", is taken for one of frames");
+  auto first = openVoxels(info, path, header.bytes);
+  auto open =
+      openOnceMore(std::move(first), [info, path, bytes = header.bytes] { return openVoxels(info, path, bytes); });
+  return openParts(std::move(info), axes, header.layout, parts, open);
 }
 
 }  // namespace umbrick

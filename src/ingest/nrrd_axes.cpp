@@ -18,8 +18,13 @@ namespace {
 
 constexpr std::size_t kNrrdMaxAxes = 16;
 
+// What an axis that is not of space counts.
+enum class PartAxis { unknown, components, frames };
+
 struct Axis {
   std::int64_t size = 0;
+  PartAxis part = PartAxis::unknown;
+  VoxelMeaning meaning = VoxelMeaning::scalar;  // of components
   double spacing = 1;
   std::optional<double> min;
   bool cell = false;                    // cell-centred: `min` is the edge of the first voxel
@@ -46,15 +51,20 @@ class NrrdAxesReader {
   NrrdAxesReader(const HeaderFields& fields, NrrdHeader& header) : fields_(fields), header_(header) {}
 
   void read() {
-    const std::vector<Axis> axes = readAxes();
+    const std::vector<Axis> axes = takeParts(readAxes());
     for (std::size_t i = 0; i < axes.size(); ++i) header_.dims[static_cast<int>(i)] = axes[i].size;
-    if (!volumeBytes(header_.dims, header_.type))
-      fields_.fail("sizes", "less than 2^63 bytes in all", fields_.value("sizes"));
+    VolumeInfo whole;
+    whole.dims = header_.dims;
+    whole.type = header_.type;
+    whole.components = header_.components;
+    whole.frames = header_.frames;
+    if (!arrayBytes(whole)) fields_.fail("sizes", "less than 2^63 bytes in all", fields_.value("sizes"));
     if (axes[0].direction)
       placeByDirections(axes);
     else
       placeBySpacings(axes);
     toMillimetres(axes);
+    readMeasurementFrame();
   }
 
  private:
@@ -82,24 +92,81 @@ class NrrdAxesReader {
     const std::vector<std::string> kinds = fields_.list("kinds", axes.size());
     for (std::size_t i = 0; i < axes.size(); ++i) {
       const std::string kind = lower(kinds[i]);
-      if (kind != "domain" && kind != "space" && kind != "???" && kind != "none" && kind != "scalar" && kind != "stub")
-        axes[i].spatial = false;
+      if (kind == "domain" || kind == "space" || kind == "???" || kind == "none" || kind == "scalar" || kind == "stub")
+        continue;
+      axes[i].spatial = false;
+      const bool layers = kind == "list" && holdsSegments();
+      axes[i].part = (kind == "list" || kind == "time") && !layers ? PartAxis::frames : PartAxis::components;
+      if (kind.ends_with("rgb-color") || kind == "rgba-color" || kind == "3-color" || kind == "4-color")
+        axes[i].meaning = VoxelMeaning::colour;
+      else if (!layers)
+        axes[i].meaning = VoxelMeaning::vector;
     }
   }
 
-  // Axes of size 1 that are not of space, or too many, go; the others must be those of a volume.
+  // A segmentation of 3D Slicer lists its layers, in which segments overlap.
+  bool holdsSegments() const { return header_.metadata.contains("Segment0_LabelValue"); }
+
+  // Axes of size 1 that are not of space, or too many, go.
   std::vector<Axis> volumeAxes(std::vector<Axis> axes) const {
     std::erase_if(axes, [](const Axis& axis) { return !axis.spatial && axis.size == 1; });
     for (std::size_t i = axes.size(); i-- > 0 && axes.size() > 3;)
       if (axes[i].size == 1) axes.erase(axes.begin() + static_cast<std::ptrdiff_t>(i));
-    for (const Axis& axis : axes)
-      if (!axis.spatial)
-        fields_.fail("sizes",
-                     "one component per voxel (an axis of time or of components has " + std::to_string(axis.size) + ")",
-                     fields_.value("sizes"));
-    if (axes.size() < 2 || axes.size() > 3)
-      fields_.fail("sizes", "a volume of two or three axes", fields_.value("sizes"));
     return axes;
+  }
+
+  // Takes out the axes of components and frames, so that those of a volume are left. A fourth axis that the file says
+  // nothing of holds components where it is short, and else frames.
+  std::vector<Axis> takeParts(std::vector<Axis> axes) {
+    constexpr std::int64_t kMostGuessed = 4;
+    if (axes.size() > 3 && std::all_of(axes.begin(), axes.end(), [](const Axis& axis) { return axis.spatial; })) {
+      Axis& part = axes.front().size <= kMostGuessed ? axes.front() : axes.back();
+      part.spatial = false;
+      header_.notes.push_back("the file does not say what the " +
+                              std::string(&part == &axes.front() ? "first" : "last") +
+                              " of its axes is: it is taken "
+                              "for one of " +
+                              (part.size <= kMostGuessed ? "components" : "frames"));
+    }
+    std::vector<Axis> space;
+    bool components = false, frames = false;
+    for (const Axis& axis : axes) {
+      if (axis.spatial) {
+        space.push_back(axis);
+        continue;
+      }
+      PartAxis part = axis.part;
+      if (part == PartAxis::unknown) part = axis.size <= kMostGuessed ? PartAxis::components : PartAxis::frames;
+      bool& seen = part == PartAxis::frames ? frames : components;
+      if (seen) fields_.fail("sizes", "at most one axis of components and one of frames", fields_.value("sizes"));
+      seen = true;
+      const int place = static_cast<int>(space.size());
+      if (part == PartAxis::frames) {
+        header_.frames = axis.size;
+        header_.parts.frames = place;
+        header_.parts.framesFirst = !components;
+      } else {
+        header_.components = axis.size;
+        header_.parts.components = place;
+        header_.meaning = axis.meaning;
+      }
+    }
+    if (space.size() < 2 || space.size() > 3)
+      fields_.fail("sizes", "a volume of two or three axes", fields_.value("sizes"));
+    // Behind the last axis of a single slice comes its third one.
+    for (int* place : {&header_.parts.components, &header_.parts.frames})
+      if (space.size() == 2 && *place == 2) *place = 3;
+    return space;
+  }
+
+  // Its vectors are the axes along which the components of a vector count, in world space.
+  void readMeasurementFrame() const {
+    if (header_.components != 3 || !fields_.has("measurementframe") || spaceDimension() != 3) return;
+    const std::vector<std::string> texts = vectors(fields_.value("measurementframe"));
+    if (texts.size() != 3) fields_.fail("measurement frame", "three vectors", fields_.value("measurementframe"));
+    for (std::size_t i = 0; i < 3; ++i)
+      if (const auto axis = vector("measurement frame", texts[i], 3))
+        header_.measurementFrame[static_cast<int>(i)] = *axis;
   }
 
   void readSpacings(std::vector<Axis>& axes) const {

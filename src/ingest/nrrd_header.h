@@ -9,15 +9,21 @@
 #include <string>
 #include <vector>
 
+#include "ingest/parts.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
 
 enum class NrrdEncoding { raw, gzip, bzip2, text, hex };
 
-/// What the header says. It is checked, and has three axes however many the file had.
+/// What the header says. It is checked, and has three axes of space however many the file had.
 struct NrrdHeader {
   glm::i64vec3 dims{1};
+  std::int64_t components = 1, frames = 1;
+  PartAxes parts;  // where these two stand
+  VoxelMeaning meaning = VoxelMeaning::scalar;
+  glm::dmat3 measurementFrame{1};  // of vectors
+  std::vector<std::string> notes;
   VoxelType type = VoxelType::u8;
   NrrdEncoding encoding = NrrdEncoding::raw;
   bool bigEndian = false;

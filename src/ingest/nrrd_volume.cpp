@@ -10,6 +10,7 @@
 #include "ingest/length_unit.h"
 #include "ingest/nrrd_header.h"
 #include "ingest/provenance.h"
+#include "ingest/slicer_segments.h"
 #include "ingest/streams/dense_source.h"
 #include "ingest/streams/packed_stream.h"
 #include "ingest/streams/text_stream.h"
@@ -61,7 +62,7 @@ std::unique_ptr<ByteStream> openNrrdShare(const NrrdHeader& header, const fs::pa
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openNrrd(const fs::path& path, bool strict) {
+std::unique_ptr<VoxelSource> openNrrd(const fs::path& path, bool strict, const PartChoice& parts) {
   const std::int64_t headerFileBytes = checkedFileSize(path);
   const auto header = std::make_shared<const NrrdHeader>(readNrrdHeader(path));
   VolumeInfo info;
@@ -69,20 +70,34 @@ std::unique_ptr<VoxelSource> openNrrd(const fs::path& path, bool strict) {
   info.dims = header->dims;
   info.type = header->type;
   info.indexToWorld = header->indexToWorld;
+  info.components = header->components;
+  info.frames = header->frames;
+  info.meaning = header->meaning;
+  info.vectorToWorld = header->measurementFrame;
+  info.notes = header->notes;
   info.metadata = header->metadata;
   if (header->millimetres) useLengthUnit(info, *header->millimetres);
+  info.labels = slicerSegments(info.metadata);
+  if (info.labels.empty()) guessMeaning(info);
   addProvenance(info, path, "NRRD");
   info.fileBytes = std::max<std::int64_t>(headerFileBytes, 0);
 
   const auto longer = strict || header->dataFiles.empty() ? nullptr : std::make_shared<std::vector<std::string>>();
-  auto bytes = openDataFiles(info, "data file", path, header->bytes, header->dataFiles,
-                             [header, longer](const fs::path& file, std::int64_t offset, std::int64_t share) {
-                               return openNrrdShare(*header, file, offset, share, longer.get());
-                             });
+  const std::int64_t ownSize = info.fileBytes;
+  const auto openAll = [header, longer, path, ownSize](VolumeInfo& of) {
+    of.fileBytes = ownSize;
+    return openDataFiles(of, "data file", path, header->bytes, header->dataFiles,
+                         [header, longer](const fs::path& file, std::int64_t offset, std::int64_t share) {
+                           return openNrrdShare(*header, file, offset, share, longer.get());
+                         });
+  };
+  auto first = openAll(info);  // looks at all files before the first voxel is read
   if (longer) info.notes.insert(info.notes.end(), longer->begin(), longer->end());
   const bool text = header->encoding == NrrdEncoding::text;
   const std::endian endian = text ? std::endian::native : header->bigEndian ? std::endian::big : std::endian::little;
-  return std::make_unique<DenseSource>(std::move(info), VoxelLayout{header->type, endian, 0}, std::move(bytes), "");
+  const VoxelLayout layout{header->type, endian, 0};
+  auto open = openOnceMore(std::move(first), [openAll, of = info]() mutable { return openAll(of); });
+  return openParts(std::move(info), header->parts, layout, parts, open);
 }
 
 }  // namespace umbrick

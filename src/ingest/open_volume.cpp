@@ -12,6 +12,7 @@
 #include "ingest/dicom/dicom_series.h"
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
+#include "ingest/parts.h"
 #include "ingest/placed_source.h"
 #include "ingest/streams/packed_stream.h"
 #include "umbrick/core/error.h"
@@ -50,13 +51,15 @@ std::vector<Format> formats() {
         "scalar volumes; raw, gzip, bzip2, text and hex; detached, in lists and in numbered files"},
        [](Bytes b) { return b.starts_with("NRRD000"); },
        true,
-       [](const fs::path& path, const OpenOptions& options) { return openNrrd(path, options.strict); }},
+       [](const fs::path& path, const OpenOptions& options) { return openNrrd(path, options.strict, options.parts); }},
       {{"MetaImage",
         {".mha", ".mhd"},
         "scalar volumes; binary, compressed and ASCII; in one file, beside, in lists and in numbered files"},
        [](Bytes b) { return b.starts_with("ObjectType") || b.starts_with("NDims"); },
        true,
-       [](const fs::path& path, const OpenOptions& options) { return openMetaImage(path, options.strict); }},
+       [](const fs::path& path, const OpenOptions& options) {
+         return openMetaImage(path, options.strict, options.parts);
+       }},
       {{"NIfTI and Analyze",
         {".nii", ".nii.gz", ".hdr", ".img", ".img.gz"},
         "scalar volumes of NIfTI-1, NIfTI-2 and Analyze 7.5; sform, qform, units, slope and intercept"},
@@ -64,7 +67,7 @@ std::vector<Format> formats() {
          return b.size() >= 348 && (b.substr(344, 4) == Bytes("n+1\0", 4) || b.substr(4, 4) == Bytes("n+2\0", 4));
        },
        true,
-       [](const fs::path& path, const OpenOptions&) { return openNifti(path); }},
+       [](const fs::path& path, const OpenOptions& options) { return openNifti(path, options.parts); }},
       {{"DICOM",
         {".dcm", ".ima"},
         "a file or a folder of them: grey series, single- and multi-frame, raw and compressed"},
@@ -79,18 +82,18 @@ std::vector<Format> formats() {
                 b.starts_with(Bytes("II+\0", 4)) || b.starts_with(Bytes("MM\0+", 4)) || b.starts_with("\x89PNG");
        },
        false,
-       [](const fs::path& path, const OpenOptions&) { return openImageStack(path); }},
+       [](const fs::path& path, const OpenOptions& options) { return openImageStack(path, options.parts); }},
       {{"VTK ImageData",
         {".vti"},
         "one scalar array of points or cells: file.vti:name, or the only one; ascii, base64 and raw; zlib, LZ4 and "
         "LZMA"},
        {},
        true,
-       [](const fs::path& path, const OpenOptions&) { return openVti(path); }},
+       [](const fs::path& path, const OpenOptions& options) { return openVti(path, options.parts); }},
       {{"legacy VTK", {".vtk"}, "structured points, ASCII and binary: file.vtk:name, or the first scalars"},
        [](Bytes b) { return b.starts_with("# vtk DataFile"); },
        true,
-       [](const fs::path& path, const OpenOptions&) { return openLegacyVtk(path); }},
+       [](const fs::path& path, const OpenOptions& options) { return openLegacyVtk(path, options.parts); }},
       {{"HDF5",
         {".h5", ".hdf5", ".he5", ".nc", ".nc4"},
         "a dataset of three axes, also of netCDF-4: file.h5:/path, or the only one; scale, offset, missing values"},
@@ -102,7 +105,7 @@ std::vector<Format> formats() {
         "arrays of two or three axes in C or Fortran order"},
        [](Bytes b) { return b.starts_with("\x93NUMPY"); },
        false,
-       [](const fs::path& path, const OpenOptions&) { return openNpy(path); }},
+       [](const fs::path& path, const OpenOptions& options) { return openNpy(path, options.parts); }},
   };
 }
 
@@ -196,13 +199,14 @@ std::unique_ptr<VoxelSource> openPlaced(const fs::path& path, const OpenOptions&
   const auto inUnit = [&](std::unique_ptr<VoxelSource> source) {
     return options.lengthUnit.empty() ? std::move(source) : inLengthUnit(std::move(source), options.lengthUnit);
   };
-  if (options.raw) return inUnit(openRaw(path, *options.raw));
+  if (options.raw) return inUnit(openRaw(path, *options.raw, options.parts));
   const auto format = formatOf(path);
   if (!format) {
     checkedFileSize(path);
     throw UnknownFormat(path.string() + ": taken for headerless raw, which needs dims and type");
   }
   auto source = inUnit(format->open(path, options));
+  checkChoice(source->info(), options.parts);
   if (!options.spacing && !options.origin) return source;
   // DICOM has looked at them: a series may state a part of its place.
   if (format->row.name == "DICOM" && !options.overridePlace) return source;
@@ -218,6 +222,13 @@ std::unique_ptr<VoxelSource> openPlaced(const fs::path& path, const OpenOptions&
 std::unique_ptr<VoxelSource> openVolume(const fs::path& path, const OpenOptions& options) {
   auto source = withUnit(openPlaced(path, options), options.lengthUnit);
   return options.space.empty() ? std::move(source) : inSpace(std::move(source), options.space);
+}
+
+VolumeInfo describeVolume(const fs::path& path, OpenOptions options) {
+  options.parts = {};
+  options.parts.allComponents = true;
+  options.parts.frame = 0;
+  return openVolume(path, options)->info();
 }
 
 std::optional<std::string> formatOfName(const fs::path& path) {

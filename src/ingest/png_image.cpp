@@ -4,18 +4,11 @@
 #include <array>
 #include <cstdio>
 
-#include "ingest/header_text.h"
 #include "ingest/slice_image.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
 namespace {
-
-std::string colourName(int type) {
-  if (type == PNG_COLOR_TYPE_PALETTE) return "a palette";
-  if (type == PNG_COLOR_TYPE_GRAY_ALPHA) return "grey and opacity";
-  return type == PNG_COLOR_TYPE_RGB ? "RGB" : "RGB and opacity";
-}
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -45,7 +38,10 @@ bool readHead(Decoder& decoder, std::FILE* file) {
 
 bool readRows(Decoder& decoder, png_bytep pixels, std::size_t rowBytes) {
   if (setjmp(png_jmpbuf(decoder.png))) return false;
-  png_set_packing(decoder.png);  // 1, 2 and 4 bits become bytes of the same values
+  if (png_get_color_type(decoder.png, decoder.info) == PNG_COLOR_TYPE_PALETTE)
+    png_set_palette_to_rgb(decoder.png);
+  else
+    png_set_packing(decoder.png);  // 1, 2 and 4 bits become bytes of the same values
   const int passes = png_set_interlace_handling(decoder.png);
   png_read_update_info(decoder.png, decoder.info);
   const png_uint_32 rows = png_get_image_height(decoder.png, decoder.info);
@@ -79,8 +75,11 @@ class PngImage : public SliceImages {
     decoder_->info = decoder_->png ? png_create_info_struct(decoder_->png) : nullptr;
     if (!decoder_->info) throw IoError(path_.string() + ": cannot read: out of memory");
     if (!readHead(*decoder_, file_.get())) fail("a PNG image");
-    if (png_get_color_type(decoder_->png, decoder_->info) != PNG_COLOR_TYPE_GRAY)
-      failField(path_, "colour type", "grey", colourName(png_get_color_type(decoder_->png, decoder_->info)));
+    const int colour = png_get_color_type(decoder_->png, decoder_->info);
+    components = colour == PNG_COLOR_TYPE_GRAY ? 1 : colour == PNG_COLOR_TYPE_GRAY_ALPHA ? 2 : 3;
+    if (colour == PNG_COLOR_TYPE_RGB_ALPHA) components = 4;
+    // A palette may have an opacity for each of its colours, which comes with them.
+    if (colour == PNG_COLOR_TYPE_PALETTE && png_get_valid(decoder_->png, decoder_->info, PNG_INFO_tRNS)) components = 4;
     width = png_get_image_width(decoder_->png, decoder_->info);
     height = png_get_image_height(decoder_->png, decoder_->info);
     layout.type = png_get_bit_depth(decoder_->png, decoder_->info) == 16 ? VoxelType::u16 : VoxelType::u8;

@@ -7,6 +7,7 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <sstream>
 
+#include "ingest/parts.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
 #include "ingest/streams/packed_stream.h"
@@ -37,6 +38,10 @@ void checkOptions(const std::string& name, const RawOptions& options) {
   }
   if (options.headerBytes < 0)
     throw InvalidArgument(name + ": header bytes: expected 0 or more, found " + std::to_string(options.headerBytes));
+  constexpr std::int64_t kMostComponents = 65536;
+  if (options.components < 1 || options.components > kMostComponents)
+    throw InvalidArgument(name + ": components: expected 1 to " + std::to_string(kMostComponents) + ", found " +
+                          std::to_string(options.components));
   if (!options.bitsStored) return;
   const std::string type(voxelTypeName(options.type));
   if (isFloat(options.type)) throw InvalidArgument(name + ": bits stored: only integers can have fewer, not " + type);
@@ -47,19 +52,22 @@ void checkOptions(const std::string& name, const RawOptions& options) {
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openRaw(const fs::path& path, const RawOptions& options) {
+std::unique_ptr<VoxelSource> openRaw(const fs::path& path, const RawOptions& options, const PartChoice& parts) {
   VolumeInfo info;
   info.name = path.string();
   checkOptions(info.name, options);
   info.dims = options.dims;
   info.type = options.type;
+  info.components = options.components;
+  if (!arrayBytes(info)) throw InvalidArgument(info.name + ": dims and components: expected less than 2^63 bytes");
+  guessMeaning(info);
   info.indexToWorld = glm::scale(glm::translate(glm::dmat4(1), options.origin), options.spacing);
   const std::int64_t size = checkedFileSize(path);
   info.fileBytes = std::max<std::int64_t>(size, 0);
   addProvenance(info, path, "raw");
 
   // A plain file of the right size is plain, whatever its first bytes; else the magic bytes of a packing decide.
-  const std::int64_t expected = *volumeBytes(options.dims, options.type);
+  const std::int64_t expected = *arrayBytes(info);
   const bool fits = size >= options.headerBytes && size - options.headerBytes == expected;
   const Packing packing = size >= 0 && !fits ? packingOf(path) : Packing::none;
   if (size >= 0 && !fits && packing == Packing::none) {
@@ -70,13 +78,15 @@ std::unique_ptr<VoxelSource> openRaw(const fs::path& path, const RawOptions& opt
                   (size - options.headerBytes > expected ? kHint : ""));
   }
   if (packing == Packing::gzip) checkDeflateRatio(path, info, size);
-  auto bytes = openPacked(path, packing);
-  if (const std::int64_t skipped = bytes->skip(options.headerBytes); skipped < options.headerBytes)
-    throw IoError(info.name + ": expected a header of " + std::to_string(options.headerBytes) + " bytes, found " +
-                  std::to_string(skipped) + " bytes in all");
-  return std::make_unique<DenseSource>(std::move(info),
-                                       VoxelLayout{options.type, options.endian, options.bitsStored.value_or(0)},
-                                       std::move(bytes), kHint);
+  const auto open = [path, packing, headerBytes = options.headerBytes, name = info.name] {
+    auto bytes = openPacked(path, packing);
+    if (const std::int64_t skipped = bytes->skip(headerBytes); skipped < headerBytes)
+      throw IoError(name + ": expected a header of " + std::to_string(headerBytes) + " bytes, found " +
+                    std::to_string(skipped) + " bytes in all");
+    return bytes;
+  };
+  const VoxelLayout layout{options.type, options.endian, options.bitsStored.value_or(0)};
+  return openParts(std::move(info), PartAxes{}, layout, parts, open, kHint);
 }
 
 }  // namespace umbrick

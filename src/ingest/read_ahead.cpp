@@ -88,8 +88,9 @@ struct ReadAhead::Queue {
     Item head;
     head.head = Head{source->info(), stored};
     push(std::move(head));
-    const std::int64_t sliceBytes = dims.x * dims.y * voxelBytes(stored.value_or(VoxelType::f32));
-    const std::int64_t atOnce = std::max<std::int64_t>(kSlabVoxels / (dims.x * dims.y), 1);
+    const std::int64_t sliceNumbers = dims.x * dims.y * source->info().valuesPerVoxel;
+    const std::int64_t sliceBytes = sliceNumbers * voxelBytes(stored.value_or(VoxelType::f32));
+    const std::int64_t atOnce = std::max<std::int64_t>(kSlabVoxels / sliceNumbers, 1);
     for (std::int64_t first = 0; first < dims.z; first += atOnce) {
       const std::int64_t slices = std::min(atOnce, dims.z - first);
       Item item;
@@ -100,7 +101,7 @@ struct ReadAhead::Queue {
         source->readStored(slices, {item.slab.get(), static_cast<std::size_t>(item.bytes)});
       else
         item.conversionError = source->readSlab(
-            slices, {reinterpret_cast<float*>(item.slab.get()), static_cast<std::size_t>(slices * dims.x * dims.y)});
+            slices, {reinterpret_cast<float*>(item.slab.get()), static_cast<std::size_t>(slices * sliceNumbers)});
       if (first + slices == dims.z) source.reset();  // what it counted is complete when its last slab is there
       push(std::move(item));
     }

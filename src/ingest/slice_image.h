@@ -1,4 +1,4 @@
-// One grey image of a stack. Only the .cpp files see libtiff and libpng.
+// One image of a stack. Only the .cpp files see libtiff and libpng.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -19,6 +19,7 @@ class SliceImages {
  public:
   virtual ~SliceImages() = default;
   std::int64_t width = 0, height = 0, pages = 1;
+  std::int64_t components = 1;  // 1 grey, 2 grey and opacity, 3 RGB, 4 RGB and opacity; side by side
   VoxelLayout layout;
   bool whiteIsZero = false;
   std::string description;                 // of the first page
@@ -31,7 +32,7 @@ class SliceImages {
   virtual void promise(std::int64_t count);
 };
 
-/// By the first bytes. @throw IoError  neither, unreadable, or no grey image
+/// By the first bytes. @throw IoError  neither, unreadable, or an image of another kind
 std::unique_ptr<SliceImages> openSliceImages(const std::filesystem::path& path);
 std::unique_ptr<SliceImages> openTiff(const std::filesystem::path& path);
 std::unique_ptr<SliceImages> openPng(const std::filesystem::path& path);

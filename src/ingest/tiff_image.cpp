@@ -65,6 +65,7 @@ class TiffImages : public SliceImages {
     width = field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0);
     height = field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0);
     layout = layoutHere();
+    components = samplesHere();
     bits_ = field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1);
     whiteIsZero =
         field<std::uint16_t>(tiff_.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE;
@@ -81,9 +82,9 @@ class TiffImages : public SliceImages {
   }
 
   void promise(std::int64_t count) override {
-    const std::int64_t bytes = width * height * voxelBytes(layout.type), rowBytes = width * voxelBytes(layout.type);
+    const std::int64_t rowBytes = width * components * voxelBytes(layout.type), bytes = rowBytes * height;
     const std::string expected = "one directory for " + std::to_string(count) + " slices";
-    if (pages != 1 || bits_ < 8 || TIFFIsTiled(tiff_.get()) ||
+    if (pages != 1 || bits_ < 8 || planes() > 1 || TIFFIsTiled(tiff_.get()) ||
         field<std::uint16_t>(tiff_.get(), TIFFTAG_COMPRESSION, COMPRESSION_NONE) != COMPRESSION_NONE)
       failField(path_, "slices", expected + ", unpacked and in strips", "a packed one, or tiles");
     const auto start = static_cast<std::int64_t>(TIFFGetStrileOffset(tiff_.get(), 0));
@@ -106,7 +107,7 @@ class TiffImages : public SliceImages {
     const auto here = layoutHere();
     if (field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0) != width ||
         field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0) != height || here.type != layout.type ||
-        field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1) != bits_)
+        field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1) != bits_ || samplesHere() != components)
       failField(path_, "page " + std::to_string(page + 1), sizeText(width, height, layout.type) + " as on the first",
                 sizeText(field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0),
                          field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0), here.type));
@@ -126,10 +127,34 @@ class TiffImages : public SliceImages {
   }
 
   // Of the pixels as they lie in a row: several to a byte where they are small.
-  std::int64_t rowBytes() const { return (width * bits_ + 7) / 8; }
+  std::int64_t rowBytes() const { return (width * samplesAtOnce() * bits_ + 7) / 8; }
+
+  // The samples of a pixel lie side by side, or each has a plane of its own.
+  std::int64_t planes() const {
+    return field<std::uint16_t>(tiff_.get(), TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == PLANARCONFIG_SEPARATE
+               ? components
+               : 1;
+  }
+  std::int64_t samplesAtOnce() const { return planes() > 1 ? 1 : components; }
+
+  std::int64_t samplesHere() const {
+    return std::max<std::int64_t>(field<std::uint16_t>(tiff_.get(), TIFFTAG_SAMPLESPERPIXEL, 1), 1);
+  }
 
   void readPixels(std::int64_t page, std::int64_t row, std::span<std::byte> out) {
-    TIFFIsTiled(tiff_.get()) ? readTiles(page, row, out) : readStrips(page, row, out);
+    if (planes() == 1) return readPlane(page, 0, row, out);
+    const auto bytes = static_cast<std::size_t>(bits_ / 8);
+    const auto several = static_cast<std::size_t>(components);
+    plane_.resize(out.size() / several);
+    for (std::size_t k = 0; k < several; ++k) {
+      readPlane(page, static_cast<std::uint16_t>(k), row, plane_);
+      for (std::size_t i = 0; i < plane_.size() / bytes; ++i)
+        std::memcpy(&out[(i * several + k) * bytes], &plane_[i * bytes], bytes);
+    }
+  }
+
+  void readPlane(std::int64_t page, std::uint16_t plane, std::int64_t row, std::span<std::byte> out) {
+    TIFFIsTiled(tiff_.get()) ? readTiles(page, plane, row, out) : readStrips(page, plane, row, out);
   }
 
   void readBehind(std::int64_t page, std::span<std::byte> out) {
@@ -161,10 +186,13 @@ class TiffImages : public SliceImages {
   VoxelLayout layoutHere() const {
     const auto samples = field<std::uint16_t>(tiff_.get(), TIFFTAG_SAMPLESPERPIXEL, 1);
     const auto photometric = field<std::uint16_t>(tiff_.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
-    if (samples != 1 || photometric > PHOTOMETRIC_MINISBLACK)
-      failField(path_, "photometric interpretation", "grey with one sample per pixel",
-                photometricName(photometric) + " with " + std::to_string(samples));
     const auto bits = field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1);
+    const bool grey = photometric <= PHOTOMETRIC_MINISBLACK && (samples == 1 || samples == 2);
+    const bool colour = photometric == PHOTOMETRIC_RGB && (samples == 3 || samples == 4);
+    if ((!grey && !colour) || (samples > 1 && bits < 8))
+      failField(path_, "photometric interpretation",
+                "grey of 1 or 2 samples per pixel, or RGB of 3 or 4 of 8 bits or more",
+                photometricName(photometric) + " with " + std::to_string(samples));
     const auto format = field<std::uint16_t>(tiff_.get(), TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
     using enum VoxelType;
     VoxelLayout out;
@@ -189,11 +217,12 @@ class TiffImages : public SliceImages {
     return out;
   }
 
-  void readStrips(std::int64_t page, std::int64_t row, std::span<std::byte> out) {
+  void readStrips(std::int64_t page, std::uint16_t plane, std::int64_t row, std::span<std::byte> out) {
     const auto rowBytes = static_cast<std::size_t>(row);
     const std::size_t rows = std::min<std::size_t>(field<std::uint32_t>(tiff_.get(), TIFFTAG_ROWSPERSTRIP, 1),
                                                    static_cast<std::size_t>(height));
-    for (std::uint32_t strip = 0; !out.empty(); ++strip) {
+    const std::uint32_t first = plane * (TIFFNumberOfStrips(tiff_.get()) / static_cast<std::uint32_t>(planes()));
+    for (std::uint32_t strip = first; !out.empty(); ++strip) {
       const std::size_t want = std::min(std::max<std::size_t>(rows, 1) * rowBytes, out.size());
       const tmsize_t got = TIFFReadEncodedStrip(tiff_.get(), strip, out.data(), static_cast<tmsize_t>(want));
       if (got != static_cast<tmsize_t>(want))
@@ -203,23 +232,23 @@ class TiffImages : public SliceImages {
     }
   }
 
-  void readTiles(std::int64_t page, std::int64_t row, std::span<std::byte> out) {
+  void readTiles(std::int64_t page, std::uint16_t plane, std::int64_t row, std::span<std::byte> out) {
     const std::int64_t tileWidth = field<std::uint32_t>(tiff_.get(), TIFFTAG_TILEWIDTH, 0);
     const std::int64_t tileHeight = field<std::uint32_t>(tiff_.get(), TIFFTAG_TILELENGTH, 0);
     const tmsize_t tileBytes = TIFFTileSize(tiff_.get());
-    const std::int64_t tileRow = (tileWidth * bits_ + 7) / 8;
+    const std::int64_t pixelBits = bits_ * samplesAtOnce(), tileRow = (tileWidth * pixelBits + 7) / 8;
     // A tile is no larger than what it covers, but for the rest of its own edge. Its width is a multiple of 16, so that
     // it begins at a byte.
     if (tileWidth < 1 || tileHeight < 1 || tileBytes != tileRow * tileHeight || tileWidth > width + 65536 ||
-        tileHeight > height + 65536 || tileWidth * bits_ % 8 != 0)
+        tileHeight > height + 65536 || tileWidth * pixelBits % 8 != 0)
       fail("tiles of the size of the image");
     std::vector<std::byte> tile(static_cast<std::size_t>(tileBytes));
     for (std::int64_t y = 0; y < height; y += tileHeight)
       for (std::int64_t x = 0; x < width; x += tileWidth) {
-        if (TIFFReadTile(tiff_.get(), tile.data(), static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, 0) <
-            0)
+        if (TIFFReadTile(tiff_.get(), tile.data(), static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0,
+                         plane) < 0)
           fail("the pixels of page " + std::to_string(page + 1));
-        const std::int64_t begin = x * bits_ / 8, bytes = std::min(tileRow, row - begin);
+        const std::int64_t begin = x * pixelBits / 8, bytes = std::min(tileRow, row - begin);
         for (std::int64_t line = 0; line < std::min(tileHeight, height - y); ++line)
           std::memcpy(out.data() + (y + line) * row + begin, tile.data() + line * tileRow,
                       static_cast<std::size_t>(bytes));
@@ -231,6 +260,7 @@ class TiffImages : public SliceImages {
   std::unique_ptr<TIFF, CloseTiff> tiff_;
   int bits_ = 8;                        // of a pixel in the file
   std::vector<std::byte> packed_;       // pixels of less than a byte
+  std::vector<std::byte> plane_;        // one sample of each pixel
   std::unique_ptr<ByteStream> behind_;  // slices without directories, from the first on
   std::int64_t behindPage_ = 0;         // that comes next there
   std::vector<std::uint64_t> pages_;    // offsets of their directories, so that each is found at once

@@ -8,13 +8,13 @@
 namespace umbrick {
 
 void VoxelSource::skipSlices(std::int64_t count) {
-  const std::int64_t sliceVoxels = info_.dims.x * info_.dims.y;
+  const std::int64_t sliceNumbers = info_.dims.x * info_.dims.y * info_.valuesPerVoxel;
   const std::int64_t atOnce =
-      std::clamp<std::int64_t>((std::int64_t(1) << 22) / sliceVoxels, 1, std::max<std::int64_t>(count, 1));
+      std::clamp<std::int64_t>((std::int64_t(1) << 22) / sliceNumbers, 1, std::max<std::int64_t>(count, 1));
   std::vector<float> dropped;
   for (std::int64_t done = 0; done < count; done += atOnce) {
     const std::int64_t slices = std::min(atOnce, count - done);
-    dropped.resize(static_cast<std::size_t>(slices * sliceVoxels));
+    dropped.resize(static_cast<std::size_t>(slices * sliceNumbers));
     readSlab(slices, dropped);
   }
 }

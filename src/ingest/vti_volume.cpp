@@ -14,6 +14,7 @@
 #include "ingest/array_lists.h"
 #include "ingest/array_name.h"
 #include "ingest/header_text.h"
+#include "ingest/parts.h"
 #include "ingest/place.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
@@ -46,7 +47,7 @@ struct VtiHead {
   Attributes file, image;
   std::vector<Attributes> pieces;
   std::vector<VtiArray> arrays;
-  std::string scalars[2];  // names of the scalars of points and cells
+  std::string scalars[2], vectors[2];  // names of the scalars and vectors of points and cells
   std::optional<std::int64_t> appended;
   bool appendedIsRaw = false;
 };
@@ -90,6 +91,7 @@ class VtiHeadReader {
     if (name == "PointData" || name == "CellData") {
       section_ = name == "CellData" ? 1 : 0;
       head_.scalars[*section_] = get(attributes, "Scalars");
+      head_.vectors[*section_] = get(attributes, "Vectors");
     }
     if (name == "DataArray" && section_ && !get(attributes, "type").empty())
       head_.arrays.push_back({std::move(attributes), *section_ == 1, behind, behind});
@@ -135,29 +137,35 @@ VoxelType vtiTypeOf(const fs::path& path, const std::string& text) {
 // Marks of points that another piece holds too, or that are blank.
 bool isGhost(const std::string& name) { return name == "vtkGhostType" || name == "vtkGhostLevels"; }
 
+std::int64_t componentsOf(const fs::path& path, const VtiArray& array) {
+  const std::string text = get(array.attributes, "NumberOfComponents", "1");
+  const auto components = integer(text);
+  if (!components || *components < 1 || *components > 65536) failField(path, "NumberOfComponents", "1 to 65536", text);
+  return *components;
+}
+
+// The array of that name; else the one that the file names as its scalars, the only one of one component, or the only
+// one there is.
 const VtiArray& arrayOf(const fs::path& path, const VtiHead& head, const std::string& wanted) {
-  const VtiArray* only = nullptr;
+  const VtiArray *only = nullptr, *several = nullptr;
   std::string names;
-  int count = 0;
+  int count = 0, severalCount = 0;
   for (const VtiArray& array : head.arrays) {
     const std::string name = get(array.attributes, "Name");
     if (isGhost(name)) continue;
-    if (get(array.attributes, "NumberOfComponents", "1") != "1") {
-      names +=
-          (names.empty() ? "" : ", ") + name + " of " + get(array.attributes, "NumberOfComponents") + " components";
-      continue;
-    }
     if (wanted.empty() ? !name.empty() && name == head.scalars[array.cells ? 1 : 0] : name == wanted) return array;
+    const std::int64_t components = componentsOf(path, array);
     names += (names.empty() ? "" : ", ") + name;
-    only = &array;
-    ++count;
+    if (components > 1) names += " of " + std::to_string(components) + " components";
+    (components > 1 ? several : only) = &array;
+    ++(components > 1 ? severalCount : count);
   }
-  if (!wanted.empty()) failField(path, "arrays", "one of one component called " + wanted, names);
-  if (count != 1)
-    failField(path, "arrays",
-              "one of one component, one named by Scalars, or its name as in " + path.filename().string() + ":name",
-              names);
-  return *only;
+  if (!wanted.empty()) failField(path, "arrays", "one called " + wanted, names);
+  if (count == 1) return *only;
+  if (count == 0 && severalCount == 1) return *several;
+  failField(path, "arrays",
+            "one of one component, one named by Scalars, or its name as in " + path.filename().string() + ":name",
+            names);
 }
 
 template <std::size_t n>
@@ -263,7 +271,7 @@ std::unique_ptr<ByteStream> voxelsOf(const fs::path& path, const VtiHead& head, 
     failField(path, "format", "ascii, binary or appended", format);
   else if (bytes = openPlain(path, appendedStart(path, head, array)); !head.appendedIsRaw)
     bytes = base64Stream(std::move(bytes), path.string());
-  return vtkBlockStream(std::move(bytes), blocks, *volumeBytes(info.dims, info.type), path.string());
+  return vtkBlockStream(std::move(bytes), blocks, *arrayBytes(info), path.string());
 }
 
 }  // namespace
@@ -278,12 +286,12 @@ std::vector<ArrayRow> listVtiArrays(const fs::path& path) {
     rows.push_back({name, array.cells ? "cells" : "points",
                     (components == "1" ? "" : components + " x ") +
                         (known ? std::string(voxelTypeName(vtiTypeOf(path, type))) : type),
-                    known && components == "1" && !isGhost(name)});
+                    known && !isGhost(name)});
   }
   return rows;
 }
 
-std::unique_ptr<VoxelSource> openVti(const fs::path& named) {
+std::unique_ptr<VoxelSource> openVti(const fs::path& named, const PartChoice& parts) {
   const auto [path, wanted] = splitArrayName(named, ".vti");
   VolumeInfo info;
   info.name = named.string();
@@ -297,14 +305,22 @@ std::unique_ptr<VoxelSource> openVti(const fs::path& named) {
     info.dims[static_cast<int>(axis)] = extent[2 * axis + 1] - extent[2 * axis] + (array.cells ? 0 : 1);
   VoxelLayout layout;
   layout.type = info.type = vtiTypeOf(path, get(array.attributes, "type"));
-  if (!volumeBytes(info.dims, info.type))
+  info.components = componentsOf(path, array);
+  if (!arrayBytes(info))
     failField(path, "WholeExtent", "1 to 2147483647 voxels along each axis and less than 2^63 bytes in all",
               get(head.image, "WholeExtent"));
   placeImage(path, head, extent, array.cells, info);
   addProvenance(info, path, "VTK ImageData");
   if (const std::string name = get(array.attributes, "Name"); !name.empty()) info.metadata["array_name"] = name;
-  auto voxels = voxelsOf(path, head, array, info, layout);
-  return std::make_unique<DenseSource>(std::move(info), layout, std::move(voxels), "");
+  if (info.components == 3 && head.vectors[array.cells ? 1 : 0] == get(array.attributes, "Name"))
+    info.meaning = VoxelMeaning::vector;
+  guessMeaning(info);
+  auto first = voxelsOf(path, head, array, info, layout);
+  auto open = openOnceMore(std::move(first), [head, array, info, path = path]() {
+    VoxelLayout again;
+    return voxelsOf(path, head, array, info, again);
+  });
+  return openParts(std::move(info), PartAxes{}, layout, parts, open);
 }
 
 }  // namespace umbrick

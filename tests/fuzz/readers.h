@@ -23,6 +23,7 @@
 #include "umbrick/ingest/npy_volume.h"
 #include "umbrick/ingest/nrrd_volume.h"
 #include "umbrick/ingest/raw_volume.h"
+#include "umbrick/ingest/segment_source.h"
 #include "umbrick/ingest/vtk_volume.h"
 #include "umbrick/optics/transfer_function.h"
 #include "umbrick/scene/scene.h"
@@ -33,17 +34,39 @@ namespace umbrick::fuzz {
 /// which the caller would have to hold, are not asked for.
 inline void readAll(VoxelSource& source) {
   const glm::i64vec3 dims = source.info().dims;
+  const std::int64_t several = source.info().valuesPerVoxel;
+  if (dims.x > (1 << 22) / std::max<std::int64_t>(dims.y, 1) / std::max<std::int64_t>(several, 1)) return;
+  std::vector<float> slice(static_cast<std::size_t>(dims.x * dims.y * several));
+  for (std::int64_t z = 0; z < std::min<std::int64_t>(dims.z, 64); ++z) source.readSlab(1, slice);
+}
+
+/// Reads the frames of a segmentation, if they are as small as slices of readAll.
+inline void readSegments(SegmentSource& source) {
+  const glm::i64vec3 dims = source.info().dims;
   if (dims.x > (1 << 22) / std::max<std::int64_t>(dims.y, 1)) return;
   std::vector<float> slice(static_cast<std::size_t>(dims.x * dims.y));
-  for (std::int64_t z = 0; z < std::min<std::int64_t>(dims.z, 64); ++z) source.readSlab(1, slice);
+  for (std::size_t i = 0; i < std::min<std::size_t>(source.frames().size(), 64); ++i) source.read(i, slice);
 }
 
 /// What a target makes of a file of that content. `path` is where the content lies.
 using Target = std::function<void(const std::filesystem::path& path, std::string_view content)>;
 
+/// All numbers of a voxel of a frame.
+inline PartChoice allParts(std::int64_t frame) {
+  PartChoice parts;
+  parts.allComponents = true;
+  parts.frame = frame;
+  return parts;
+}
+
+/// Reads the first frame with all components, and the second where there is one.
 template <class Open>
 Target volumeTarget(Open open) {
-  return [open](const std::filesystem::path& path, std::string_view) { readAll(*open(path)); };
+  return [open](const std::filesystem::path& path, std::string_view) {
+    const auto first = open(path, allParts(0));
+    readAll(*first);
+    if (first->info().frames > 1) readAll(*open(path, allParts(1)));
+  };
 }
 
 /// Name of a target, extension of its files, and what it does.
@@ -54,18 +77,27 @@ struct NamedTarget {
 
 inline std::map<std::string, NamedTarget> targets() {
   return {
-      {"dicom", {".dcm", volumeTarget([](const std::filesystem::path& path) { return openDicom(path); })}},
-      {"hdf5", {".h5", volumeTarget(openHdf5)}},
-      {"metaimage", {".mha", volumeTarget([](const std::filesystem::path& path) { return openMetaImage(path); })}},
+      {"dicom",
+       {".dcm",
+        [](const std::filesystem::path& path, std::string_view) {
+          if (const auto segments = openDicomSegments(path)) return readSegments(*segments);
+          readAll(*openDicom(path));
+        }}},
+      {"hdf5", {".h5", [](const std::filesystem::path& path, std::string_view) { readAll(*openHdf5(path)); }}},
+      {"metaimage", {".mha", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
+                       return openMetaImage(path, false, parts);
+                     })}},
       {"nifti", {".nii", volumeTarget(openNifti)}},
       {"npy", {".npy", volumeTarget(openNpy)}},
-      {"nrrd", {".nrrd", volumeTarget([](const std::filesystem::path& path) { return openNrrd(path); })}},
+      {"nrrd", {".nrrd", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
+                  return openNrrd(path, false, parts);
+                })}},
       {"description",
        {".tif",
         // OME-XML, or what ImageJ and tifffile write.
         [](const std::filesystem::path& path, std::string_view content) {
           std::ofstream(path, std::ios::binary | std::ios::trunc) << describedTiff(content, std::string(64, 'x'));
-          readAll(*openImageStack(path));
+          readAll(*openImageStack(path, allParts(0)));
         }}},
       {"png", {".png", volumeTarget(openImageStack)}},
       {"raw",
@@ -81,7 +113,8 @@ inline std::map<std::string, NamedTarget> targets() {
           options.endian = byte(5) % 2 != 0 ? std::endian::big : std::endian::little;
           options.headerBytes = byte(6) % 32;
           if (byte(7) % 2 != 0) options.bitsStored = byte(7) / 2;
-          readAll(*openRaw(path, options));
+          options.components = 1 + byte(6) / 32;
+          readAll(*openRaw(path, options, allParts(0)));
         }}},
       {"tiff", {".tif", volumeTarget(openImageStack)}},
       {"vti", {".vti", volumeTarget(openVti)}},

@@ -4,6 +4,7 @@
 #include <png.h>
 
 #include <catch2/catch.hpp>
+#include <map>
 
 #include "ingest/write_tiff.h"
 #include "support/files.h"
@@ -143,17 +144,52 @@ TEST_CASE("ImageJ's TIFF states spacing in its unit", "[ingest]") {
   CHECK(info.metadata.at("length_unit") == "mm");
 }
 
-TEST_CASE("Images that are no grey slices are refused with both values", "[ingest]") {
+TEST_CASE("Images of several numbers a pixel give them side by side, however they lie in the file", "[ingest]") {
   const Stack stack;
-  writePng(stack.path, 1, 1, 8, PNG_COLOR_TYPE_RGB, "abc");
-  stack.refused(stack.path, "colour type: expected grey, found \"RGB\"");
-  writeTiff<std::uint8_t>(stack.path, {std::vector<std::uint8_t>(9)}, [](TIFF* t) {
-    TIFFSetField(t, TIFFTAG_IMAGELENGTH, 1);
-    TIFFSetField(t, TIFFTAG_SAMPLESPERPIXEL, 3);
-    TIFFSetField(t, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
-  });
-  stack.refused(stack.path,
-                "photometric interpretation: expected grey with one sample per pixel, found \"RGB with 3\"");
+  const auto all = [&] {
+    PartChoice parts;
+    parts.allComponents = true;
+    const auto source = openImageStack(stack.path, parts);
+    CHECK(source->info().meaning == VoxelMeaning::colour);
+    std::vector<float> out(static_cast<std::size_t>(source->info().dims.x * source->info().valuesPerVoxel));
+    source->readSlab(1, out);
+    return out;
+  };
+  const std::vector<float> colours{1, 2, 3, 4, 5, 6};
+  writePng(stack.path, 2, 1, 8, PNG_COLOR_TYPE_RGB, "\1\2\3\4\5\6");
+  CHECK(all() == colours);
+  writePng(stack.path, 1, 1, 8, PNG_COLOR_TYPE_RGB_ALPHA, "\1\2\3\4");
+  CHECK(all() == std::vector<float>{1, 2, 3, 4});
+  writePng(stack.path, 1, 1, 16, PNG_COLOR_TYPE_GRAY_ALPHA, std::string("\1\0\0\2", 4));
+  CHECK(all() == std::vector<float>{256, 2});
+  for (const int planes : {PLANARCONFIG_CONTIG, PLANARCONFIG_SEPARATE}) {
+    TIFF* tiff = TIFFOpen(stack.path.c_str(), "w");
+    for (const auto& [tag, value] : std::map<std::uint32_t, int>{{TIFFTAG_IMAGEWIDTH, 2},
+                                                                 {TIFFTAG_IMAGELENGTH, 1},
+                                                                 {TIFFTAG_BITSPERSAMPLE, 16},
+                                                                 {TIFFTAG_SAMPLESPERPIXEL, 3},
+                                                                 {TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB},
+                                                                 {TIFFTAG_PLANARCONFIG, planes}})
+      TIFFSetField(tiff, tag, value);
+    std::vector<std::uint16_t> pixels{1, 2, 3, 4, 5, 6};
+    if (planes == PLANARCONFIG_CONTIG)
+      TIFFWriteScanline(tiff, pixels.data(), 0, 0);
+    else
+      for (std::uint16_t k = 0; k < 3; ++k) {
+        std::vector<std::uint16_t> plane{std::uint16_t(1 + k), std::uint16_t(4 + k)};
+        TIFFWriteScanline(tiff, plane.data(), 0, k);
+      }
+    TIFFClose(tiff);
+    CHECK(all() == colours);
+    PartChoice green;
+    green.component = 1;
+    CHECK(readVolume(*openImageStack(stack.path, green)) == std::vector<float>{2, 5});
+  }
+  CHECK_THROWS_AS(openImageStack(stack.path), SeveralParts);
+}
+
+TEST_CASE("Images that are no slices are refused with both values", "[ingest]") {
+  const Stack stack;
   writeTiff<std::uint8_t>(stack.path, {{1, 2, 3}, {1, 2, 3, 4, 5, 6}});
   stack.refused(stack.path, "page 2: expected 3 x 1 u8 as on the first, found \"3 x 2 u8\"");
   writeBytes(stack.path, "no image");

@@ -102,12 +102,12 @@ TEST_CASE("Malformed MetaImage is refused with the field and both values", "[ing
   refused(kMetaStart + "ElementSpacing = 1 nan 1\n" + kLocal, "ElementSpacing: expected 3 finite numbers");
   refused(kMetaStart + "Offset = 1 2\n" + kLocal, "Offset: expected 3 finite numbers, found \"1 2\"");
   refused(kMetaStart + "TransformMatrix = 1 0 0 1 0 0 0 0 1\n" + kLocal, "three independent directions");
-  refused(kMetaStart + "ElementNumberOfChannels = 3\n" + kLocal, "ElementNumberOfChannels: expected 1, found \"3\"");
+  refused(kMetaStart + "ElementNumberOfChannels = 0\n" + kLocal, "ElementNumberOfChannels: expected 1 to 65536");
   refused(kMetaStart + "ElementType = MET_OTHER\n" + kLocal, "found \"MET_OTHER\"");
   refused(kMetaStart + "DimSize = 2 3 1e12\n" + kLocal, "DimSize: expected numbers from 1");
   refused(kMetaStart + "DimSize = 2147483647 2147483647 2147483647\n" + kLocal, "less than 2^63");
   refused(kMetaStart + "DimSize = 2 3 3\n" + kLocal, "expected 36 bytes of i16 voxels, found 24");
-  refused(kMetaStart + "NDims = 4\nDimSize = 2 3 2 5\n" + kLocal, "a volume of two or three axes");
+  refused(kMetaStart + "NDims = 5\nDimSize = 2 3 2 1 5\n" + kLocal, "a volume of two or three axes, and one of frames");
   refused(kMetaStart + "ElementDataFile = none.raw\n", "none.raw: no such file");
   refused(kMetaStart + "CompressedData = True\n" + kLocal, "cannot unpack zlib");
   refused("ObjectType = Image\nNDims = 3\nDimSize = 99999 99999 9\nElementType = MET_UCHAR\nCompressedData = True\n" +

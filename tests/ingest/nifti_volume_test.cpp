@@ -167,10 +167,11 @@ TEST_CASE("Malformed NIfTI is refused with the field and both values", "[ingest]
           "sform: expected");
   refused(Header().put<std::int16_t>(254, {1}).put<float>(280, {nan, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}),
           "sform: expected");
-  refused(Header().put<std::int16_t>(40, {4, 2, 3, 2, 5}),
-          "dim[4]: expected 1, since one volume of one component is read, found \"5\"");
-  refused(Header().put<std::int16_t>(70, {128, 24}),
-          "datatype: expected integers of 8 to 64 bits or floats of 32 or 64, found \"RGB colours (code 128)\"");
+  refused(Header().put<std::int16_t>(40, {6, 2, 3, 2, 1, 1, 5}),
+          "dim[6]: expected 1, since two axes beside those of space are read, found \"5\"");
+  refused(Header().put<std::int16_t>(70, {1536, 128}),
+          "datatype: expected integers of 8 to 64 bits, floats, colours or complex numbers, found \"floats of 128 bits "
+          "(code 1536)\"");
   refused(Header().put<std::int16_t>(46, {3}), "expected 2 x 3 x 3 i16 = 36 bytes after a header of 352, found 24");
   refused(Header(2).put<std::int64_t>(24, {2147483647, 2147483647, 2147483647}), "dim: expected less than 2^63 bytes");
   refused(Header(2).put<std::int64_t>(24, {std::int64_t(1) << 40}), "dim");
@@ -194,4 +195,37 @@ TEST_CASE("NIfTI headers with flipped bytes end in a volume or an IoError", "[in
     } catch (const IoError&) {
     }
   }
+}
+
+TEST_CASE("Frames, vectors, colours and complex numbers of NIfTI are told apart", "[ingest]") {
+  const NiftiFile file;
+  const auto open = [&](const Header& header, const std::string& data, const PartChoice& parts) {
+    writeBytes(file.path, header.bytes() + data);
+    return openNifti(file.path, parts);
+  };
+  PartChoice all;
+  all.allComponents = true;
+  PartChoice second = all;
+  second.frame = 1;
+  // Two frames of vectors: the components are the slowest axis, and frames the one before.
+  const auto vectors = open(Header().put<std::int16_t>(40, {5, 1, 1, 1, 2, 3}).put<std::int16_t>(68, {1007}),
+                            bytesOf(std::vector<std::int16_t>{10, 20, 11, 21, 12, 22}), second);
+  CHECK(vectors->info().frames == 2);
+  CHECK(vectors->info().meaning == VoxelMeaning::vector);
+  std::vector<float> voxel(3);
+  vectors->readSlab(1, voxel);
+  CHECK(voxel == std::vector<float>{20, 21, 22});
+  // Colours are never scaled.
+  const auto colours =
+      open(Header().put<std::int16_t>(40, {3, 1, 1, 1}).put<std::int16_t>(70, {128, 24}).put<float>(112, {2, 5}),
+           "\1\2\3", all);
+  CHECK(colours->info().meaning == VoxelMeaning::colour);
+  colours->readSlab(1, voxel);
+  CHECK(voxel == std::vector<float>{1, 2, 3});
+  const auto complex = open(Header().put<std::int16_t>(40, {3, 1, 1, 1}).put<std::int16_t>(70, {32, 64}),
+                            bytesOf(std::vector<float>{0.5f, -2}), all);
+  std::vector<float> number(2);
+  complex->readSlab(1, number);
+  CHECK(number == std::vector<float>{0.5f, -2});
+  CHECK_THROWS_AS(open(Header().put<std::int16_t>(40, {4, 1, 1, 1, 2}), "abcd", {}), SeveralParts);
 }

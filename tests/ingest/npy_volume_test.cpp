@@ -93,7 +93,7 @@ TEST_CASE("Malformed NumPy files are refused with the field and both values", "[
   };
   refused("'<c16'", "(1, 2, 3)", "descr: expected bool");
   refused("[('a', '<f4'), ('b', '<f4')]", "(1, 2, 3)", "descr: expected bool");
-  refused("'|u1'", "(6,)", "shape: expected an array of two or three axes, found \"(6,)\"");
+  refused("'|u1'", "(6,)", "shape: expected an array of two or three axes, beside which");
   refused("'|u1'", "(1, 2, 0)", "shape: expected a tuple of positive integers");
   refused("'|u1'", "(1, 2, -3)", "shape");
   refused("'|u1'", "(99999999999999999999, 2, 3)", "shape");

@@ -167,7 +167,7 @@ TEST_CASE("The scalars of VTK ImageData are those that it names", "[ingest]") {
   CHECK(readVolume(*openVolume(file.path.string() + ":a")) == kFloats);
   CHECK(openVolume(file.path.string() + ":b")->info().type == VoxelType::f32);
   CHECK(formatOfName(file.path.string() + ":b") == "VTK ImageData");
-  CHECK_THROWS_WITH(openVolume(file.path.string() + ":c"), Contains("expected one of one component called c"));
+  CHECK_THROWS_WITH(openVolume(file.path.string() + ":c"), Contains("expected one called c"));
   const std::string ghosts = "<DataArray Name=\"vtkGhostType\" type=\"UInt8\" format=\"ascii\">7</DataArray>";
   CHECK(file.read(ascii(kImage, unnamed, ghosts)) == kFloats);
 }
@@ -261,8 +261,40 @@ TEST_CASE("What stands before the scalars of a legacy VTK file is passed, and no
     writeBytes(file.path, start + place + "POINT_DATA 12\n" + scalars + several);
     CHECK(openVolume(file.path.string() + ":b")->info().metadata.at("array_name") == "b");
     CHECK(readVolume(*openVolume(file.path.string() + ":b")) == kFloats);
-    file.refused(start + place + "POINT_DATA 12\n" + flow, "found \"only flow of 3 x double\"");
+    // Vectors are read where there are no single numbers.
+    PartChoice third;
+    third.component = 2;
+    std::vector<double> counted(36);
+    for (std::size_t i = 0; i < counted.size(); ++i) counted[i] = static_cast<double>(i);
+    writeBytes(file.path, start + place + "POINT_DATA 12\nVECTORS flow double\n" + values(counted));
+    const auto along = openLegacyVtk(file.path, third);
+    CHECK(along->info().meaning == VoxelMeaning::vector);
+    CHECK(along->info().components == 3);
+    CHECK(readVolume(*along)[4] == 3 * 4 + 2);
+    CHECK_THROWS_AS(openLegacyVtk(file.path), SeveralParts);
     file.refused(start + place + "POINT_DATA 11\n" + scalars, "POINT_DATA: expected the number of voxels that");
     file.refused(start + field, "found \"the end of the file\"");
   }
+}
+
+TEST_CASE("Vectors of VTK ImageData are read where they are named or alone", "[ingest]") {
+  const VtkFile file;
+  std::string numbers;
+  for (int i = 0; i < 36; ++i) numbers += std::to_string(i) + ' ';
+  const std::string vectors =
+      "<DataArray Name=\"flow\" type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">" + numbers + "</DataArray>";
+  // Beside single numbers they have to be named.
+  CHECK(file.read(ascii(kImage, kPiece, vectors)) == kFloats);
+  PartChoice all;
+  all.allComponents = true;
+  OpenOptions open;
+  open.parts = all;
+  const auto source = openVolume(file.path.string() + ":flow", open);
+  CHECK(source->info().valuesPerVoxel == 3);
+  std::vector<float> slice(18);
+  source->readSlab(1, slice);
+  CHECK(slice[17] == 17);
+  open.parts = {};
+  open.parts.magnitude = true;
+  CHECK(readVolume(*openVolume(file.path.string() + ":flow", open))[1] == Approx(std::sqrt(9.0 + 16 + 25)));
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "umbrick/ingest/volume_parts.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
@@ -18,7 +19,9 @@ namespace umbrick {
 /// the place of the first voxel. Format: https://itk.org/Wiki/ITK/MetaIO/Documentation
 ///
 /// @param strict  refuses a data file beside the header that is longer than this says, which else is noted
-/// @throw IoError  a file is missing, short, long or malformed, or voxels have several channels
-std::unique_ptr<VoxelSource> openMetaImage(const std::filesystem::path& path, bool strict = false);
+/// @throw IoError  a file is missing, short, long or malformed
+/// @throw SeveralParts  several channels or a fourth axis, and `parts` chooses none
+std::unique_ptr<VoxelSource> openMetaImage(const std::filesystem::path& path, bool strict = false,
+                                           const PartChoice& parts = {});
 
 }  // namespace umbrick

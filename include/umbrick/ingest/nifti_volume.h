@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "umbrick/ingest/volume_parts.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
@@ -18,7 +19,11 @@ namespace umbrick {
 /// so no space is recorded.
 /// Source: https://nifti.nimh.nih.gov/nifti-1/documentation/nifti1fields
 ///
-/// @throw IoError  missing, short, long, malformed, several volumes or components, RGB, complex or 128-bit voxels
-std::unique_ptr<VoxelSource> openNifti(const std::filesystem::path& path);
+/// The fourth axis counts frames, the fifth components, as those of a vector. Colours (RGB24, RGBA32) and complex
+/// numbers have components side by side.
+///
+/// @throw SeveralParts  several frames or components, and `parts` chooses none
+/// @throw IoError       missing, short, long, malformed, more axes, or 128-bit voxels
+std::unique_ptr<VoxelSource> openNifti(const std::filesystem::path& path, const PartChoice& parts = {});
 
 }  // namespace umbrick

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "umbrick/ingest/volume_parts.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
@@ -14,9 +15,12 @@ namespace umbrick {
 ///
 /// x is the axis that is fastest in the file, so that both orders stream: an array written in C order is indexed
 /// [z, y, x], one in Fortran order [x, y, z]. An array states no place: voxels are 1 apart and the first is at 0.
+/// A last axis of 1 to 4 behind three others holds the components of a voxel; else the axis before (C order) or behind
+/// (Fortran order) those of space is one of frames.
 /// Format: https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html
 ///
+/// @throw SeveralParts  several frames or components, and `parts` chooses none
 /// @throw IoError  missing, short, long, malformed, or complex, structured, or an object
-std::unique_ptr<VoxelSource> openNpy(const std::filesystem::path& path);
+std::unique_ptr<VoxelSource> openNpy(const std::filesystem::path& path, const PartChoice& parts = {});
 
 }  // namespace umbrick

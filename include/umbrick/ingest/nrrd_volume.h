@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "umbrick/ingest/volume_parts.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
@@ -18,8 +19,9 @@ namespace umbrick {
 /// Format: https://teem.sourceforge.net/nrrd/format.html
 ///
 /// @param strict  refuses a data file beside the header that is longer than this says, which else is noted
-/// @throw IoError  a file is missing, short, long or malformed, or it holds what is not read: several components per
-///                 voxel
-std::unique_ptr<VoxelSource> openNrrd(const std::filesystem::path& path, bool strict = false);
+/// @throw IoError  a file is missing, short, long or malformed
+/// @throw SeveralParts  axes of components, a list or time, and `parts` chooses none
+std::unique_ptr<VoxelSource> openNrrd(const std::filesystem::path& path, bool strict = false,
+                                      const PartChoice& parts = {});
 
 }  // namespace umbrick

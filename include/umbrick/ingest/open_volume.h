@@ -9,6 +9,7 @@
 
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/raw_volume.h"
+#include "umbrick/ingest/volume_parts.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
@@ -31,6 +32,7 @@ struct OpenOptions {
   /// Spacing and origin also take the place of what the file states. They are in the unit that the file states; the
   /// directions of its axes stay.
   bool overridePlace = false;
+  PartChoice parts = {};  // of files of several volumes, or of several numbers a voxel
 };
 
 /// No format is known by the name or the first bytes of the file: OpenOptions::raw has to say what its bytes mean.
@@ -47,8 +49,13 @@ struct StatedPlace : InvalidArgument {
 /// @throw UnknownFormat    no format is known by that name or those bytes, and `raw` is not given
 /// @throw StatedPlace      spacing or origin for a format that states its own, without overridePlace
 /// @throw InvalidArgument  they are not positive and finite; there is no such space; the formats throw it too
+/// @throw SeveralParts     several volumes, or several numbers a voxel, and `parts` chooses none
 /// @throw IoError          as the formats do
 std::unique_ptr<VoxelSource> openVolume(const std::filesystem::path& path, const OpenOptions& options = {});
+
+/// What openVolume would say of the whole file, whatever `parts` chooses: its first frame with all components.
+/// @throw Error  as openVolume does
+VolumeInfo describeVolume(const std::filesystem::path& path, OpenOptions options = {});
 
 /// The name of the format that the extension of `path` stands for, or nothing.
 std::optional<std::string> formatOfName(const std::filesystem::path& path);

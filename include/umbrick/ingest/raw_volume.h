@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "umbrick/ingest/volume_parts.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
@@ -17,16 +18,19 @@ struct RawOptions {
   std::int64_t headerBytes = 0;  // these are skipped at the start of the unpacked file
   // The bits of an integer that hold its value. Those above are flags and masked off; signed types are sign-extended.
   std::optional<int> bitsStored = {};
-  glm::dvec3 spacing{1};  // world units between voxel centres
-  glm::dvec3 origin{0};   // world position of the centre of voxel (0, 0, 0)
+  glm::dvec3 spacing{1};        // world units between voxel centres
+  glm::dvec3 origin{0};         // world position of the centre of voxel (0, 0, 0)
+  std::int64_t components = 1;  // numbers of a voxel, side by side
 };
 
 /// Opens a raw file, plain or packed by gzip, xz, zstd or bzip2. A file of just the size that the options ask for is
 /// plain; of others the first bytes tell how they are packed.
 /// The size of a plain file is checked at once, that of a packed one as it is read.
 /// @throw InvalidArgument  dims outside [1, 2^31), spacing not positive and finite, origin not finite, headerBytes < 0,
-///                         bitsStored outside [1, width of the type] or for floats
+///                         bitsStored outside [1, width of the type] or for floats, components outside [1, 65536]
+/// @throw SeveralParts     several components, and `parts` chooses none
 /// @throw IoError          missing, a directory, or not of the expected size
-std::unique_ptr<VoxelSource> openRaw(const std::filesystem::path& path, const RawOptions& options);
+std::unique_ptr<VoxelSource> openRaw(const std::filesystem::path& path, const RawOptions& options,
+                                     const PartChoice& parts = {});
 
 }  // namespace umbrick

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <map>
@@ -25,6 +26,17 @@ int voxelBytes(VoxelType type);
 /// True for f16, f32 and f64.
 bool isFloat(VoxelType type);
 
+/// What the numbers of one voxel are together.
+enum class VoxelMeaning { scalar, vector, colour };
+
+/// A part of a volume of labels that its file names: the voxels of one value.
+struct VolumeLabel {
+  std::string name;                       // as the file spells it; may be empty
+  std::int64_t value = 0;                 // of its voxels; 0 is no label, but is the background
+  std::int64_t component = 0;             // which number of a voxel holds it, where labels lie in several layers
+  std::optional<glm::dvec3> colour = {};  // sRGB, each from 0 to 1
+};
+
 struct VolumeInfo {
   std::string name;                // what messages call the source, usually its file name
   glm::i64vec3 dims{0};            // voxels along x (fastest), y, z
@@ -39,7 +51,17 @@ struct VolumeInfo {
   /// What a user should know of how the file was read: what was chosen, guessed or left out, a line each, without the
   /// name of the file.
   std::vector<std::string> notes;
-  std::int64_t fileBytes = 0;  // size of all files that hold the volume, packed as they are
+  std::int64_t fileBytes = 0;                   // size of all files that hold the volume, packed as they are
+  std::int64_t components = 1;                  // numbers of a voxel in the file
+  VoxelMeaning meaning = VoxelMeaning::scalar;  // of all components together
+  std::int64_t frames = 1;                      // volumes of this size in the file; a source is one of them
+  /// What turns a vector as it is stored into one of the world: the measurement frame of NRRD. It is not applied by the
+  /// source.
+  glm::dmat3 vectorToWorld{1};
+  /// Numbers of a voxel that the source gives: 1, or all components side by side, where OpenOptions::parts asked for
+  /// all of them.
+  std::int64_t valuesPerVoxel = 1;
+  std::vector<VolumeLabel> labels;  // that the file names, in its order
 };
 
 /// A dense volume that is read as slabs, in order of z.
@@ -47,7 +69,7 @@ class VoxelSource {
  public:
   virtual ~VoxelSource() = default;
   const VolumeInfo& info() const { return info_; }
-  /// The next `count` slices, x fastest, as 32-bit float: out.size() == dims.x * dims.y * count.
+  /// The next `count` slices, x fastest, as 32-bit float: out.size() == dims.x * dims.y * count, times valuesPerVoxel.
   /// With the last slice the source also checks that nothing is left over.
   /// @return the largest error that the conversion to float made in this slab; it can only differ from 0 for integers
   ///         beyond 24 bits, f64 and rescaled values
@@ -61,7 +83,7 @@ class VoxelSource {
   virtual std::optional<VoxelType> storedType() const { return std::nullopt; }
   /// Reads as readSlab does, but gives the values in their stored type, in the byte order of this machine and without
   /// flag bits. They equal those of readSlab exactly.
-  /// out.size() == dims.x * dims.y * count * voxelBytes(*storedType())
+  /// out.size() == dims.x * dims.y * count * voxelBytes(*storedType()), times valuesPerVoxel
   virtual void readStored(std::int64_t count, std::span<std::byte> out);
 
  protected:

@@ -8,6 +8,7 @@
 
 #include "ingest/dicom/dicom_frames.h"
 #include "ingest/dicom/dicom_mosaic.h"
+#include "ingest/dicom/dicom_segments.h"
 #include "ingest/dicom/dicom_tags.h"
 #include "ingest/header_text.h"
 #include "ingest/streams/byte_stream.h"
@@ -41,14 +42,15 @@ void readPixelLayout(const DicomTags& tags, DicomFile& file) {
   const auto allocated = tags.unsignedShort(0x00280100, 0), stored = tags.unsignedShort(0x00280101, allocated),
              high = tags.unsignedShort(0x00280102, stored - 1);
   const bool isSigned = tags.unsignedShort(0x00280103, 0) == 1;
-  if (allocated != 8 && allocated != 12 && allocated != 16 && allocated != 32)
-    failField(file.path, "BitsAllocated", "8, 12, 16 or 32", std::to_string(allocated));
+  if (allocated != 1 && allocated != 8 && allocated != 12 && allocated != 16 && allocated != 32)
+    failField(file.path, "BitsAllocated", "1, 8, 12, 16 or 32", std::to_string(allocated));
   if (stored < 1 || stored > allocated || high != stored - 1)
     failField(file.path, "BitsStored and HighBit", "the lowest bits of " + std::to_string(allocated),
               std::to_string(stored) + " and " + std::to_string(high));
   using enum VoxelType;
   pixels.bitsAllocated = static_cast<int>(allocated);
-  pixels.layout.type = allocated == 8    ? (isSigned ? i8 : u8)
+  pixels.layout.type = allocated == 1    ? u8  // each pixel becomes a byte
+                       : allocated == 8  ? (isSigned ? i8 : u8)
                        : allocated == 32 ? (isSigned ? i32 : u32)
                                          : (isSigned ? i16 : u16);
   pixels.layout.endian = std::endian::native;
@@ -96,10 +98,13 @@ void readPixelPlace(const DicomHeader& header, DicomFile& file) {
   pixels.rows = file.rows;
   pixels.deflated = header.deflated;
   pixels.dataOffset = header.dataOffset;
+  if (header.encapsulated && pixels.bitsAllocated == 1)
+    failField(file.path, "TransferSyntaxUID", "one of pixels that are not packed, where BitsAllocated is 1",
+              transferSyntaxName(header.transferSyntax));
   if (header.encapsulated) return readFragments(header, pixels);
   const std::int64_t voxels = file.rows * file.columns * static_cast<std::int64_t>(pixels.images);
-  const std::int64_t bytes =
-      pixels.bitsAllocated == 12 ? (voxels * 12 + 7) / 8 : voxels * voxelBytes(pixels.layout.type);
+  const bool bits = pixels.bitsAllocated == 1 || pixels.bitsAllocated == 12;
+  const std::int64_t bytes = bits ? (voxels * pixels.bitsAllocated + 7) / 8 : voxels * voxelBytes(pixels.layout.type);
   if (header.pixelBytes < bytes)
     throw IoError(file.path.string() + ": PixelData: expected " + std::to_string(file.columns) + " x " +
                   std::to_string(file.rows) + " x " + std::to_string(pixels.images) + " " +
@@ -128,6 +133,7 @@ void readImage(const DicomHeader& header, const DicomTags& tags, DicomFile& file
   file.pixels.images = static_cast<std::size_t>(*frames);
   readPixelPlace(header, file);
   readDicomFrames(tags, file);
+  readDicomSegments(tags, file);
   if (!header.preamble)
     file.notes.push_back({"without the preamble of a DICOM file, taken for a data set alone",
                           "read as " + transferSyntaxName(header.transferSyntax)});

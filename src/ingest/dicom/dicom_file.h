@@ -27,6 +27,7 @@ struct DicomFrame {
   std::optional<glm::dvec2> spacing;  // between columns (x) and between rows (y)
   double lastDigit = 0;               // what one more in the last digit of the position as it is written comes to, mm
   double slope = 1, intercept = 0;
+  std::int64_t segment = 0;   // of a segmentation: the number of the segment that the frame shows
   std::size_t image = 0;      // which picture of the file it is in
   glm::i64vec2 corner{0, 0};  // of its first pixel in that picture: not 0 in mosaics alone
   DicomValues values;         // its own, where the file has several frames
@@ -57,9 +58,11 @@ struct DicomFile {
   DicomPixelData pixels;
   DicomValues values;
   std::vector<DicomFrame> frames;
-  double sliceDistance = 0;         // SpacingBetweenSlices or SliceThickness, without its sign; 0 unknown
-  bool framesApartUnknown = false;  // several frames, of which nothing says how far apart they are
-  double gantryTilt = 0;            // degrees
+  std::vector<VolumeLabel> segments;  // of a segmentation, whose values are their numbers
+  double wholeSegment = 0;            // of a fractional one: the pixel that stands for a share of 1; 0: it is binary
+  double sliceDistance = 0;           // SpacingBetweenSlices or SliceThickness, without its sign; 0 unknown
+  bool framesApartUnknown = false;    // several frames, of which nothing says how far apart they are
+  double gantryTilt = 0;              // degrees
   /// What was guessed or passed over: a sentence that many files share, and what was found in this one.
   std::vector<std::pair<std::string, std::string>> notes;
   // Why the pixels cannot be those of a volume, such as colour or damage: thrown when the series of the file is opened.

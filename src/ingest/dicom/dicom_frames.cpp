@@ -79,6 +79,8 @@ void readGroups(const DicomTags& groups, DicomFrame& frame, double& sliceDistanc
   for (const DicomElements& item : groups.items(0x00289110))
     sliceDistance = DicomTags(groups.path(), item).number(0x00180050, "SliceThickness", sliceDistance);
   for (const DicomElements& item : groups.items(0x00289145)) readRescale(DicomTags(groups.path(), item), frame);
+  for (const DicomElements& item : groups.items(0x0062000a))
+    frame.segment = DicomTags(groups.path(), item).unsignedShort(0x0062000b, frame.segment);
 }
 
 void addValues(const DicomElements& elements, DicomValues& out) {

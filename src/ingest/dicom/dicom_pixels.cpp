@@ -203,10 +203,25 @@ Bytes unpack(const DicomFile& file, std::size_t image, const std::vector<Bytes>&
   return out;
 }
 
+// Pixels of one bit follow each other without a gap, also from frame to frame; the first is in the lowest bit of a byte
+// (PS3.5 8.1.1).
+Bytes readBits(const DicomFile& file, std::size_t image) {
+  const std::int64_t pixels = file.pixels.columns * file.pixels.rows, first = pixels * static_cast<std::int64_t>(image);
+  const std::int64_t begin = first / 8, end = (first + pixels + 7) / 8;
+  const Bytes packed = readBytes(file, file.pixels.offset + begin, end - begin);
+  Bytes out(static_cast<std::size_t>(pixels));
+  for (std::int64_t i = 0; i < pixels; ++i) {
+    const std::int64_t bit = first + i - 8 * begin;
+    out[static_cast<std::size_t>(i)] = packed[static_cast<std::size_t>(bit / 8)] >> (bit % 8) & std::byte(1);
+  }
+  return out;
+}
+
 }  // namespace
 
 Bytes readDicomPixels(const DicomFile& file, std::size_t image) try {
   const DicomPixelData& pixels = file.pixels;
+  if (pixels.offset >= 0 && pixels.bitsAllocated == 1) return readBits(file, image);
   if (pixels.offset >= 0 && pixels.single()) {
     const std::int64_t bytes = pixels.columns * pixels.rows * voxelBytes(pixels.layout.type);
     return readBytes(file, pixels.offset + bytes * static_cast<std::int64_t>(image), bytes);

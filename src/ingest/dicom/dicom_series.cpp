@@ -23,7 +23,9 @@ std::vector<fs::path> filesIn(const fs::path& folder) {
   for (; each != fs::recursive_directory_iterator(); each.increment(error)) {
     if (error) throw IoError(folder.string() + ": cannot read: " + error.message());
     std::error_code ignored;
-    if (each->is_regular_file(ignored)) paths.push_back(each->path());
+    // .DS_Store and the ._IM0001 of macOS on other disks are no slices.
+    const bool hidden = each->path().filename().string().starts_with('.');
+    if (each->is_regular_file(ignored) && !hidden) paths.push_back(each->path());
   }
   std::sort(paths.begin(), paths.end());
   return paths;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 
+#include "ingest/parts.h"
 #include "ingest/streams/packed_stream.h"
 #include "umbrick/core/error.h"
 
@@ -27,15 +28,17 @@ std::optional<std::int64_t> volumeBytes(const glm::i64vec3& dims, VoxelType type
 }
 
 std::string describeBytes(const VolumeInfo& info) {
-  return std::to_string(info.dims.x) + " x " + std::to_string(info.dims.y) + " x " + std::to_string(info.dims.z) + ' ' +
-         std::string(voxelTypeName(info.type)) + " = " + std::to_string(volumeBytes(info.dims, info.type).value_or(0)) +
-         " bytes";
+  std::string text =
+      std::to_string(info.dims.x) + " x " + std::to_string(info.dims.y) + " x " + std::to_string(info.dims.z) + ' ';
+  if (info.components > 1) text += "x " + std::to_string(info.components) + " components ";
+  if (info.frames > 1) text += "x " + std::to_string(info.frames) + " frames ";
+  return text + std::string(voxelTypeName(info.type)) + " = " + std::to_string(arrayBytes(info).value_or(0)) + " bytes";
 }
 
 std::unique_ptr<ByteStream> openVoxels(const VolumeInfo& info, const std::filesystem::path& path, std::int64_t offset) {
   const std::int64_t size = checkedFileSize(path);
   const Packing packing = size >= 0 ? packingOf(path) : Packing::none;
-  const std::int64_t expected = volumeBytes(info.dims, info.type).value_or(0);
+  const std::int64_t expected = arrayBytes(info).value_or(0);
   if (packing == Packing::none && size >= 0) {
     if (size - offset != expected)
       throw IoError(path.string() + ": expected " + describeBytes(info) +
@@ -54,7 +57,7 @@ std::unique_ptr<ByteStream> openVoxels(const VolumeInfo& info, const std::filesy
 void checkDeflateRatio(const std::filesystem::path& path, const VolumeInfo& info, std::int64_t packedBytes) {
   // Deflate packs no more than 1032 bytes into one (https://zlib.net/zlib_tech.html).
   const std::int64_t most = (packedBytes + 1) * 1032;
-  if (*volumeBytes(info.dims, info.type) > most)
+  if (*arrayBytes(info) > most)
     throw IoError(path.string() + ": expected " + describeBytes(info) + ", found " + std::to_string(packedBytes) +
                   " packed ones, which cannot hold more than " + std::to_string(most));
 }
