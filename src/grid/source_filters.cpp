@@ -41,7 +41,7 @@ class CroppedSource : public VoxelSource {
   double readSlab(std::int64_t count, std::span<float> out) override {
     if (next_ == 0) source_->skipSlices(box_.min.z);
     const glm::i64vec3 whole = source_->info().dims;
-    const std::int64_t wholeSlice = whole.x * whole.y;
+    const std::int64_t several = info_.valuesPerVoxel, wholeSlice = whole.x * whole.y * several;
     double error = 0;
     auto to = out.begin();
     for (std::int64_t done = 0; done < count;) {
@@ -50,7 +50,8 @@ class CroppedSource : public VoxelSource {
       error = std::max(error, source_->readSlab(slices, slab_));
       for (std::int64_t z = 0; z < slices; ++z)
         for (std::int64_t y = box_.min.y; y <= box_.max.y; ++y)
-          to = std::copy_n(slab_.begin() + z * wholeSlice + y * whole.x + box_.min.x, info_.dims.x, to);
+          to = std::copy_n(slab_.begin() + z * wholeSlice + (y * whole.x + box_.min.x) * several,
+                           info_.dims.x * several, to);
       done += slices;
     }
     next_ += count;

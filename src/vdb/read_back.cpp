@@ -2,6 +2,7 @@
 #include "umbrick/vdb/read_back.h"
 
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "umbrick/ingest/open_volume.h"
 #include "umbrick/vdb/grid_listing.h"
 #include "umbrick/vdb/read_grid.h"
+#include "umbrick/vdb/read_vectors.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;
@@ -60,26 +62,42 @@ bool isDense(const fs::path& file) {
   return text.starts_with("NRRD") || text.starts_with("Objec");
 }
 
+// Checks what a grid has besides its values.
+template <class Grid>
+void checkBack(const fs::path& file, const Grid& written, const Grid& found) {
+  const std::string name = file.string() + ": grid \"" + written.getName() + '"';
+  if (found.background() != written.background()) {
+    std::ostringstream text;
+    text << name << ": background: expected " << written.background() << ", found " << found.background();
+    throw IoError(text.str());
+  }
+  if (const auto other = misplacedCorner(written, found, 1e-6))
+    throw IoError(name + ": place of voxel " + vectorText(other->voxel) + ": expected " + vectorText(other->expected) +
+                  ", found " + vectorText(other->found));
+}
+
+// The label of a grid by its place in the file.
+std::string labelAt(const fs::path& file, std::size_t index) {
+  const GridListing listing = listGrids(file);
+  if (index >= listing.grids.size())
+    throw IoError(file.string() + ": expected " + std::to_string(index + 1) + " grids or more, found " +
+                  std::to_string(listing.grids.size()));
+  return listing.grids[index].label;
+}
+
 }  // namespace
 
 FloatGrid::ConstPtr readBack(const fs::path& file, const FloatGrid& written, std::size_t index) {
-  FloatGrid::ConstPtr found;
-  if (isDense(file)) {
-    found = readDense(file, written);
-  } else {
-    const GridListing listing = listGrids(file);
-    if (index >= listing.grids.size())
-      throw IoError(file.string() + ": expected " + std::to_string(index + 1) + " grids or more, found " +
-                    std::to_string(listing.grids.size()));
-    found = readScalarGridAnyTransform(file, listing.grids[index].label).grid;
-  }
-  const std::string name = file.string() + ": grid \"" + written.getName() + '"';
-  if (found->background() != written.background())
-    throw IoError(name + ": background: expected " + std::to_string(written.background()) + ", found " +
-                  std::to_string(found->background()));
-  if (const auto other = misplacedCorner(written, *found, 1e-6))
-    throw IoError(name + ": place of voxel " + vectorText(other->voxel) + ": expected " + vectorText(other->expected) +
-                  ", found " + vectorText(other->found));
+  const FloatGrid::ConstPtr found =
+      isDense(file) ? readDense(file, written) : readScalarGridAnyTransform(file, labelAt(file, index)).grid;
+  checkBack(file, written, *found);
+  return found;
+}
+
+openvdb::Vec3SGrid::ConstPtr readVectorsBack(const fs::path& file, const openvdb::Vec3SGrid& written,
+                                             std::size_t index) {
+  const openvdb::Vec3SGrid::ConstPtr found = readVectorGrid(file, labelAt(file, index));
+  checkBack(file, written, *found);
   return found;
 }
 

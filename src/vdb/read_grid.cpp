@@ -37,6 +37,9 @@ const VdbFile::Entry& defaultEntry(const VdbFile& file) {
   }
   if (scalars == 1) return *only;
   if (density) return *density;
+  const auto isVectors = [](const VdbFile::Entry& entry) { return entry.valueType.starts_with("vec3"); };
+  if (scalars == 0 && std::any_of(file.entries().begin(), file.entries().end(), isVectors))
+    throw VectorGridFound(file.path().string() + ": no scalar grid: " + listed(file));
   if (scalars == 0) throw InvalidArgument(file.path().string() + ": no scalar grid: " + listed(file));
   throw SeveralGrids(file.path().string() + ": name a grid (none is called \"density\"): " + listed(file));
 }
@@ -45,10 +48,11 @@ const VdbFile::Entry& findEntry(const VdbFile& file, const std::string& selector
   if (selector.empty()) return defaultEntry(file);
   const VdbFile::Entry* entry = file.find(selector);
   if (!entry) throw InvalidArgument(file.path().string() + ": no grid \"" + selector + "\": " + listed(file));
-  if (!isScalarType(entry->valueType))
-    throw InvalidArgument(file.path().string() + ": grid " + quoted(*entry) + ": expected a scalar grid, found " +
-                          entry->valueType);
-  return *entry;
+  if (isScalarType(entry->valueType)) return *entry;
+  const std::string text =
+      file.path().string() + ": grid " + quoted(*entry) + ": expected a scalar grid, found " + entry->valueType;
+  if (entry->valueType.starts_with("vec3")) throw VectorGridFound(text);
+  throw InvalidArgument(text);
 }
 
 template <class Value>

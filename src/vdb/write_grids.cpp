@@ -19,12 +19,17 @@ class Writer : public openvdb::io::Archive {
 
 void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
                 const openvdb::MetaMap& metadata, VdbCodec codec, const WrittenCheck& check) {
+  writeAnyGrids(path, openvdb::GridCPtrVec(grids.begin(), grids.end()), metadata, codec, check);
+}
+
+void writeAnyGrids(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+                   const openvdb::MetaMap& metadata, VdbCodec codec, const WrittenCheck& check) {
   openvdb::initialize();
   PendingFile pending(path);
   try {
     Writer writer;
     writer.setCompression(compressionOf(codec));
-    writer.write(pending.stream(), openvdb::GridCPtrVec(grids.begin(), grids.end()), /*seekable=*/true, metadata);
+    writer.write(pending.stream(), grids, /*seekable=*/true, metadata);
     pending.stream().flush();
   } catch (const openvdb::Exception& error) {
     throw IoError(path.string() + ": cannot write: " + error.what());

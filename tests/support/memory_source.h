@@ -18,7 +18,7 @@ class MemorySource : public VoxelSource {
   VolumeInfo& editInfo() { return info_; }
   double readSlab(std::int64_t count, std::span<float> out) override {
     std::copy_n(voxels_.begin() + at_, out.size(), out.begin());
-    at_ += count * info_.dims.x * info_.dims.y;
+    at_ += count * info_.dims.x * info_.dims.y * info_.valuesPerVoxel;
     return 0;
   }
 

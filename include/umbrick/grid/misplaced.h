@@ -27,7 +27,7 @@ std::string vectorText(const Vector& v) {
 
 /// Returns the first corner of the box of `grid`'s active voxels that `other` places elsewhere, or nothing.
 /// @param tolerance  largest distance that counts as the same place, in shortest edges of a voxel
-inline std::optional<Misplaced> misplacedCorner(const openvdb::FloatGrid& grid, const openvdb::FloatGrid& other,
+inline std::optional<Misplaced> misplacedCorner(const openvdb::GridBase& grid, const openvdb::GridBase& other,
                                                 double tolerance) {
   const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
   if (box.empty()) return std::nullopt;

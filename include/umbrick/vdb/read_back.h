@@ -17,4 +17,8 @@ namespace umbrick {
 openvdb::FloatGrid::ConstPtr readBack(const std::filesystem::path& file, const openvdb::FloatGrid& written,
                                       std::size_t index = 0);
 
+/// The same of a grid of vec3, in a .vdb.
+openvdb::Vec3SGrid::ConstPtr readVectorsBack(const std::filesystem::path& file, const openvdb::Vec3SGrid& written,
+                                             std::size_t index = 0);
+
 }  // namespace umbrick

@@ -23,6 +23,10 @@ namespace umbrick {
 void writeGrids(const std::filesystem::path& path, const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
                 const openvdb::MetaMap& metadata = {}, VdbCodec codec = VdbCodec::blosc,
                 const WrittenCheck& check = {});
+/// Does the same for grids of any type.
+void writeAnyGrids(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+                   const openvdb::MetaMap& metadata = {}, VdbCodec codec = VdbCodec::blosc,
+                   const WrittenCheck& check = {});
 
 /// How NanoVDB stores the values of a leaf: as 32-bit floats, or in so many bits each between the smallest and the
 /// largest of the leaf's 512 values. With `adaptive`, each leaf takes the fewest of 1, 2, 4, 8 and 16 bits that
