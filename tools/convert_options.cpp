@@ -9,6 +9,7 @@
 #include "command.h"
 #include "convert_source.h"
 #include "formats.h"
+#include "label_words.h"
 #include "umbrick/core/names.h"
 #include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/ingest/open_volume.h"
@@ -27,6 +28,10 @@ void addRawOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command
   app.add_option("--dims", command->dims, "voxels along x (fastest), y and z")->expected(3)->group(raw);
   app.add_option("--type", command->type, "of a voxel: u8, i8, u16, i16, u32, i32, i64, u64, f16, f32, f64")
       ->check(voxelType())
+      ->group(raw);
+  app.add_option("--components", command->components, "numbers of a voxel, side by side")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
       ->group(raw);
   app.add_option("--endian", command->endian, "little or big")
       ->check(CLI::IsMember({"little", "big"}))
@@ -55,9 +60,12 @@ void addFileOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& comman
                  "numbered too")
       ->required();
   addListFormats(app);
-  app.add_option("--frames", command->frames,
-                 "of a sequence, where input and output have a number in their names (frame_%04d.nrrd, out_%04d.vdb): "
-                 "A, A-B or A-B:step [all there are]");
+  app.add_option(
+      "--frames", command->frames,
+      "of a sequence, where input and output have a number in their names (frame_%04d.nrrd, out_%04d.vdb), or "
+      "the input is one file of several volumes (4D NIfTI, NRRD, MetaImage, .npy), counted from 0: A, A-B or "
+      "A-B:step [all there are]");
+  app.add_option("--frame", command->frame, "of one file of several volumes: only this one, counted from 0");
   app.add_option("-o,--output", command->output,
                  "the file to write: .vdb, .nvdb (NanoVDB), or the dense box of the active voxels, up to 16 GiB, as "
                  ".nrrd or as .mhd with a .raw beside it, in the type of the input if it holds all values, else as "
@@ -110,6 +118,20 @@ void addGridOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& comman
                  "of DICOM: only slices whose tag has this value, as AcquisitionNumber=2 or 0018,0081=4.6; may be "
                  "repeated, and then all must hold [all slices]")
       ->allow_extra_args(false);
+}
+
+// What becomes of voxels of several numbers, and of labels.
+void addPartsOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
+  CLI::Option* component = app.add_option(
+      "--component", command->component,
+      "of voxels of several numbers: only one of them (0, 1, ..., x, y, z of a vector, r, g, b, a of a colour), "
+      "magnitude, the length of the vector, or all, a grid of each (name_0, name_1, or name_r, name_g of a colour) "
+      "[three numbers: one grid of vec3, v or Cd; else all]");
+  app.add_option("--labels", command->labels,
+                 "a volume of labels: a grid of each, which is 1 where the label is, called as the file calls it "
+                 "(.seg.nrrd, DICOM segmentations) or label_3; or only those that are named, as 3,5,liver [all, if "
+                 "nothing follows]")
+      ->excludes(component);
 }
 
 // How the files of volumes are read.
@@ -267,6 +289,8 @@ ConvertOptions settledOptions(const ConvertCommand& command) {
   if (!command.output.empty()) checkOutput(command.output, options.output, command.inputs);
   setLimits(command, options.build);
   options.source = sourceOptions(command);
+  options.eachComponent = command.component == "all";
+  if (!command.labels.empty()) options.labels = labelChoice(command.labels);
   if (command.isosurface) options.isosurface = {*command.isosurface, command.halfWidth};
   return options;
 }
@@ -277,6 +301,7 @@ void addConvertOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& com
   addPackingOptions(app, command);
   addTargetOptions(app, command);
   addGridOptions(app, command);
+  addPartsOptions(app, command);
   addReadingOptions(app, command);
   addValueOptions(app, command);
   addPartOptions(app, command);

@@ -36,6 +36,10 @@ struct ConvertCommand {
   std::optional<float> isosurface;         // grid units
   float halfWidth = 3;                     // voxels
   std::string frames;                      // which of a sequence; empty: all
+  std::string component;                   // "all", or a word of chooseComponent; empty: not given
+  std::optional<std::int64_t> frame;       // of a file of several volumes
+  std::int64_t components = 1;             // of headerless raw
+  std::string labels;                      // "all", or values and names with commas between; empty: not given
   bool plan = false;
 
   bool raw() const { return !dims.empty() || !type.empty(); }

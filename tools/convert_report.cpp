@@ -70,6 +70,7 @@ void printGrid(const ConvertedGrid& grid, const ConvertOptions& options) {
     printIsosurface(*grid.isosurface, options.isosurface->value);
   else
     printBuild(grid.build, grid.volumeType.has_value());
+  if (grid.volumeLabel) print("label           ", "%lld", static_cast<long long>(grid.volumeLabel->value));
   if (grid.masked) print("masked          ", "%llu voxels", Count(*grid.masked));
   if (grid.resampled) printResampled(*grid.resampled);
   if (grid.verified)

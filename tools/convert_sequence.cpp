@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "command.h"
+#include "umbrick/convert/holds_grids.h"
 #include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/ingest/open_volume.h"
 
@@ -67,12 +68,34 @@ void refuseUnnumbered(const ConvertCommand& command) {
     throw UsageError("--frames: expected an input with a number in its name, such as frame_%04d.nrrd, found " + first);
 }
 
+// Whether the input is one file of several volumes, of which more than one is wanted.
+bool holdsFrames(const ConvertCommand& command, const ConvertOptions& options) try {
+  const fs::path& input = command.inputs.front();
+  if (command.inputs.size() != 1 || command.frame || holdsGrids(input)) return false;
+  if (!isFramePattern(command.output) && command.frames.empty()) return false;
+  return describeVolume(input, options.source.open).frames > 1;
+} catch (const InvalidArgument&) {
+  return false;  // such as a file of no known format: what is wrong is told where it is opened
+}
+
+FrameSequence framesInside(const ConvertCommand& command, const ConvertOptions& options) {
+  const fs::path& input = command.inputs.front();
+  if (!isFramePattern(command.output))
+    throw UsageError(input.string() + ": expected an output with a number in its name, such as out_%04d.vdb, found " +
+                     command.output.string());
+  const auto asked = command.frames.empty() ? std::nullopt : std::optional(parseRange(command.frames));
+  FrameSequence sequence = findFramesInside(input, command.output, asked, options);
+  printMissing(input, sequence.missing);
+  return sequence;
+}
+
 }  // namespace
 
 std::optional<FrameSequence> findSequence(const ConvertCommand& command, const ConvertOptions& options) {
   const std::vector<fs::path>& inputs = command.inputs;
   const auto input = std::find_if(inputs.begin(), inputs.end(), isFramePattern);
   if (input == inputs.end()) {
+    if (holdsFrames(command, options)) return framesInside(command, options);
     refuseUnnumbered(command);
     return {};
   }

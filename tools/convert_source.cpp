@@ -8,6 +8,7 @@
 #include <string>
 
 #include "command.h"
+#include "umbrick/core/error.h"
 #include "umbrick/ingest/open_volume.h"
 
 namespace umbrick::tools {
@@ -27,7 +28,10 @@ OpenOptions openInput(const ConvertCommand& command) {
   open.overridePlace = command.options.source.open.overridePlace;
   if (command.space != "file") open.space = command.space;
   for (char& letter : open.space) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  open.parts.frame = command.frame;
+  if (!command.component.empty() && command.component != "all") chooseComponent(command.component, open.parts);
   if (!command.raw()) {
+    if (command.components != 1) throw UsageError("--components is for headerless raw, with --dims and --type");
     open.spacing = vector(command.spacing);
     open.origin = vector(command.origin);
     return open;
@@ -39,6 +43,7 @@ OpenOptions openInput(const ConvertCommand& command) {
   raw.type = *voxelTypeFromName(command.type);
   raw.endian = command.endian == "big" ? std::endian::big : std::endian::little;
   raw.headerBytes = command.headerBytes;
+  raw.components = command.components;
   if (command.bitsStored != 0) raw.bitsStored = command.bitsStored;
   raw.spacing = vector(command.spacing).value_or(raw.spacing);
   raw.origin = vector(command.origin).value_or(raw.origin);
@@ -53,6 +58,9 @@ OpenOptions openMask(const ConvertCommand& command) {
   mask.options.source.open.where.clear();
   mask.space.clear();  // a mask follows the input
   mask.headerBytes = 0;
+  mask.component.clear();
+  mask.components = 1;
+  mask.frame.reset();
   mask.bitsStored = 0;
   if (formatOfName(command.options.source.mask)) {
     mask.dims.clear();
@@ -75,7 +83,7 @@ void checkRaw(const ConvertCommand& command) {
 
 }  // namespace
 
-SourceOptions sourceOptions(const ConvertCommand& command) {
+SourceOptions sourceOptions(const ConvertCommand& command) try {
   checkRaw(command);
   SourceOptions source = command.options.source;
   source.open = openInput(command);
@@ -92,6 +100,8 @@ SourceOptions sourceOptions(const ConvertCommand& command) {
   }
   source.backgroundFromBorder = command.background == "auto";
   return source;
+} catch (const InvalidArgument& error) {
+  throw UsageError("--" + std::string(error.what()));
 }
 
 }  // namespace umbrick::tools

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.h"
+#include "label_words.h"
 #include "option_words.h"
 #include "scene_options.h"
 #include "volume_options.h"
@@ -51,7 +52,7 @@ int runProgram(int argc, char** argv) {
   try {
     std::vector<std::string> arguments(argv + 1, argv + argc);
     if (!arguments.empty() && arguments.front() != "convert") arguments = joinVectors(std::move(arguments));
-    arguments = spelledOut(std::move(arguments), commands);
+    arguments = spelledOut(completeLabels(std::move(arguments)), commands);
     std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
     app.parse(std::move(arguments));
   } catch (const CLI::ParseError& error) {

@@ -15,7 +15,7 @@ namespace umbrick::tools {
 namespace {
 
 // The fields of ConvertOptions that the library's messages name, longer ones before those that they begin with.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kWords{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 24> kWords{{
     {"options.grids", "--grid"},
     {"options.isosurface", "--isosurface"},
     {"options.names", "--name"},
@@ -25,9 +25,18 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kWords{{
     {"output.nano adaptive", "--quantise n"},
     {"output.nano bits", "--quantise "},
     {"output.nano", "--quantise"},
-    {"build.background", "--background"},
+    {"options.eachComponent", "--component all"},
+    {"options.labels", "--labels"},
     {"output.target", "--to"},
+    {"build.background", "--background"},
+    {"build.clipBelow", "--threshold, --clip-below or --range"},
+    {"build.half", "--half"},
     {"build.maxError", "--max-error"},
+    {"build.step", "--step"},
+    {"build.tolerance", "--tolerance"},
+    {"source.crop", "--crop"},
+    {"source.mask", "--mask"},
+    {"source.open.parts.component", "--component"},
     {"source.backgroundFromBorder", "--background auto"},
     {"source.resample", "--resample"},
     {"source.open.lengthUnit", "--length-unit"},
@@ -42,6 +51,10 @@ std::string hintOf(const std::exception& error) {
   if (dynamic_cast<const SeveralGrids*>(&error)) return "; give --grid";
   if (dynamic_cast<const UnknownFormat*>(&error)) return ": give --dims and --type";
   if (dynamic_cast<const StatedPlace*>(&error)) return "; convert --override takes yours";
+  if (dynamic_cast<const VectorGridFound*>(&error)) return "; render --component x, y, z or magnitude shows a vec3";
+  if (const auto* several = dynamic_cast<const SeveralParts*>(&error))
+    return several->info.frames > 1 ? "; give --frame N, or convert all with -o and a numbered name, as out_%04d.vdb"
+                                    : "; give --component N or --component magnitude";
   return {};
 }
 

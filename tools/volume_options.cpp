@@ -6,6 +6,7 @@
 
 #include "command.h"
 #include "umbrick/convert/holds_grids.h"
+#include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/ingest/open_volume.h"
 #include "validators.h"
 
@@ -53,6 +54,19 @@ void addVolumeOptions(CLI::App& command, VolumeOptions& o) {
                   "of DICOM: only slices whose tag has this value, as AcquisitionNumber=2; may be repeated [all]")
       ->allow_extra_args(false)
       ->group(group);
+  command
+      .add_option(
+          "--component", o.component,
+          "of voxels of several numbers, also of a grid of vec3: 0, 1, ..., x, y, z of a vector, r, g, b, a of a "
+          "colour, or magnitude, the length of the vector")
+      ->group(group);
+  command
+      .add_option(
+          "--frame", o.frame,
+          "of a file of several volumes (4D NIfTI and others): which one, counted from 0; of numbered files the "
+          "number [the first of numbered files]")
+      ->check(nonNegativeNumber())
+      ->group(group);
   command.add_option("--dims", o.dims, "of headerless raw: voxels along x (fastest), y, z")->expected(3)->group(group);
   command.add_option("--type", o.type, "of headerless raw: u8, i8, u16, i16, u32, i32, i64, u64, f16, f32 or f64")
       ->check(voxelType())
@@ -73,8 +87,24 @@ void addVolumeOptions(CLI::App& command, VolumeOptions& o) {
       ->group(group);
 }
 
+namespace {
+
+// The part that is shown stands behind the name of the grid: "v.x", or "[3].x" of a volume.
+void applyParts(const VolumeOptions& o, VolumeReference& volume) {
+  if (o.frame && isFramePattern(volume.file))
+    volume.file = framePath(volume.file, *o.frame);
+  else if (o.frame && holdsGrids(volume.file))
+    throw UsageError(volume.file.string() + ": --frame is for files of several volumes, and this is one of grids");
+  else if (o.frame)
+    volume.grid += '[' + std::to_string(*o.frame) + ']';
+  if (!o.component.empty()) volume.grid += '.' + o.component;
+}
+
+}  // namespace
+
 void applyVolumeOptions(const VolumeOptions& o, VolumeReference& volume) {
   if (o.grid) volume.grid = *o.grid;
+  applyParts(o, volume);
   if (!o.series.empty()) volume.series = o.series;
   if (!o.where.empty()) volume.where = o.where;
   const auto vector = [](const std::vector<double>& numbers) { return glm::dvec3(numbers[0], numbers[1], numbers[2]); };

@@ -14,6 +14,8 @@ namespace umbrick::tools {
 struct VolumeOptions {
   std::optional<std::string> grid;
   std::vector<std::string> where;
+  std::string component;              // of chooseComponent; empty: not given
+  std::optional<std::int64_t> frame;  // of a file of several volumes, or the number of a file
   std::string series, type, endian = "little";
   std::vector<std::int64_t> dims;
   std::int64_t headerBytes = 0;

@@ -2,6 +2,7 @@
 #include "umbrick/convert/convert.h"
 
 #include "convert/grid_job.h"
+#include "convert/part_jobs.h"
 #include "convert/settle_options.h"
 #include "convert/volume_job.h"
 #include "umbrick/convert/holds_grids.h"
@@ -14,8 +15,16 @@ ConvertReport convertVolumes(const std::vector<fs::path>& inputs, const fs::path
                              const ConvertOptions& options) {
   if (inputs.empty()) throw OptionsError(output.string() + ": expected at least one input, found none");
   checkOutput(output, options.output, inputs);
-  std::vector<VolumeJob> jobs = volumeJobs(inputs, settled(options));
-  openEach(jobs, [](VoxelSource& source, VolumeJob& job) { buildVolume(source, job); });
+  std::vector<VolumeJob> jobs;
+  World world;
+  for (VolumeJob& volume : volumeJobs(inputs, settled(options))) {
+    // Each is brought to the world of those before it.
+    if (!volume.options.source.world && !jobs.empty()) volume.options.source.world = world;
+    for (VolumeJob& job : partJobs(std::move(volume), output)) {
+      world = completed(world, openAndBuild(job));
+      jobs.push_back(std::move(job));
+    }
+  }
   return writeVolumes(jobs, output);
 }
 

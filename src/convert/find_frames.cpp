@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -58,6 +59,22 @@ FrameSequence findFrames(const fs::path& input, const fs::path& output, const st
   if (sequence.frames.empty()) throw IoError(input.string() + ": expected frames of " + text(range) + ", found none");
   if (!options.source.open.raw && formatOfName(input) == "images") checkImages(sequence.frames.front());
   for (const FrameFiles& frame : sequence.frames) checkOutput(frame.output, options.output, {frame.input});
+  sequence.missing = missingFrames(sequence.frames, range);
+  return sequence;
+}
+
+FrameSequence findFramesInside(const fs::path& input, const fs::path& output, const std::optional<FrameRange>& wanted,
+                               const ConvertOptions& options) {
+  const std::int64_t count = describeVolume(input, options.source.open).frames;
+  const FrameRange all{0, count - 1}, range = wanted.value_or(all);
+  if (range.last < range.first || range.step < 1)
+    throw OptionsError("wanted: expected first <= last and a step of at least 1, found frames " + text(range));
+  FrameSequence sequence;
+  for (std::int64_t number = std::max<std::int64_t>(range.first, 0); number <= std::min(range.last, all.last); ++number)
+    if (range.contains(number)) sequence.frames.push_back({number, input, framePath(output, number), true});
+  if (sequence.frames.empty())
+    throw OptionsError(input.string() + ": expected some of its frames " + text(all) + ", found frames " + text(range));
+  for (const FrameFiles& frame : sequence.frames) checkOutput(frame.output, options.output, {input});
   sequence.missing = missingFrames(sequence.frames, range);
   return sequence;
 }

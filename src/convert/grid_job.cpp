@@ -33,6 +33,9 @@ void checkOptions(const fs::path& input, const ConvertOptions& options) {
          "a grid states its background; give a number to change it");
   refuse(options.source.resample.has_value(), "source.resample", "a grid keeps its voxels");
   refuse(!options.source.open.lengthUnit.empty(), "source.open.lengthUnit", "a grid keeps its world");
+  refuse(options.labels.has_value(), "options.labels", "a grid has values, not labels");
+  refuse(options.eachComponent || options.source.open.parts.component || options.source.open.parts.magnitude,
+         "source.open.parts.component", "grids keep their numbers");
   refuse(!options.names.empty(), "options.names", "grids have names");
   refuse(!options.units.empty(), "options.units", "grids keep their metadata");
 }
@@ -198,8 +201,8 @@ ConvertReport writeGridJob(GridJob& job, const fs::path& output) {
     }
   };
   job.report.output = output;
-  job.report.bytesOut =
-      writeOutput(output, job.options.output, grids, job.listing.metadata, std::nullopt, check, job.report.notes);
+  job.report.bytesOut = writeOutput(output, job.options.output, {grids.begin(), grids.end()}, job.listing.metadata,
+                                    std::nullopt, check, job.report.notes);
   return std::move(job.report);
 }
 

@@ -12,6 +12,8 @@ LoadedVolume loadVolume(const std::filesystem::path& input, const ConvertOptions
   ConvertOptions reading = options;
   reading.output = {};
   reading.verify = false;
+  reading.labels.reset();
+  reading.source.open.parts.allComponents = false;
   VolumeJob job = std::move(volumeJobs({input}, settled(reading)).front());
   if (!options.build.background && !isPipe(input)) {
     job.report.background = typicalBorder(input, job.options.source);
@@ -19,10 +21,10 @@ LoadedVolume loadVolume(const std::filesystem::path& input, const ConvertOptions
   }
   buildVolume(*openJob(job), job);
   LoadedVolume loaded;
-  loaded.grid.grid = job.grid;
-  loaded.grid.name = job.grid->getName();
-  loaded.grid.conversionError = job.report.build.conversionError;
-  loaded.report = std::move(job.report);
+  loaded.grid.grid = openvdb::gridPtrCast<openvdb::FloatGrid>(job.grids.front().grid);
+  loaded.grid.name = loaded.grid.grid->getName();
+  loaded.report = std::move(job.grids.front().report);
+  loaded.grid.conversionError = loaded.report.build.conversionError;
   return loaded;
 }
 

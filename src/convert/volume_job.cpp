@@ -2,6 +2,7 @@
 #include "convert/volume_job.h"
 
 #include <limits>
+#include <sstream>
 #include <utility>
 
 #include "convert/background.h"
@@ -12,6 +13,8 @@
 #include "convert/write_output.h"
 #include "umbrick/convert/options_error.h"
 #include "umbrick/grid/float_grid.h"
+#include "umbrick/grid/label_grids.h"
+#include "umbrick/grid/vector_grid.h"
 #include "umbrick/vdb/read_back.h"
 
 namespace umbrick {
@@ -19,10 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-std::unique_ptr<VoxelSource> openFiltered(const VolumeJob& job, ReadNotes& notes) {
-  return openFiltered(job.input, job.options.source, job.options.build.background.value_or(0), notes);
-}
 
 // The options of a pass over the voxels, which tells how far it is.
 BuildOptions passOf(const VolumeJob& job, ConvertStage stage, const VolumeInfo& info) {
@@ -75,34 +74,109 @@ void settleBackground(VolumeJob& job) {
         "the surface";
 }
 
-// Makes the grids ready for a target.
+// The grid of a job that holds the values of its volume: neither vectors nor labels.
+JobGrid* valuesOf(VolumeJob& job) {
+  JobGrid& first = job.grids.front();
+  return job.options.labels || !first.grid->isType<openvdb::FloatGrid>() ? nullptr : &first;
+}
+
+// Makes the grids ready for a target, which vectors and labels are not asked for.
 void prepareForTarget(std::span<VolumeJob> jobs, ConvertReport& report) {
   const OutputOptions& output = jobs.front().options.output;
   if (!output.target) return;
   std::vector<openvdb::FloatGrid*> grids;
   for (VolumeJob& job : jobs) {
-    BuildReport& build = job.report.build;
+    ConvertedGrid& told = job.grids.front().report;
+    auto& values = static_cast<openvdb::FloatGrid&>(*job.grids.front().grid);
     std::optional<double> left;
-    if (job.options.build.maxError) left = *job.options.build.maxError - build.maxError;
-    const TargetChange change = prepareFor(output, /*foreign=*/false, left, *job.grid);
+    if (job.options.build.maxError) left = *job.options.build.maxError - told.build.maxError;
+    const TargetChange change = prepareFor(output, /*foreign=*/false, left, values);
     job.map = change.map;
-    if (change.half) build.storage = "half";
-    if (!job.options.isosurface) addQuantising(build, change.error, /*activeOnly=*/false);
-    job.report.notes.insert(job.report.notes.end(), change.notes.begin(), change.notes.end());
-    grids.push_back(job.grid.get());
+    if (change.half) told.build.storage = "half";
+    if (!job.options.isosurface) addQuantising(told.build, change.error, /*activeOnly=*/false);
+    told.notes.insert(told.notes.end(), change.notes.begin(), change.notes.end());
+    grids.push_back(&values);
   }
   if (const std::string line = nameFor(*output.target, grids); !line.empty()) report.notes.push_back(line);
-  for (VolumeJob& job : jobs) job.report.label = job.grid->getName();
+  for (VolumeJob& job : jobs) job.grids.front().report.label = job.grids.front().grid->getName();
 }
 
-// Reads the grid of the job back from the file and compares it with the volume.
+std::unique_ptr<VoxelSource> openAgain(const VolumeJob& job, ReadNotes& notes) {
+  SourceOptions source = job.options.source;
+  source.open.parts.kept = job.again;
+  return openFiltered(job.input, source, job.options.build.background.value_or(0), notes);
+}
+
+// Reads the grids of the job back from the file and compares them with the volume.
+// @param place  of the first one in the file
 void verify(VolumeJob& job, std::size_t place, const fs::path& written, const fs::path& output) {
-  const auto back = readBack(written, *job.grid, place);
   ReadNotes again;
-  const auto source = openFiltered(job, again);
-  const BuildOptions build = passOf(job, ConvertStage::verifying, source->info());
-  job.report.verified = verifyGrid(*source, *unmapped(back, job.map), build, job.report.build.quantising.max);
-  checkVerified(output, build.name, *job.report.verified, job.report.build);
+  const auto source = job.segments ? nullptr : openAgain(job, again);
+  const BuildOptions build = passOf(job, ConvertStage::verifying, job.segments ? job.segments->info() : source->info());
+  std::vector<VerifyReport> seen;
+  if (job.options.labels) {
+    std::vector<VolumeLabel> labels;
+    std::vector<openvdb::FloatGrid::ConstPtr> back;
+    for (std::size_t i = 0; i < job.grids.size(); ++i) {
+      labels.push_back(*job.grids[i].report.volumeLabel);
+      back.push_back(readBack(written, static_cast<const openvdb::FloatGrid&>(*job.grids[i].grid), place + i));
+    }
+    seen = job.segments ? verifySegmentGrids(*job.segments, labels, back, build.progress)
+                        : verifyLabelGrids(*source, labels, back, build.progress);
+  } else if (const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(job.grids.front().grid)) {
+    seen = {verifyVectorGrid(*source, *readVectorsBack(written, *vectors, place), build)};
+  } else {
+    const auto back = readBack(written, static_cast<const openvdb::FloatGrid&>(*job.grids.front().grid), place);
+    seen = {verifyGrid(*source, *unmapped(back, job.map), build, job.grids.front().report.build.quantising.max)};
+  }
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    job.grids[i].report.verified = seen[i];
+    checkVerified(output, job.grids[i].report.label, seen[i], job.grids[i].report.build);
+  }
+}
+
+// Says what becomes of the numbers of a vector or colour.
+void noteVectors(const VolumeInfo& info, std::vector<std::string>& notes) {
+  if (const double scale = colourScale(info); scale != 1) {
+    std::ostringstream text;
+    text << "colours are divided by " << scale << " to lie from 0 to 1, and keep the tone curve of the file";
+    notes.push_back(text.str());
+  }
+  if (info.meaning == VoxelMeaning::vector)
+    notes.push_back(info.vectorToWorld == glm::dmat3(1) ? "vectors are kept as the file states them"
+                                                        : "vectors are turned into the axes of the world");
+}
+
+ConvertedGrid reportOf(const VolumeJob& job, const VolumeInfo& info) {
+  ConvertedGrid report = job.report;
+  report.volumeType = info.type;
+  report.notes.insert(report.notes.end(), info.notes.begin(), info.notes.end());
+  if (!job.settled.empty()) report.notes.push_back(job.settled);
+  return report;
+}
+
+void takeLabels(const VolumeInfo& info, LabelGrids labels, VolumeJob& job) {
+  if (labels.grids.empty())
+    throw InvalidArgument(job.input.string() + ": expected labels, found no voxel that is not 0");
+  for (LabelGrid& label : labels.grids) {
+    ConvertedGrid report = reportOf(job, info);
+    if (job.grids.empty())
+      report.notes.insert(report.notes.end(), labels.notes.begin(), labels.notes.end());
+    else
+      report.notes.clear();
+    report.label = label.grid->getName();
+    report.volumeLabel = label.label;
+    report.build = label.report;
+    job.grids.push_back({label.grid, std::move(report)});
+  }
+}
+
+void buildVectors(VoxelSource& source, VolumeJob& job, const BuildOptions& build) {
+  BuiltVectors built = buildVectorGrid(source, build);
+  ConvertedGrid report = reportOf(job, source.info());
+  noteVectors(source.info(), report.notes);
+  report.build = std::move(built.report);
+  job.grids.push_back({built.grid, std::move(report)});
 }
 
 }  // namespace
@@ -118,6 +192,7 @@ std::vector<VolumeJob> volumeJobs(const std::vector<fs::path>& inputs, const Con
     jobs[i].options = options;
     jobs[i].options.build.name = jobs[i].report.label = names[i];
     jobs[i].unit = units[i];
+    jobs[i].usualName = options.names.empty() && inputs.size() == 1;
   }
   return jobs;
 }
@@ -128,7 +203,8 @@ std::unique_ptr<VoxelSource> openJob(VolumeJob& job) {
   // What lies below the background would be below the 0 of the target.
   if (BuildOptions& build = job.options.build; mapsValues(job.options))
     build.clipBelow = std::max(build.clipBelow.value_or(-kInfinity), build.background.value_or(0));
-  return openFiltered(job, *job.notes);
+  return openFiltered(job.input, job.options.source, job.options.build.background.value_or(0), *job.notes,
+                      std::move(job.opened));
 }
 
 void openEach(std::vector<VolumeJob>& jobs, const std::function<void(VoxelSource& source, VolumeJob& job)>& use) {
@@ -143,41 +219,68 @@ void openEach(std::vector<VolumeJob>& jobs, const std::function<void(VoxelSource
 
 void buildVolume(VoxelSource& source, VolumeJob& job) {
   const SourceOptions& of = job.options.source;
-  ConvertedGrid& report = job.report;
-  BuiltGrid built = buildGrid(source, passOf(job, ConvertStage::converting, source.info()));
-  report.volumeType = source.info().type;
-  report.notes = source.info().notes;
-  if (!job.settled.empty()) report.notes.push_back(job.settled);
+  const BuildOptions build = passOf(job, ConvertStage::converting, source.info());
   job.bytesIn = source.info().fileBytes;
-  if (job.options.isosurface) report.isosurface = replaceByIsosurface(job.input, *job.options.isosurface, built);
-  if (!job.unit.empty()) built.grid->insertMeta("value_unit", openvdb::StringMetadata(job.unit));
-  if (of.resample) describeResampling(*built.grid, *(report.resampled = *job.notes->resampled));
-  if (!of.mask.empty()) report.masked = job.notes->leftOut;
-  report.build = std::move(built.report);
-  job.grid = built.grid;
+  if (job.options.labels) {
+    takeLabels(source.info(), buildLabelGrids(source, *job.options.labels, build.progress), job);
+  } else if (source.info().valuesPerVoxel > 1) {
+    buildVectors(source, job, build);
+  } else {
+    BuiltGrid built = buildGrid(source, build);
+    ConvertedGrid report = reportOf(job, source.info());
+    if (job.options.isosurface) report.isosurface = replaceByIsosurface(job.input, *job.options.isosurface, built);
+    if (of.resample) describeResampling(*built.grid, *(report.resampled = *job.notes->resampled));
+    report.build = std::move(built.report);
+    job.grids.push_back({built.grid, std::move(report)});
+  }
+  for (JobGrid& grid : job.grids) {
+    if (!job.unit.empty()) grid.grid->insertMeta("value_unit", openvdb::StringMetadata(job.unit));
+    if (!of.mask.empty()) grid.report.masked = job.notes->leftOut;
+  }
+}
+
+World openAndBuild(VolumeJob& job) {
+  if (!job.segments) {
+    const auto source = openJob(job);
+    buildVolume(*source, job);
+    return worldOf(source->info());
+  }
+  const VolumeInfo& info = job.segments->info();
+  const BuildOptions build = passOf(job, ConvertStage::converting, info);
+  job.bytesIn = info.fileBytes;
+  takeLabels(info, buildSegmentGrids(*job.segments, *job.options.labels, build.progress), job);
+  for (JobGrid& grid : job.grids)
+    if (!job.unit.empty()) grid.grid->insertMeta("value_unit", openvdb::StringMetadata(job.unit));
+  return worldOf(info);
 }
 
 ConvertReport writeVolumes(std::span<VolumeJob> jobs, const fs::path& output) {
   ConvertReport report;
   for (VolumeJob& job : jobs)
-    if (!job.options.isosurface) judgeBackground(*job.grid, job.report);
+    if (JobGrid* grid = valuesOf(job); grid && !job.options.isosurface)
+      judgeBackground(static_cast<const openvdb::FloatGrid&>(*grid->grid), grid->report);
   prepareForTarget(jobs, report);
-  std::vector<openvdb::FloatGrid::ConstPtr> grids;
-  for (const VolumeJob& job : jobs) grids.push_back(job.grid);
+  openvdb::GridCPtrVec grids;
+  for (const VolumeJob& job : jobs)
+    for (const JobGrid& grid : job.grids) grids.push_back(grid.grid);
   const NanoCheck check = [&](const fs::path& written, const std::vector<QuantiseError>& quantised) {
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-      if (!quantised.empty()) addQuantising(jobs[i].report.build, quantised[i], /*activeOnly=*/false);
-      if (jobs[i].options.verify) verify(jobs[i], i, written, output);
+    std::size_t place = 0;
+    for (VolumeJob& job : jobs) {
+      for (std::size_t i = 0; i < job.grids.size() && !quantised.empty(); ++i)
+        addQuantising(job.grids[i].report.build, quantised[place + i], /*activeOnly=*/false);
+      if (job.options.verify) verify(job, place, written, output);
+      place += job.grids.size();
     }
   };
   const VolumeJob& first = jobs.front();
-  // Distances are no values of the volume.
-  const auto type = first.report.isosurface ? VoxelType::f32 : first.report.volumeType;
+  const ConvertedGrid& told = first.grids.front().report;
+  // Distances and labels are no values of the volume.
+  const auto type = told.isosurface || told.volumeLabel ? VoxelType::f32 : told.volumeType;
   report.output = output;
   report.bytesOut = writeOutput(output, first.options.output, grids, {}, type, check, report.notes);
   for (VolumeJob& job : jobs) {
     report.bytesIn += job.bytesIn;
-    report.grids.push_back(std::move(job.report));
+    for (JobGrid& grid : job.grids) report.grids.push_back(std::move(grid.report));
   }
   return report;
 }

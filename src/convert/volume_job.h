@@ -14,19 +14,33 @@
 #include "convert/volume_source.h"
 #include "umbrick/convert/convert_options.h"
 #include "umbrick/convert/convert_report.h"
+#include "umbrick/grid/float_grid.h"
+#include "umbrick/ingest/segment_source.h"
+#include "umbrick/ingest/world.h"
 
 namespace umbrick {
+
+/// A grid of a volume, with its report.
+struct JobGrid {
+  openvdb::GridBase::Ptr grid;
+  ConvertedGrid report;
+};
 
 struct VolumeJob {
   std::filesystem::path input;
   ConvertOptions options;  // with the name of its grid, and its background once that is found
   std::string unit;
   std::unique_ptr<ReadNotes> notes = std::make_unique<ReadNotes>();  // sources hold on to its place
-  std::shared_ptr<openvdb::FloatGrid> grid;
-  std::optional<ValueMap> map;  // of the values of the grid, where a target asks for one
-  std::string settled;          // how its background was found where nobody asked for it; becomes a note
+  std::optional<ValueMap> map;          // of the values of the grid, where a target asks for one
+  std::string settled;                  // how its background was found where nobody asked for it; becomes a note
+  bool usualName = false;               // nobody has given the grid a name
+  std::unique_ptr<VoxelSource> opened;  // the input, where it had to be opened before
+  /// The input in place of `opened`, where its labels lie in pictures of one each.
+  std::unique_ptr<SegmentSource> segments;
+  std::shared_ptr<KeptStream> again;  // of frames that are opened once more to be verified
+  std::vector<JobGrid> grids;         // that were built: one, or one for each label
   std::int64_t bytesIn = 0;
-  ConvertedGrid report;
+  ConvertedGrid report;  // what is known before a grid is built
 };
 
 /// One for each input.
@@ -40,8 +54,11 @@ std::unique_ptr<VoxelSource> openJob(VolumeJob& job);
 /// Opens one after the other and calls `use`. Each is brought to the world of those before it.
 void openEach(std::vector<VolumeJob>& jobs, const std::function<void(VoxelSource& source, VolumeJob& job)>& use);
 
-/// Reads the source to its end.
+/// Reads the source to its end, and builds a grid of floats, of vec3, or one for each label.
 void buildVolume(VoxelSource& source, VolumeJob& job);
+
+/// Opens the input of a job and builds its grids. @return the world of the input
+World openAndBuild(VolumeJob& job);
 
 /// Writes the grids, and verifies the file before it takes its name where that is asked for. The reports of the jobs
 /// are moved from.

@@ -15,12 +15,6 @@ namespace umbrick {
 namespace {
 namespace fs = std::filesystem;
 
-std::unique_ptr<VoxelSource> openInput(const fs::path& input, const OpenOptions& options) try {
-  return openVolume(input, options);
-} catch (const InvalidArgument& error) {
-  std::throw_with_nested(OptionsError(error.what()));
-}
-
 std::unique_ptr<VoxelSource> cropped(const SourceOptions& options, std::unique_ptr<VoxelSource> source) {
   return options.crop ? cropSource(std::move(source), *options.crop) : std::move(source);
 }
@@ -44,9 +38,17 @@ ScalarGrid readMaskGrid(const fs::path& mask) try { return readScalarGrid(mask);
   throw InvalidArgument(std::string(error.what()) + "; a mask is the only scalar grid of its file, or called density");
 }
 
+std::unique_ptr<VoxelSource> openInput(const fs::path& input, const OpenOptions& options) try {
+  return openVolume(input, options);
+} catch (const SeveralParts&) {
+  throw;
+} catch (const InvalidArgument& error) {
+  std::throw_with_nested(OptionsError(error.what()));
+}
+
 std::unique_ptr<VoxelSource> openFiltered(const fs::path& input, const SourceOptions& options, float background,
-                                          ReadNotes& notes) {
-  auto source = openInput(input, options.open);
+                                          ReadNotes& notes, std::unique_ptr<VoxelSource> opened) {
+  auto source = opened ? std::move(opened) : openInput(input, options.open);
   if (options.world) source = inWorld(std::move(source), *options.world, /*assumed=*/true);
   if (!options.mask.empty()) {
     auto mask = holdsGrids(options.mask)

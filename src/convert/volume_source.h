@@ -20,10 +20,14 @@ struct ReadNotes {
   std::shared_ptr<ResampleReport> resampled = std::make_shared<ResampleReport>();
 };
 
+/// Opens a volume as openVolume does. @throw SeveralParts  as it does  @throw OptionsError  what else it refuses
+std::unique_ptr<VoxelSource> openInput(const std::filesystem::path& input, const OpenOptions& options);
+
 /// @param background  of what the mask leaves out, grid units
 /// @param notes       outlive the source
+/// @param opened      the input, where it is open already
 std::unique_ptr<VoxelSource> openFiltered(const std::filesystem::path& input, const SourceOptions& options,
-                                          float background, ReadNotes& notes);
+                                          float background, ReadNotes& notes, std::unique_ptr<VoxelSource> opened = {});
 
 /// Opens the mask, which is a volume.
 std::unique_ptr<VoxelSource> openMask(const SourceOptions& options);

@@ -41,7 +41,23 @@ void tellLostWorld(const openvdb::FloatGrid& grid, std::vector<std::string>& not
                   (world.lengthUnit.empty() ? "" : "in " + world.lengthUnit));
 }
 
+// The grids as formats want them that hold no others. @throw OptionsError  one is no grid of floats
+std::vector<openvdb::FloatGrid::ConstPtr> floatGrids(const fs::path& path, const OutputOptions& output,
+                                                     const openvdb::GridCPtrVec& grids) {
+  std::vector<openvdb::FloatGrid::ConstPtr> out;
+  for (const auto& grid : grids)
+    if (out.push_back(openvdb::gridConstPtrCast<openvdb::FloatGrid>(grid)); !out.back()) refuseVectors(path, output);
+  return out;
+}
+
 }  // namespace
+
+void refuseVectors(const fs::path& path, const OutputOptions& output) {
+  if (formatOf(path, output) != ".vdb")
+    throw OptionsError(path.string() +
+                       ": expected a .vdb for a grid of vec3; of its numbers one is chosen by "
+                       "source.open.parts.component, and options.eachComponent makes a grid of each");
+}
 
 void checkOutput(const fs::path& path, const OutputOptions& options, const std::vector<fs::path>& inputs) {
   const std::string format = formatOf(path, options);
@@ -78,9 +94,9 @@ void checkGridCount(const fs::path& path, const OutputOptions& options, const st
                      "; name one with options.grids: " + names + (labels.size() > kMostNamed ? ", ..." : ""));
 }
 
-std::int64_t writeOutput(const fs::path& path, const OutputOptions& output,
-                         const std::vector<openvdb::FloatGrid::ConstPtr>& grids, openvdb::MetaMap metadata,
-                         std::optional<VoxelType> type, const NanoCheck& check, std::vector<std::string>& notes) {
+std::int64_t writeOutput(const fs::path& path, const OutputOptions& output, const openvdb::GridCPtrVec& grids,
+                         openvdb::MetaMap metadata, std::optional<VoxelType> type, const NanoCheck& check,
+                         std::vector<std::string>& notes) {
   const std::string format = formatOf(path, output);
   std::int64_t bytes = 0;  // of a stream nobody knows them later
   const NanoCheck counted = [&](const fs::path& written, const std::vector<QuantiseError>& errors) {
@@ -95,17 +111,19 @@ std::int64_t writeOutput(const fs::path& path, const OutputOptions& output,
     DenseOptions dense;
     dense.type = type;
     dense.nrrd = format == ".nrrd";
-    const DenseBox box = writeDense(path, *grids.front(), dense, exact);
-    const std::string space = worldOf(*grids.front()).space;
+    const openvdb::FloatGrid::ConstPtr first = floatGrids(path, output, grids).front();
+    const openvdb::FloatGrid& values = *first;
+    const DenseBox box = writeDense(path, values, dense, exact);
+    const std::string space = worldOf(values).space;
     if (box.space != space)
       notes.push_back("the place is written in " + box.space + ", as " + format +
                       " has it; the world of the input is " + space);
   } else if (format == ".nvdb") {
-    writeNanoVdb(path, grids, output.nano.value_or(NanoOptions{}), counted);
-    tellLostWorld(*grids.front(), notes);
+    writeNanoVdb(path, floatGrids(path, output, grids), output.nano.value_or(NanoOptions{}), counted);
+    tellLostWorld(*floatGrids(path, output, grids).front(), notes);
   } else {
     if (!metadata["creator"]) metadata.insertMeta("creator", openvdb::StringMetadata(output.creator));
-    writeGrids(path, grids, metadata, output.codec.value_or(VdbCodec::blosc), exact);
+    writeAnyGrids(path, grids, metadata, output.codec.value_or(VdbCodec::blosc), exact);
   }
   if (format != ".mhd") return bytes;
   return static_cast<std::int64_t>(fs::file_size(path)) + static_cast<std::int64_t>(fs::file_size(voxelFileOf(path)));

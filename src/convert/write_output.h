@@ -17,13 +17,16 @@ namespace umbrick {
 void checkGridCount(const std::filesystem::path& output, const OutputOptions& options,
                     const std::vector<std::string>& labels);
 
+/// Refuses grids of vec3 for formats other than .vdb. @throw OptionsError
+void refuseVectors(const std::filesystem::path& path, const OutputOptions& output);
+
 /// @param type   of the voxels of the source, for the dense formats
 /// @param check  is given the file before it takes its name, and the errors of grids that are quantised, else none
 /// @param notes  gets a line for what the format changes or does not hold
 /// @return bytes written
 /// @throw OptionsError  several grids for a format that holds one  @throw Error  as the writers do
 std::int64_t writeOutput(const std::filesystem::path& path, const OutputOptions& output,
-                         const std::vector<openvdb::FloatGrid::ConstPtr>& grids, openvdb::MetaMap metadata,
-                         std::optional<VoxelType> type, const NanoCheck& check, std::vector<std::string>& notes);
+                         const openvdb::GridCPtrVec& grids, openvdb::MetaMap metadata, std::optional<VoxelType> type,
+                         const NanoCheck& check, std::vector<std::string>& notes);
 
 }  // namespace umbrick

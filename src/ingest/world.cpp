@@ -51,6 +51,8 @@ std::unique_ptr<VoxelSource> inWorld(std::unique_ptr<VoxelSource> source, const 
   const World from = worldOf(info);
   const std::size_t notes = info.notes.size();
   info.indexToWorld = worldChange(from, world, info.notes) * info.indexToWorld;
+  if (const auto turn = changeOfSpace(from.space, world.space))
+    info.vectorToWorld = glm::dmat3(*turn) * info.vectorToWorld;
   const bool spaceKnown = patientAxes(from.space).has_value(), unitKnown = millimetresPer(from.lengthUnit).has_value();
   if (patientAxes(world.space) && spaceKnown) info.metadata["space"] = world.space;
   if (millimetresPer(world.lengthUnit) && unitKnown) info.metadata["length_unit"] = world.lengthUnit;
@@ -74,6 +76,7 @@ std::unique_ptr<VoxelSource> inSpace(std::unique_ptr<VoxelSource> source, const 
   if (own == space) return source;
   if (const auto turn = changeOfSpace(own, space)) {
     info.indexToWorld = *turn * info.indexToWorld;
+    info.vectorToWorld = glm::dmat3(*turn) * info.vectorToWorld;
     info.notes.push_back("its world is turned from " + own + " to " + space);
   } else if (own.empty()) {
     info.notes.push_back("the file does not say which way its axes point: they are taken for " + space);

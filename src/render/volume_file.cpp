@@ -2,6 +2,7 @@
 #include "render/volume_file.h"
 
 #include <exception>
+#include <utility>
 
 #include "umbrick/convert/holds_grids.h"
 #include "umbrick/convert/load_volume.h"
@@ -12,16 +13,21 @@
 #include "umbrick/render/open_reference.h"
 #include "umbrick/vdb/grid_listing.h"
 #include "umbrick/vdb/read_grid.h"
+#include "umbrick/vdb/read_vectors.h"
 
 namespace umbrick {
 namespace {
 namespace fs = std::filesystem;
 
+// What a selector says in front of a component, and the component.
+std::pair<std::string, std::string> splitComponent(const std::string& selector) {
+  const std::size_t dot = selector.rfind('.');
+  if (dot == std::string::npos) return {selector, {}};
+  return {selector.substr(0, dot), selector.substr(dot + 1)};
+}
+
 void readVolume(VolumeFile& file, const LoadProgress& progress) {
   const VolumeReference& source = file.source;
-  if (!source.grid.empty())
-    throw InvalidArgument(source.file.string() + ": volume.grid is for files of grids, and this is a volume: found '" +
-                          source.grid + "'");
   ConvertOptions options;
   options.source.open = openOptions(source);
   if (progress) options.progress = [&progress](const ConvertProgress& stage) { progress(stage.share); };
@@ -66,11 +72,37 @@ void readSomeGrid(VolumeFile& file, const std::vector<std::string>& labels, cons
                        " (the others: " + joined(others) + (empty.empty() ? ")" : "; empty: " + joined(empty) + ")"));
 }
 
+// Reads one number of each voxel of a grid of vec3, where the selector ends in a component and no grid is called so.
+bool readComponent(VolumeFile& file, const GridListing& listing, const LoadProgress& progress) {
+  const auto [grid, component] = splitComponent(file.source.grid);
+  if (component.empty()) return false;
+  const std::string name = grid;
+  std::string found;
+  for (const GridListing::Row& row : listing.grids) {
+    if (row.label == file.source.grid || row.label == file.source.grid + "[0]") return false;
+    const bool named = row.label == name || row.label == name + "[0]" || name.empty();
+    if (found.empty() && named && row.type.starts_with("vec3")) found = row.label;
+  }
+  if (found.empty()) return false;
+  PartChoice choice;
+  chooseComponent(component, choice);
+  if (choice.component.value_or(0) > 2)
+    throw InvalidArgument(file.source.file.string() + ": component: expected 0 to 2, found " + component);
+  const auto vectors = readVectorGrid(file.source.file, found, progress);
+  file.grid =
+      vectorComponent(*vectors, choice.magnitude ? std::nullopt : std::optional(static_cast<int>(*choice.component)));
+  file.source.grid = found + '.' + component;
+  file.notes.push_back("grid \"" + found + "\" of vec3, " +
+                       (choice.magnitude ? std::string("its magnitude") : "its component " + component));
+  return true;
+}
+
 void readGrid(VolumeFile& file, const LoadProgress& progress) {
   file.foreign = true;
   const GridListing listing = listGrids(file.source.file);
   for (auto entry = listing.metadata.beginMeta(); entry != listing.metadata.endMeta(); ++entry)
     if (entry->first == "creator" && entry->second) file.creator = entry->second->str();
+  if (readComponent(file, listing, progress)) return;
   const std::vector<std::string> labels = scalarGrids(listing);
   if (file.source.grid.empty() && labels.size() > 1)
     readSomeGrid(file, labels, progress);

@@ -21,6 +21,9 @@ struct VolumeFile {
   VolumeReference source;          // with what was chosen
 };
 
+/// VolumeReference::grid may end in the part that is shown: ".x" (0, 1, ..., x, y, z, r, g, b, a or magnitude) one
+/// number of voxels of several, as in "v.x" for a grid of vec3, and of a volume "[3]" the frame before it, as in
+/// "[3].x".
 /// @throw IoError, InvalidArgument  as Volume(VolumeReference)
 VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& progress = {});
 

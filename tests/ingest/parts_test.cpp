@@ -283,4 +283,9 @@ TEST_CASE("The measurement frame of a NRRD turns vectors", "[ingest]") {
   const glm::dmat3 turn = openNrrd(path, true, all)->info().vectorToWorld;
   CHECK(turn * glm::dvec3(1, 0, 0) == glm::dvec3(0, 1, 0));
   CHECK(turn * glm::dvec3(0, 1, 3) == glm::dvec3(-1, 0, 6));
+  // A world that is turned turns them too: from LPS to RAS.
+  OpenOptions open;
+  open.parts = all;
+  open.space = "RAS";
+  CHECK(openVolume(path, open)->info().vectorToWorld * glm::dvec3(0, 1, 3) == glm::dvec3(1, 0, 6));
 }

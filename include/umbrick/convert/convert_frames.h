@@ -22,6 +22,7 @@ struct FrameRange {
 struct FrameFiles {
   std::int64_t number = 0;
   std::filesystem::path input, output;
+  bool inside = false;  // the frame is the volume of that number in a file of several
 };
 
 struct FrameSequence {
@@ -40,6 +41,12 @@ struct FrameSequence {
 ///                      one volume; or as checkOutput
 FrameSequence findFrames(const std::filesystem::path& input, const std::filesystem::path& output,
                          const std::optional<FrameRange>& wanted, const ConvertOptions& options = {});
+
+/// Finds the frames of one file that holds several volumes. They are numbered from 0, as in PartChoice::frame.
+/// @param output  a pattern of numbered files
+/// @throw OptionsError, IoError  as findFrames does, or as describeVolume
+FrameSequence findFramesInside(const std::filesystem::path& input, const std::filesystem::path& output,
+                               const std::optional<FrameRange>& wanted, const ConvertOptions& options = {});
 
 /// Is called for each frame that has been written.
 using FrameWritten = std::function<void(const FrameFiles&, const ConvertReport&)>;

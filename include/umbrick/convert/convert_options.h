@@ -12,6 +12,7 @@
 #include "umbrick/core/box.h"
 #include "umbrick/grid/build_grid.h"
 #include "umbrick/grid/isosurface.h"
+#include "umbrick/grid/label_grids.h"
 #include "umbrick/ingest/open_volume.h"
 #include "umbrick/ingest/world.h"
 
@@ -42,6 +43,11 @@ struct ConvertOptions {
   std::vector<std::string> names = {};
   std::vector<std::string> units = {};  // of the values, as metadata "value_unit": none, one for all, or one each
   std::vector<std::string> grids = {};  // of a file of grids only these, "name" or "name[1]"; else all scalar ones
+  /// A volume of several numbers a voxel becomes one grid for each of them, which is called as the volume with the name
+  /// of the component behind it. Else three numbers become a grid of vec3, and others one grid each.
+  bool eachComponent = false;
+  /// Each label of a volume becomes a grid of its own, which is 1 where the voxels have that label.
+  std::optional<LabelChoice> labels = {};
   std::optional<IsosurfaceOptions> isosurface = {};  // writes level sets in place of the grids
   OutputOptions output = {};
   /// Reads the file back before it takes its name, and compares it with the input.

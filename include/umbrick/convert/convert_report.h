@@ -22,6 +22,7 @@ struct ConvertedGrid {
   std::string label;  // name of the grid, with "[k]" behind it where several of an input file share it
   std::optional<VoxelType> volumeType;  // of the voxels as the input stores them; none where it was a grid
   std::vector<std::string> notes;       // of the volume, as VolumeInfo has them, or of a grid whose world was changed
+  std::optional<VolumeLabel> volumeLabel;  // whose voxels the grid shows, of a volume of labels
   BuildReport build;
   std::optional<BorderMode> background;  // what the border of the volume had
   /// Of a volume more than half of which is active: the value that more than half of all its voxels have, which as a
