@@ -86,7 +86,7 @@ DescriptorBuffer::int_type DescriptorBuffer::overflow(int_type c) {
 }
 
 std::streamsize DescriptorBuffer::xsputn(const char* bytes, std::streamsize count) {
-  if (count > epptr() - pptr()) sync();
+  if (count >= epptr() - pptr()) sync();  // what came before is written before
   if (count >= epptr() - pptr()) {
     put(bytes, static_cast<std::size_t>(count));
   } else {

@@ -44,6 +44,35 @@ int inChild(const std::function<void()>& work) {
 
 }  // namespace
 
+// A piece that fills the buffer to the last byte is the one that goes another way.
+TEST_CASE("A stream keeps the order of pieces of all sizes, and of what is written behind a seek", "[core]") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "pieces";
+  constexpr std::size_t kBuffer = std::size_t(1) << 18;
+  std::string expected;
+  PendingFile pending(path);
+  const auto put = [&](std::size_t count) {
+    std::string piece(count, '\0');
+    for (std::size_t i = 0; i < count; ++i) piece[i] = static_cast<char>((expected.size() + i) * 7 + 3);
+    pending.stream().write(piece.data(), static_cast<std::streamsize>(count));
+    expected += piece;
+  };
+  for (const std::size_t first : {std::size_t(0), std::size_t(1), std::size_t(100), kBuffer - 1, kBuffer})
+    for (const int more : {-1, 0, 1})
+      for (const std::size_t room : {kBuffer, 2 * kBuffer}) {
+        put(first);
+        put(room - first + static_cast<std::size_t>(more + 1));
+      }
+  const auto end = pending.stream().tellp();
+  pending.stream().seekp(5);
+  pending.stream() << "seek";
+  expected.replace(5, 4, "seek");
+  pending.stream().seekp(end);
+  put(3);
+  pending.commit();
+  CHECK(readBytes(path) == expected);
+}
+
 TEST_CASE("An output is a file or a stream, wherever links lead", "[core]") {
   const TemporaryFolder folder;
   const auto at = [&](const char* name) { return folder.path() / name; };
