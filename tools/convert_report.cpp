@@ -138,12 +138,11 @@ void printUsual(const ConvertedGrid& grid) {
                   "grid \"%.64s\": %.1f %% of its voxels are %.9g and active, since the background is another value: "
                   "--background auto or %.9g leaves them out",
                   name, 100.0 * double(grid.usual->voxels) / all, double(grid.usual->value), double(grid.usual->value));
-  else if (grid.borderMedian)
-    std::snprintf(
-        line, sizeof line,
-        "grid \"%.64s\": %.1f %% of its voxels are active, and on its border the median is %.9g: --background "
-        "auto, --threshold or --tolerance leave out what is of no interest",
-        name, 100.0 * double(grid.build.activeVoxels) / all, double(*grid.borderMedian));
+  else if (grid.border)
+    std::snprintf(line, sizeof line,
+                  "grid \"%.64s\": %.1f %% of its voxels are active, and its border is mostly %.9g: --background auto, "
+                  "--threshold or --tolerance leave out what is of no interest",
+                  name, 100.0 * double(grid.build.activeVoxels) / all, double(*grid.border));
   else
     return;
   std::cerr << grid.input.string() << ": " << line << '\n';

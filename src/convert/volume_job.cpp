@@ -46,7 +46,7 @@ void judgeBackground(const openvdb::FloatGrid& grid, ConvertedGrid& report) {
   const std::uint64_t active = report.build.activeVoxels, all = report.build.voxels;
   if (2 * active <= all) return;
   if (const auto usual = usualValue(grid); usual && 2 * usual->voxels > all) report.usual = usual;
-  if (static_cast<double>(active) > kNearlyAll * static_cast<double>(all)) report.borderMedian = borderMedian(grid);
+  if (static_cast<double>(active) > kNearlyAll * static_cast<double>(all)) report.border = usualBorder(grid);
 }
 
 bool mapsValues(const ConvertOptions& options) {

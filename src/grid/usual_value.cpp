@@ -5,9 +5,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <vector>
-
-#include "umbrick/core/error.h"
+#include <map>
 
 namespace umbrick {
 namespace {
@@ -80,15 +78,16 @@ std::optional<UsualValue> usualValue(const openvdb::FloatGrid& grid) {
   return found;
 }
 
-float borderMedian(const openvdb::FloatGrid& grid) {
+std::optional<float> usualBorder(const openvdb::FloatGrid& grid) {
   constexpr int kAlongEdge = 24;  // 6 faces of 24 x 24 samples
   const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
-  if (box.empty()) throw InvalidArgument("grid \"" + grid.getName() + "\": expected active voxels, found none");
+  if (box.empty()) return std::nullopt;
   const auto at = [&](int axis, int step) {
     return static_cast<int>(box.min()[axis] + std::int64_t(box.dim()[axis] - 1) * step / (kAlongEdge - 1));
   };
   const auto access = grid.getConstAccessor();
-  std::vector<float> values;
+  std::map<float, int> counts;
+  int all = 0;
   for (int axis = 0; axis < 3; ++axis)
     for (const int end : {0, kAlongEdge - 1})
       for (int u = 0; u < kAlongEdge; ++u)
@@ -97,11 +96,12 @@ float borderMedian(const openvdb::FloatGrid& grid) {
           place[axis] = at(axis, end);
           place[(axis + 1) % 3] = at((axis + 1) % 3, u);
           place[(axis + 2) % 3] = at((axis + 2) % 3, v);
-          values.push_back(access.getValue(place));
+          ++counts[access.getValue(place)];
+          ++all;
         }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  const auto most =
+      std::max_element(counts.begin(), counts.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
+  return 10 * most->second >= all ? std::optional(most->first) : std::nullopt;
 }
 
 }  // namespace umbrick

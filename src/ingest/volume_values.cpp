@@ -13,10 +13,10 @@ namespace {
 // Calls use(voxels) for one slab after the other. @return the largest error of the conversion to float
 template <class Use>
 double overSlabs(VoxelSource& source, const Use& use) {
-  constexpr std::int64_t kSlabVoxels = std::int64_t(1) << 22;
+  constexpr std::int64_t kPartVoxels = std::int64_t(1) << 22;
   const glm::i64vec3 dims = source.info().dims;
   const std::int64_t slice = dims.x * dims.y;
-  const std::int64_t atOnce = std::clamp<std::int64_t>(kSlabVoxels / slice, 1, dims.z);
+  const std::int64_t atOnce = std::clamp<std::int64_t>(kPartVoxels / slice, 1, dims.z);
   std::vector<float> slab;
   double error = 0;
   for (std::int64_t z = 0; z < dims.z; z += atOnce) {

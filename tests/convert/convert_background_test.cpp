@@ -94,12 +94,12 @@ TEST_CASE("A result that is mostly one value, or nearly all active, is reported"
   REQUIRE(plain.usual);
   CHECK(plain.usual->value == -1000);
   CHECK(plain.usual->voxels == 24 * 24 * 24 - 16 * 16 * 16);
-  CHECK(plain.borderMedian == -1000.0f);
+  CHECK(plain.border == -1000.0f);
   ConvertOptions border = noisyOptions();
   border.source.backgroundFromBorder = true;
   const ConvertedGrid sparse = convert({scan.input}, scan.out, border).grids[0];
   CHECK(!sparse.usual);
-  CHECK(!sparse.borderMedian);
+  CHECK(!sparse.border);
 }
 
 TEST_CASE("A surface below the usual background gets that of the border", "[convert]") {

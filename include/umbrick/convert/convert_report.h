@@ -28,8 +28,8 @@ struct ConvertedGrid {
   /// Of a volume more than half of which is active: the value that more than half of all its voxels have, which as a
   /// background would leave them out.
   std::optional<UsualValue> usual;
-  /// Of a volume nearly all of which is active: the median of its border, grid units.
-  std::optional<float> borderMedian;
+  /// Of a volume nearly all of which is active: the usual value of its border, if there is one, grid units.
+  std::optional<float> border;
   std::optional<std::uint64_t> masked;  // voxels that the mask made background
   std::optional<ResampleReport> resampled;
   std::optional<IsosurfaceReport> isosurface;

@@ -17,8 +17,9 @@ struct UsualValue {
 /// 1991): one pass finds the only candidate and another one counts it, on all cores. Nothing where there is none.
 std::optional<UsualValue> usualValue(const openvdb::FloatGrid& grid);
 
-/// Returns the median of voxels on the six faces of the box of the active ones, of some thousand that lie evenly there,
-/// grid units. @throw InvalidArgument  no voxel is active
-float borderMedian(const openvdb::FloatGrid& grid);
+/// Returns the most frequent value on the six faces of the box of the active voxels, of some thousand that lie evenly
+/// there, grid units. Nothing where less than a tenth of them have it, as in fields that vary everywhere, or where no
+/// voxel is active.
+std::optional<float> usualBorder(const openvdb::FloatGrid& grid);
 
 }  // namespace umbrick
