@@ -40,7 +40,7 @@ TEST_CASE("Each signal ends a job that waits for a pipe within a second, and lea
   const std::size_t before = filesIn(at.folder);
   const std::string raw = " --dims 64 64 64 --type u8 ";
   const std::vector<std::string> commands{"convert p" + raw + "-o a.vdb",   "convert p" + raw + "-o a.mhd",
-                                          "convert ball.vdb -o p",          "info p",
+                                          "convert ball.vdb -o p",          "info p" + raw,
                                           "reference p" + raw + "-o a.png", "tf auto p" + raw + "-o a.json"};
   for (const int number : {SIGINT, SIGTERM, SIGHUP})
     for (const std::string& command : commands) {
@@ -74,7 +74,7 @@ TEST_CASE("Each signal ends a job of many steps within a second, and leaves noth
 TEST_CASE("A second signal ends the program at once", "[tools]") {
   const BallWorkplace at;
   REQUIRE(mkfifo((at.folder.path() / "p").c_str(), 0600) == 0);
-  const pid_t program = startProgram(at.folder, "info p");
+  const pid_t program = startProgram(at.folder, "info p --dims 64 64 64 --type u8");
   while (!catchesInterrupt(program)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   for (int i = 0; i < 2; ++i) {
     ::kill(program, SIGTERM);
