@@ -46,8 +46,15 @@ void printTable(const std::vector<InvariantResult>& results) {
   }
   const auto row = [&](const std::string& number, const std::string& what, const std::string& how,
                        const std::string& value, const std::string& limit, const std::string& verdict) {
-    std::printf("%s  %-*s  %-*s  %9s  %9s  %s\n", number.c_str(), static_cast<int>(name), what.c_str(),
-                static_cast<int>(measured), how.c_str(), value.c_str(), limit.c_str(), verdict.c_str());
+    const auto left = [](const std::string& text, std::size_t width) {
+      return text + std::string(width - std::min(width, text.size()), ' ') + "  ";
+    };
+    const auto right = [](const std::string& text) {
+      constexpr std::size_t kWidth = 9;
+      return std::string(kWidth - std::min(kWidth, text.size()), ' ') + text + "  ";
+    };
+    std::cout << number << "  " << left(what, name) << left(how, measured) << right(value) << right(limit) << verdict
+              << '\n';
   };
   row(" ", "invariant", "measured", "value", "limit", "");
   for (const InvariantResult& result : results) {
@@ -59,7 +66,7 @@ void printTable(const std::vector<InvariantResult>& results) {
         : !result.complete ? (result.samples > 0 ? "not finished" : "not tried")
         : known            ? "ok"
                            : result.detail);
-    if (failed) std::printf("   %s\n", result.detail.c_str());
+    if (failed) std::cout << "   " << result.detail << '\n';
   }
 }
 
@@ -126,7 +133,7 @@ int check(const CheckCommand& command) {
   for (const int edge : command.check.edges)
     if (edge % 8 != 0) throw UsageError("--edges: " + std::to_string(edge) + " is not a multiple of 8");
   refuseBackdrop(*command.scene);
-  const StopRequest stop;
+  StopRequest stop;
   ProgressBar bar("loading " + command.scene->input.filename().string());
   const OpenedScene opened = openScene(*command.scene, makeSceneOf(Model::emission, *command.scene),
                                        showShare(bar, stop, "interrupted before anything was checked"));
@@ -146,6 +153,7 @@ int check(const CheckCommand& command) {
   bar.clear();
   std::cerr << opened.chosen;
   bar.begin("check");
+  stop.keepParts();
   options.progress = [&](const std::string& step, double done) {
     bar.show(done, step);
     return !stop.requested();

@@ -10,9 +10,9 @@
 
 #include "command.h"
 #include "compare_report.h"
+#include "output_option.h"
 #include "picture_output.h"
 #include "umbrick/core/error.h"
-#include "umbrick/core/pending_file.h"
 #include "umbrick/core/srgb.h"
 #include "umbrick/image/colour_map.h"
 #include "umbrick/image/exr.h"
@@ -31,16 +31,13 @@ struct CompareCommand {
   Limits limits;
   fs::path difference, flipMap;  // empty: none
   double gain = 1;
-  bool json = false;
+  std::string format;  // of these two, where their names do not say
+  bool force = false, json = false;
 };
 
-bool isPng(const fs::path& path) { return path.extension() == ".png"; }
-
-void checkOutput(const fs::path& path) {
-  if (path.empty()) return;
-  if (!isPng(path) && path.extension() != ".exr")
-    throw UsageError(path.string() + ": expected a picture that ends in .png or .exr");
-  PendingFile probe(path);
+void checkOutput(fs::path& path, const CompareCommand& command) {
+  if (!path.empty()) pictureFormat(path, command.format);
+  prepareOutput(path, command.force);
 }
 
 // --- the layers to compare ---
@@ -54,7 +51,7 @@ std::string nameOf(const ImageLayer& layer) {
 
 std::vector<ImageLayer> readLayers(const fs::path& path) {
   std::vector<ImageLayer> layers;
-  if (isPng(path))
+  if (path.extension() == ".png")
     layers.push_back({"", readPng(path)});
   else
     layers = readExr(path).layers;
@@ -142,7 +139,7 @@ Image shownDifference(const Image& difference, double gain) {
 }
 
 void writeDifference(const CompareCommand& command, const std::vector<Pair>& pairs) {
-  if (isPng(command.difference)) {
+  if (pictureFormat(command.difference, command.format) == "png") {
     const Pair& first = pairs.front();
     writePng(command.difference, shownDifference(signedDifference(first.test, first.reference), command.gain));
     return;
@@ -164,17 +161,18 @@ void writeFlipMap(const CompareCommand& command, const std::vector<Pair>& pairs)
   if (pair == pairs.end())
     throw InvalidArgument("--flip-map: no layer that is compared has FLIP, which needs 3 or 4 channels");
   const Image map = flipMap(pair->test, pair->reference, command.options.background, command.options.pixelsPerDegree);
-  if (isPng(command.flipMap)) return writePng(command.flipMap, colourMapped(map, 0, 1));
+  if (pictureFormat(command.flipMap, command.format) == "png")
+    return writePng(command.flipMap, colourMapped(map, 0, 1));
   ExrOptions options;
   options.pixel = ExrPixel::float32;
   writeExr(command.flipMap, {{"FLIP", map}}, options);
 }
 
 int compare(CompareCommand& command) {
+  checkOutput(command.difference, command);
+  checkOutput(command.flipMap, command);
   checkApart({command.test, command.difference, command.flipMap});
   checkApart({command.reference, command.difference, command.flipMap});
-  checkOutput(command.difference);
-  checkOutput(command.flipMap);
   for (int c = 0; c < 3; ++c) command.options.background[c] = command.background[static_cast<std::size_t>(c)];
   const std::vector<Pair> pairs = readPairs(command);
   Comparison comparison{command.test.string(),
@@ -248,6 +246,8 @@ Command addCompare(CLI::App& app) {
   sub->add_option("--flip-map", command->flipMap,
                   "FLIP of each pixel: .png: 0 black to 1 light yellow; .exr: FLIP, float")
       ->group(output);
+  addPictureFormat(*sub, command->format)->group(output);
+  addForceOption(*sub, command->force)->group(output);
   return {sub, [command] { return compare(*command); }};
 }
 

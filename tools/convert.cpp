@@ -18,6 +18,7 @@
 #include "convert_report.h"
 #include "convert_sequence.h"
 #include "option_words.h"
+#include "output_option.h"
 #include "umbrick/convert/convert_frames.h"
 #include "umbrick/convert/holds_grids.h"
 #include "umbrick/convert/plan_volumes.h"
@@ -63,7 +64,7 @@ Outcome convertSequence(const FrameSequence& sequence, const ConvertOptions& opt
   return outcome;
 }
 
-int run(const ConvertCommand& command) {
+int run(ConvertCommand command) {
   const Stopwatch stopwatch;
   ConvertOptions options = settledOptions(command);
   std::optional<tbb::global_control> limit;
@@ -77,6 +78,11 @@ int run(const ConvertCommand& command) {
   if (command.plan) return plan(command, options, bar);
   holdGrids(command.inputs, options.source);  // refuses what no sequence is either
   const std::optional<FrameSequence> sequence = findSequence(command, options);
+  if (!sequence) prepareOutput(command.output, command.force);
+  for (std::size_t i = 0; sequence && i < sequence->frames.size(); ++i) {
+    std::filesystem::path frame = sequence->frames[i].output;
+    prepareOutput(frame, command.force);
+  }
   const Outcome outcome = sequence ? convertSequence(*sequence, options, bar) : convertOne(command, options, bar);
   std::cout << command.output.string() << ": ";
   if (sequence) std::cout << sequence->frames.size() << (sequence->frames.size() == 1 ? " frame, " : " frames, ");

@@ -10,6 +10,7 @@
 #include "convert_source.h"
 #include "formats.h"
 #include "label_words.h"
+#include "output_option.h"
 #include "umbrick/core/names.h"
 #include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/ingest/open_volume.h"
@@ -69,7 +70,11 @@ void addFileOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& comman
   app.add_option("-o,--output", command->output,
                  "the file to write: .vdb, .nvdb (NanoVDB), or the dense box of the active voxels, up to 16 GiB, as "
                  ".nrrd or as .mhd with a .raw beside it, in the type of the input if it holds all values, else as "
-                 "32-bit float");
+                 "32-bit float; - for stdout");
+  app.add_option("--format", command->format,
+                 "of an output whose name does not end in one of these, such as - (stdout): vdb, nvdb or nrrd [vdb]")
+      ->check(CLI::IsMember({"vdb", "nvdb", "nrrd"}));
+  addForceOption(app, command->force);
 }
 
 void addPackingOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& command) {
@@ -267,6 +272,10 @@ OutputOptions outputOptions(const ConvertCommand& command) {
   if (!command.quantise.empty()) output.nano = NanoOptions{parseName(kQuantise, command.quantise, "--quantise")};
   if (!command.target.empty()) output.target = parseName(kTargets, command.target, "--to");
   if (!command.up.empty()) output.up = parseName(kAxes, command.up, "--up");
+  if (!command.format.empty())
+    output.format = '.' + command.format;
+  else if (!command.output.empty() && isStream(command.output))
+    output.format = ".vdb";
   output.creator = "umbrick " UMBRICK_VERSION;
   return output;
 }

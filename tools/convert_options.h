@@ -19,6 +19,7 @@ struct ConvertCommand {
   std::filesystem::path output;
   ConvertOptions options;  // those that the program's options set as they are
   std::string codec;       // "blosc", "zip" or "none"; empty: not given
+  std::string format;      // "vdb", "nvdb" or "nrrd", where the name of the output does not say; empty: not given
   std::string quantise;    // "4", "8", "16" or "n"; empty: not given
   std::vector<std::int64_t> dims;
   std::string type, endian = "little";
@@ -40,7 +41,7 @@ struct ConvertCommand {
   std::optional<std::int64_t> frame;       // of a file of several volumes
   std::int64_t components = 1;             // of headerless raw
   std::string labels;                      // "all", or values and names with commas between; empty: not given
-  bool plan = false;
+  bool plan = false, force = false;
 
   bool raw() const { return !dims.empty() || !type.empty(); }
 };

@@ -1,6 +1,7 @@
 // The umbrick program. Each sub-command has a file of its own beside this one.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -11,6 +12,9 @@
 #include "label_words.h"
 #include "option_words.h"
 #include "scene_options.h"
+#include "standard_output.h"
+#include "stop_request.h"
+#include "umbrick/core/output.h"
 #include "volume_options.h"
 
 namespace {
@@ -64,14 +68,42 @@ int runProgram(int argc, char** argv) {
 }
 }  // namespace
 
+namespace {
+
+// Ends quietly, as every program does whose reader has gone: by the signal that was ignored so far.
+int endByClosedPipe() {
+  std::signal(SIGPIPE, SIG_DFL);
+  std::raise(SIGPIPE);
+  return 1;
+}
+
+int complain(const std::string& message, int status) {
+  std::cerr << "umbrick: " << message << '\n';
+  return status;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  openStandardDescriptors();
+  const SignalWatch signals;
+  StandardOutput out;
+  int status = 0;
   try {
-    return runProgram(argc, argv);
-  } catch (const umbrick::tools::UsageError& error) {
-    std::cerr << "umbrick: " << error.what() << '\n';
-    return 2;
-  } catch (const std::exception& error) {
-    std::cerr << "umbrick: " << umbrick::tools::inOptionWords(error) << '\n';
-    return 1;
+    try {
+      status = runProgram(argc, argv);
+    } catch (const umbrick::PipeClosed&) {
+      throw;
+    } catch (const UsageError& error) {
+      status = complain(error.what(), 2);
+    } catch (const std::exception& error) {
+      status = complain(inOptionWords(error), 1);
+    }
+    out.finish();
+  } catch (const umbrick::PipeClosed&) {
+    return endByClosedPipe();
+  } catch (const umbrick::IoError& error) {
+    return complain(error.what(), std::max(status, 1));
   }
+  return status;
 }

@@ -15,13 +15,14 @@ namespace umbrick::tools {
 namespace {
 
 // The fields of ConvertOptions that the library's messages name, longer ones before those that they begin with.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 24> kWords{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 25> kWords{{
     {"options.grids", "--grid"},
     {"options.isosurface", "--isosurface"},
     {"options.names", "--name"},
     {"options.units", "--unit"},
     {"options.verify", "--verify"},
     {"output.codec", "--codec"},
+    {"output.format .", "--format "},
     {"output.nano adaptive", "--quantise n"},
     {"output.nano bits", "--quantise "},
     {"output.nano", "--quantise"},

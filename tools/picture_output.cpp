@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "command.h"
-#include "umbrick/core/pending_file.h"
+#include "output_option.h"
 #include "umbrick/image/png.h"
 #include "validators.h"
 
@@ -13,7 +13,9 @@ namespace umbrick::tools {
 namespace {
 constexpr std::string_view kAllAnnotations = "all";
 
-bool isExr(const std::filesystem::path& path) { return path.extension() == ".exr"; }
+bool isExr(const PictureOutput& output, const std::filesystem::path& path) {
+  return pictureFormat(path, output.format) == "exr";
+}
 
 // Prints how many colours a file of half-floats cuts off.
 void tellClipped(const std::filesystem::path& path, const std::vector<ImageLayer>& layers) {
@@ -43,11 +45,13 @@ std::shared_ptr<PictureOutput> addPictureOutput(CLI::App& command, const std::st
   const std::string group = "Output";
   command
       .add_option("-o,--output", output->files,
-                  "picture: .exr (linear, premultiplied) or .png (sRGB, alpha); may be repeated")
+                  "picture: .exr (linear, premultiplied) or .png (sRGB, alpha), or - for stdout; may be repeated")
       ->required()
       ->type_size(1)
       ->allow_extra_args(false)
       ->group(group);
+  addPictureFormat(command, output->format)->group(group);
+  addForceOption(command, output->force)->group(group);
   command.add_option("--exr-pixel", output->exrPixel, "half or float")
       ->check(CLI::IsMember(listNames(kExrPixels)))
       ->capture_default_str()
@@ -76,7 +80,7 @@ std::shared_ptr<PictureOutput> addPictureOutput(CLI::App& command, const std::st
       ->delimiter(',')
       ->check(CLI::IsMember(annotations))
       ->group(group);
-  command.add_option("--stats", output->stats, "write times, counts and the scene as JSON")->group(group);
+  command.add_option("--stats", output->stats, "write times, counts and the scene as JSON; - for stdout")->group(group);
   return output;
 }
 
@@ -90,16 +94,13 @@ void checkApart(const std::vector<std::filesystem::path>& files) {
     }
 }
 
-void checkOutputs(const PictureOutput& output) {
+void checkOutputs(PictureOutput& output) {
+  for (const std::filesystem::path& path : output.files) pictureFormat(path, output.format);
+  for (std::filesystem::path& path : output.files) prepareOutput(path, output.force);
+  prepareOutput(output.stats, output.force);
   std::vector<std::filesystem::path> files = output.files;
   files.push_back(output.stats);
   checkApart(files);
-  for (const std::filesystem::path& path : output.files) {
-    if (!isExr(path) && path.extension() != ".png")
-      throw UsageError(path.string() + ": expected a picture that ends in .exr or .png");
-    PendingFile probe(path);
-  }
-  if (!output.stats.empty()) PendingFile probe(output.stats);
 }
 
 Look PictureOutput::look() const { return {parseName(kToneMaps, toneMap, "--tone"), exposure, backdrop}; }
@@ -117,7 +118,7 @@ void prepareLook(PictureOutput& output, Backdrop backdrop, const ResolvedScene& 
   }
   if (!wanted.empty()) output.annotations = annotationsOf(scene, wanted, units, output.look());
   if (output.look() == Look{} && wanted.empty()) return;
-  if (std::all_of(output.files.begin(), output.files.end(), isExr)) {
+  if (std::all_of(output.files.begin(), output.files.end(), [&](const auto& path) { return isExr(output, path); })) {
     std::cerr << "exposure, tone, gradient and annotations are of a PNG only, and no PNG is asked for\n";
   } else if (output.annotations) {
     // A picture may be written many times: what it has no room for is said once, before.
@@ -130,13 +131,15 @@ void prepareLook(PictureOutput& output, Backdrop backdrop, const ResolvedScene& 
 }
 
 void printOutputs(const PictureOutput& output) {
-  for (const std::filesystem::path& path : output.files) std::cout << path.string() << '\n';
+  for (const std::filesystem::path& path : output.files)
+    if (!isStream(path)) std::cout << path.string() << '\n';
 }
 
 void writeOutputs(const PictureOutput& output, const std::vector<ImageLayer>& layers,
-                  const std::map<std::string, std::string>& metadata) {
+                  const std::map<std::string, std::string>& metadata, PictureState state) {
   for (const std::filesystem::path& path : output.files) {
-    if (isExr(path)) {
+    if (state == PictureState::unfinished && isStream(path)) continue;
+    if (isExr(output, path)) {
       ExrOptions options;
       options.pixel = parseName(kExrPixels, output.exrPixel, "--exr-pixel");
       options.metadata = metadata;

@@ -19,6 +19,8 @@ namespace umbrick::tools {
 struct PictureOutput {
   std::vector<std::filesystem::path> files;
   std::filesystem::path stats;  // empty: none
+  std::string format;           // of files whose names do not say; empty: not given
+  bool force = false;           // replaces what is read-only
   std::string exrPixel, toneMap = "none";
   double exposure = 0;
   std::vector<std::string> annotate;            // names of annotations, or all
@@ -38,8 +40,9 @@ std::shared_ptr<PictureOutput> addPictureOutput(CLI::App& command, const std::st
 /// Checks that no two of the files are the same, even by another path; empty ones do not count. @throw UsageError
 void checkApart(const std::vector<std::filesystem::path>& files);
 
-/// Checks that the files can be written, before the picture is made, which can take long. @throw UsageError, IoError
-void checkOutputs(const PictureOutput& output);
+/// Checks that the files can be written, before the picture is made, which can take long. See prepareOutput.
+/// @throw UsageError, IoError
+void checkOutputs(PictureOutput& output);
 
 /// Decides what is drawn into a PNG besides the picture, once the scene is known, and says what has no effect.
 /// @param backdrop  of the scene's options, see SceneOptions
@@ -47,12 +50,15 @@ void prepareLook(PictureOutput& output, Backdrop backdrop, const ResolvedScene& 
 /// Returns the units that a grid names.
 VolumeUnits unitsOf(const ScalarGrid& grid);
 
+/// Whether a picture is done, or is written again later. A stream gets the one that is done alone.
+enum class PictureState { done, unfinished };
+
 /// Writes the picture.
 /// @param layers    of EXR files, the colour first
 /// @param metadata  of EXR files; a PNG keeps the scene
 /// @throw IoError
 void writeOutputs(const PictureOutput& output, const std::vector<ImageLayer>& layers,
-                  const std::map<std::string, std::string>& metadata);
+                  const std::map<std::string, std::string>& metadata, PictureState state = PictureState::done);
 /// Prints the names of the files that hold the picture.
 void printOutputs(const PictureOutput& output);
 

@@ -4,21 +4,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <utility>
 
 namespace umbrick::tools {
 namespace {
-
-// A signal handler can only reach a static variable.
-volatile std::sig_atomic_t stopRequested = 0;
-// Asks the job to stop, and lets the next signal end the program as the first one would have ended it.
-void requestStop(int number) {
-  stopRequested = 1;
-  std::signal(number, SIG_DFL);
-}
 
 // A line that is longer than this would not be rewritten but repeated.
 std::size_t terminalWidth() {
@@ -28,19 +19,6 @@ std::size_t terminalWidth() {
 }
 
 }  // namespace
-
-StopRequest::StopRequest() {
-  stopRequested = 0;
-  std::signal(SIGINT, requestStop);
-  std::signal(SIGTERM, requestStop);
-}
-
-StopRequest::~StopRequest() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
-}
-
-bool StopRequest::requested() const { return stopRequested != 0; }
 
 ProgressBar::ProgressBar(std::string label)
     : label_(std::move(label)), pace_(progressStyle(std::getenv("UMBRICK_PROGRESS"), isatty(STDERR_FILENO) == 1)) {}

@@ -5,21 +5,11 @@
 #include <string>
 
 #include "progress_pace.h"
+#include "stop_request.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 
 namespace umbrick::tools {
-
-/// While an object of this class lives, the first Ctrl-C (or SIGTERM) asks the job to stop instead of
-/// ending the program.
-class StopRequest {
- public:
-  StopRequest();
-  ~StopRequest();
-  StopRequest(const StopRequest&) = delete;
-  StopRequest& operator=(const StopRequest&) = delete;
-  bool requested() const;
-};
 
 /// Ends a job that the user has stopped. The message says what is kept.
 struct Interrupted : Error {

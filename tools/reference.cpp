@@ -74,7 +74,7 @@ nlohmann::ordered_json printStats(const ReferenceCommand& command, const Resolve
 int runReference(ReferenceCommand& command) {
   PictureOutput& output = *command.output;
   checkOutputs(output);
-  const StopRequest stop;
+  StopRequest stop;
   ProgressBar bar("loading " + command.scene->input.filename().string());
   const OpenedScene opened = openScene(*command.scene, makeScene(*command.scene, {.model = Model::cone}),
                                        showShare(bar, stop, "interrupted; nothing was written"));
@@ -93,6 +93,7 @@ int runReference(ReferenceCommand& command) {
   bar.clear();
   std::cerr << opened.chosen;
   bar.begin("reference");
+  stop.keepParts();
   options.progress = [&](double share) {
     bar.show(share);
     return !stop.requested();

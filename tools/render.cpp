@@ -122,7 +122,8 @@ nlohmann::ordered_json printPasses(const ProgressivePicture& picture, std::uint6
 }
 
 void writePicture(const PictureOutput& output, const Picture& picture, const ResolvedScene& scene,
-                  const GlContext& context, const std::string& progressive = {}) {
+                  const GlContext& context, const std::string& progressive = {},
+                  PictureState state = PictureState::done) {
   std::vector<ImageLayer> layers{{"", picture.colour}};
   if (output.layers) {
     layers.push_back({"V", picture.visibility});
@@ -133,7 +134,7 @@ void writePicture(const PictureOutput& output, const Picture& picture, const Res
                                               {"umbrick.filter", pixelFilter(scene.sampling.pixelSamples)},
                                               {"umbrick.version", UMBRICK_VERSION}};
   if (!progressive.empty()) metadata["umbrick.progressive"] = progressive;
-  writeOutputs(output, layers, metadata);
+  writeOutputs(output, layers, metadata, state);
 }
 
 // What is seen of a picture while it is made, and what is left of it when the user stops it.
@@ -199,7 +200,7 @@ ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& vo
       watch.bar.clear();
       if (first || written.elapsedMs() > kWriteEveryMs) {
         writePicture(*command.output, picture.picture, recordedScene(picture, progressive), volume.context(),
-                     printPasses(picture, command.seed).dump());
+                     printPasses(picture, command.seed).dump(), PictureState::unfinished);
         written = Stopwatch();
         first = false;
       }
@@ -234,8 +235,8 @@ ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& vo
 }
 
 int render(const RenderCommand& command) {
+  checkOutputs(*command.output);
   const PictureOutput& output = *command.output;
-  checkOutputs(output);
   Scene scene = makeScene(*command.scene, {.model = Model::cone});
   const bool progressive = command.passes || command.maxSeconds || command.targetError;
   if (progressive && command.frames > 1) throw UsageError("--frames and --progressive exclude each other");
@@ -270,6 +271,7 @@ int render(const RenderCommand& command) {
   };
   if (progressive) {
     begin();
+    watch.stop.keepParts();
     passes = renderPasses(command, volume, loaded.scene, options, watch, framesMs);
     picture = passes->picture;
     loaded.scene = passes->scene;

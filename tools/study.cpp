@@ -16,6 +16,7 @@
 
 #include "command.h"
 #include "opened_scene.h"
+#include "output_option.h"
 #include "progress.h"
 #include "scene_options.h"
 #include "study_page/gnuplot.h"
@@ -32,7 +33,7 @@ struct StudyCommand {
   std::shared_ptr<SceneOptions> scene;
   std::filesystem::path folder, earlier;
   std::string backend = "auto";
-  bool quick = false;
+  bool quick = false, force = false;
   std::vector<std::string> methods, bits;
   std::vector<int> slices, segments, sizes;
   std::vector<double> thetas, scales;
@@ -87,12 +88,23 @@ StudySettings makeSettings(const StudyCommand& command) {
   return settings;
 }
 
+// Refuses what is no folder, and files of an earlier run that are not to be replaced.
+void checkFolder(const StudyCommand& command) {
+  if (command.folder == "-") throw UsageError("--output: expected a folder, since a study is many files, found -");
+  for (const char* file : {"study.json", "study.csv", "scene.json", "index.html"}) {
+    std::filesystem::path path = command.folder / file;
+    std::error_code none;
+    if (std::filesystem::exists(path, none)) prepareOutput(path, command.force);
+  }
+}
+
 int study(const StudyCommand& command) {
+  checkFolder(command);
   const StudySettings settings = makeSettings(command);
   refuseBackdrop(*command.scene);
   const Scene unopened = makeScene(*command.scene);
   planStudy(settings, unopened.occlusion.aperture);  // refuses wrong settings before a volume is loaded
-  const StopRequest stop;
+  StopRequest stop;
   ProgressBar bar("loading " + command.scene->input.filename().string());
   const OpenedScene opened =
       openScene(*command.scene, unopened, showShare(bar, stop, "interrupted before anything was measured"));
@@ -109,6 +121,7 @@ int study(const StudyCommand& command) {
   options.picture = [&](const StudyPicture& p) { writePictures(folder, p, resolved.ambient); };
   const StudyOutcome outcome = [&] {
     bar.begin("study");
+    stop.keepParts();
     options.progress = [&](const StudyProgress& p) {
       bar.show(p.share, p.step);
       return !stop.requested();
@@ -245,6 +258,7 @@ Command addStudy(CLI::App& app) {
   sub->add_option("--compare", command->earlier,
                   "study.json of an earlier study of this scene on this machine: the page shows its Pareto fronts, too")
       ->group("Output");
+  addForceOption(*sub, command->force)->group("Output");
   sub->add_flag("--quick", command->quick, "a small study, about two minutes on two cores for the bundled CT");
   addSweeps(*sub, *command);
   addMeasuring(*sub, *command);

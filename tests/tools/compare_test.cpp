@@ -287,8 +287,8 @@ TEST_CASE("Wrong usage of compare ends with exit status 2", "[tools]") {
   checkFails(files.folder, "a.exr b.exr --background 1 1 2", 2, "--background: expected a number from 0 to 1, found 2");
   checkFails(files.folder, "a.exr b.exr --gain 2", 2, "--gain requires --difference");
   checkFails(files.folder, "a.exr b.exr --difference d.png --gain 0", 2, "--gain: expected a number > 0, found 0");
-  checkFails(files.folder, "a.exr b.exr --difference d.jpg", 2, "d.jpg: expected a picture that ends in .png or .exr");
+  checkFails(files.folder, "a.exr b.exr --difference d.jpg", 2, "d.jpg: expected a picture that ends in .exr or .png");
   checkFails(files.folder, "a.exr b.exr --difference b.exr", 2, "b.exr: named twice");
   checkFails(files.folder, "a.exr b.exr --difference d.png --flip-map ./d.png", 2, "d.png: named twice");
-  checkFails(files.folder, "a.exr b.exr --flip-map f", 2, "f: expected a picture that ends in .png or .exr");
+  checkFails(files.folder, "a.exr b.exr --flip-map f", 2, "f: expected a picture that ends in .exr or .png");
 }

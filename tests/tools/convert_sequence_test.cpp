@@ -127,7 +127,7 @@ TEST_CASE("Numbers on one side only, or in what cannot be frames, are wrong usag
   refused("f_%03d.nrrd -o o_%d.vdb --frames=-1", 1, "f_%03d.nrrd: expected frames of -1, found none");
   refused("f_%03d.nrrd -o o_%d.vdb --frames 3-9", 1, "f_%03d.nrrd: expected frames of 3-9, found none");
   refused("g_%03d.nrrd -o o_%d.vdb", 1, "g_%03d.nrrd: expected files of that pattern, found none");
-  refused("f_%03d.nrrd -o none/o_%d.vdb", 1, "frame 1: none/o_1.vdb: cannot write");
+  refused("f_%03d.nrrd -o none/o_%d.vdb", 1, "none/o_1.vdb: cannot write");
   refused("f_%03d.nrrd -o f_%03d.nrrd", 2, "which would be overwritten");
   refused("s%d.png -o o_%d.vdb", 2, "s1.png: expected a TIFF of several pages for each frame, found one image");
   CHECK_THAT(runProgram(folder, "convert s%d.png -o o.vdb").out, Contains("of 2 ("));

@@ -43,6 +43,15 @@ inline ProgramResult runProgram(const TemporaryFolder& folder, const std::string
   return takeResult(folder, raw);
 }
 
+/// Runs a shell script in `folder`, which finds the program as $umbrick. @return what the script prints
+inline ProgramResult runShell(const TemporaryFolder& folder, const std::string& script) {
+  const std::string at = folder.path().string();
+  const int raw = std::system(
+      ("cd '" + at + "' && export UMBRICK_PROGRESS=none umbrick='" UMBRICK_PROGRAM "' && (" + script + ") >.out 2>.err")
+          .c_str());
+  return takeResult(folder, raw);
+}
+
 inline std::size_t filesIn(const TemporaryFolder& folder) {
   using Iterator = std::filesystem::directory_iterator;
   return static_cast<std::size_t>(std::distance(Iterator(folder.path()), Iterator()));
