@@ -21,8 +21,6 @@ namespace {
   throw IoError(output.given.string() + ": cannot write: " + std::strerror(errno));
 }
 
-fs::path folderOf(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
-
 // Opens a file without a name, if the system can give it one later.
 Descriptor openUnnamed(const fs::path& folder, unsigned mode) {
   if (access("/proc/self/fd", X_OK) != 0) {

@@ -16,8 +16,6 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
-fs::path folderOf(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
-
 fs::path fileAt(const fs::path& target) {
   const Output output = outputAt(target);
   if (output.isStream()) throw IoError(target.string() + ": cannot write: is one file, where a pair has two");

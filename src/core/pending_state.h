@@ -1,6 +1,8 @@
 // What a PendingFile knows of its file, which a PendingPair has to know, too.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <filesystem>
+
 #include <optional>
 #include <ostream>
 
@@ -10,6 +12,11 @@
 #include "umbrick/core/pending_file.h"
 
 namespace umbrick {
+
+/// The folder that a file is in.
+inline std::filesystem::path folderOf(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
 
 struct PendingFile::State {
   Output output;
