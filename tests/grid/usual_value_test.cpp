@@ -63,3 +63,20 @@ TEST_CASE("The usual value of the border is that of the faces, not of what lies 
   for (auto voxel = grid->beginValueOn(); voxel; ++voxel) voxel.setValue(static_cast<float>(random.uniform()));
   CHECK(!usualBorder(*grid));
 }
+
+TEST_CASE("A large grid has its usual value too, and noise has none", "[grid]") {
+  openvdb::initialize();
+  for (const double share : {0.3, 0.6}) {
+    auto grid = openvdb::FloatGrid::create(-1);
+    Random random(21);
+    auto access = grid->getAccessor();
+    for (int z = 0; z < 136; ++z)
+      for (int y = 0; y < 136; ++y)
+        for (int x = 0; x < 136; ++x)
+          access.setValue({x, y, z}, random.uniform() < share ? 3.0f : static_cast<float>(random.uniform()));
+    REQUIRE(grid->tree().leafCount() > 4096);
+    const auto found = usualValue(*grid);
+    CHECK(found.has_value() == (share > 0.5));
+    if (found) CHECK(double(found->voxels) == Approx(share * 136 * 136 * 136).epsilon(0.01));
+  }
+}

@@ -14,7 +14,8 @@ struct UsualValue {
 };
 
 /// Finds the value that more than half of the active voxels have, with the majority vote of Boyer and Moore ("MJRTY",
-/// 1991): one pass finds the only candidate and another one counts it, on all cores. Nothing where there is none.
+/// 1991): one pass finds the only candidate and another one counts it, on all cores. Nothing where there is none, for
+/// which a sixteenth of a large grid is enough.
 std::optional<UsualValue> usualValue(const openvdb::FloatGrid& grid);
 
 /// Returns the most frequent value on the six faces of the box of the active voxels, of some thousand that lie evenly
