@@ -53,12 +53,13 @@ Outcome convertOne(const ConvertCommand& command, const ConvertOptions& options,
 Outcome convertSequence(const FrameSequence& sequence, const ConvertOptions& options, ProgressBar& bar) {
   Outcome outcome;
   std::set<std::string> said;
-  convertFrames(sequence.frames, options, [&](const FrameFiles&, const ConvertReport& report) {
+  convertFrames(sequence.frames, options, [&](const FrameFiles& frame, const ConvertReport& report) {
     bar.clear();
     printNotes(report, &said);
     printWarnings(report);
     printFrame(report);
-    outcome.bytesIn += report.bytesIn;
+    // Frames inside of one file have its bytes together.
+    outcome.bytesIn = frame.inside ? report.bytesIn : outcome.bytesIn + report.bytesIn;
     outcome.bytesOut += report.bytesOut;
   });
   return outcome;

@@ -2,6 +2,7 @@
 #include "convert/volume_job.h"
 
 #include <limits>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -278,9 +279,19 @@ ConvertReport writeVolumes(std::span<VolumeJob> jobs, const fs::path& output) {
   const auto type = told.isosurface || told.volumeLabel ? VoxelType::f32 : told.volumeType;
   report.output = output;
   report.bytesOut = writeOutput(output, first.options.output, grids, {}, type, check, report.notes);
+  // A volume that became several grids is counted once, and says once what is to be known of it.
+  const VolumeJob* before = nullptr;
+  std::set<std::string> said;
   for (VolumeJob& job : jobs) {
-    report.bytesIn += job.bytesIn;
-    for (JobGrid& grid : job.grids) report.grids.push_back(std::move(grid.report));
+    if (!before || before->input != job.input) {
+      report.bytesIn += job.bytesIn;
+      said.clear();
+    }
+    for (JobGrid& grid : job.grids) {
+      std::erase_if(grid.report.notes, [&](const std::string& note) { return !said.insert(note).second; });
+      report.grids.push_back(std::move(grid.report));
+    }
+    before = &job;
   }
   return report;
 }

@@ -91,7 +91,11 @@ TEST_CASE("Three numbers a voxel become a grid of vec3 that is verified, others 
   CHECK(gridNamesIn(out) == std::vector<std::string>{"vel vec3s"});
   options.names.clear();
   options.eachComponent = true;
-  CHECK(convert({input}, out, options).grids.size() == 3);
+  const ConvertReport each = convert({input}, out, options);
+  CHECK(each.grids.size() == 3);
+  CHECK(each.bytesIn == std::int64_t(fs::file_size(input)));
+  CHECK(each.grids.at(0).notes.size() == 1);
+  CHECK(each.grids.at(1).notes.empty());
   CHECK(gridNamesIn(out) == std::vector<std::string>{"v_0 float", "v_1 float", "v_2 float"});
   checkScalars(*readScalarGrid(out, "v_2").grid, 2, 0);
   options.eachComponent = false;
