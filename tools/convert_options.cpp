@@ -155,7 +155,8 @@ void addReadingOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& com
   app.add_flag("--override", command->options.source.open.overridePlace,
                "--spacing and --origin also take the place of what the file states, in the unit of its world");
   app.add_flag("--strict", command->options.source.open.strict,
-               "refuse data files that are longer than their header (.mhd, .nhdr) says, which else is only noted");
+               "refuse NRRD and MetaImage files whose plain voxels are longer than the header says, which else is only "
+               "noted");
 }
 
 // Which values stay.

@@ -37,7 +37,7 @@ std::unique_ptr<VoxelSource> openMetaImage(const fs::path& path, bool strict, co
   VolumeInfo info = header->info;
   info.fileBytes = std::max<std::int64_t>(ownBytes, 0);
   addProvenance(info, path, "MetaImage");
-  const auto longer = strict || header->files.empty() ? nullptr : std::make_shared<std::vector<std::string>>();
+  const auto longer = strict ? nullptr : std::make_shared<std::vector<std::string>>();
   const std::int64_t ownSize = info.fileBytes;
   const auto openAll = [header, longer, path, ownSize](VolumeInfo& of) {
     of.fileBytes = ownSize;

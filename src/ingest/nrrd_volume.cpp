@@ -82,7 +82,7 @@ std::unique_ptr<VoxelSource> openNrrd(const fs::path& path, bool strict, const P
   addProvenance(info, path, "NRRD");
   info.fileBytes = std::max<std::int64_t>(headerFileBytes, 0);
 
-  const auto longer = strict || header->dataFiles.empty() ? nullptr : std::make_shared<std::vector<std::string>>();
+  const auto longer = strict ? nullptr : std::make_shared<std::vector<std::string>>();
   const std::int64_t ownSize = info.fileBytes;
   const auto openAll = [header, longer, path, ownSize](VolumeInfo& of) {
     of.fileBytes = ownSize;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/ingest/nrrd_volume.h"
+#include "umbrick/ingest/open_volume.h"
 
 #include <catch2/catch.hpp>
 #include <numeric>
@@ -185,6 +186,31 @@ TEST_CASE("NRRD headers with flipped bytes end in a volume, an IoError or a choi
       file.read();
     } catch (const IoError&) {
     } catch (const SeveralParts&) {
+    }
+  }
+}
+
+TEST_CASE("Bytes behind the voxels of a header's own file are told, or refused", "[ingest]") {
+  const TemporaryFolder folder;
+  const std::string voxels(8, '\3');
+  const auto nrrd = folder.path() / "v.nrrd", mha = folder.path() / "v.mha";
+  for (const int more : {0, 5}) {
+    writeBytes(nrrd, "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n" + voxels +
+                         std::string(static_cast<std::size_t>(more), 'x'));
+    writeBytes(mha, "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n" + voxels +
+                        std::string(static_cast<std::size_t>(more), 'x'));
+    for (const auto& path : {nrrd, mha}) {
+      CAPTURE(path, more);
+      const auto source = openVolume(path);
+      std::vector<float> slab(8);
+      source->readSlab(2, slab);
+      CHECK(slab == std::vector<float>(8, 3));
+      REQUIRE(source->info().notes.size() == (more > 0 ? 1u : 0u));
+      if (more == 0) continue;
+      CHECK_THAT(source->info().notes[0], Contains("5 bytes behind its voxels"));
+      OpenOptions strict;
+      strict.strict = true;
+      CHECK_THROWS_AS(openVolume(path, strict), IoError);
     }
   }
 }
