@@ -1,11 +1,11 @@
 # Writes the labels of a program's tests where CTest reads them, after the list of tests that Catch's CMake module writes:
-#   cmake -DPROGRAM=... -DPREFIX=... -Dslow=SPEC -Dgl=SPEC -Dkill=SPEC -DOUTPUT=... -P label_tests.cmake
+#   cmake -DPROGRAM=... -DPREFIX=... -Dslow=SPEC -Dgl=SPEC -Dkill=SPEC -Dfuzz=SPEC -DOUTPUT=... -P label_tests.cmake
 # A SPEC says in Catch's words which tests have the label: [tag], or [#file] for the tests of file.cpp. Catch's module can
 # set labels too, but only on all that one call lists: each combination of labels would be a list of its own.
 # SPDX-License-Identifier: Apache-2.0
 cmake_minimum_required(VERSION 3.25)
 set(all "")
-foreach(label slow gl kill)
+foreach(label slow gl kill fuzz)
   set(tests_${label} "")
   if(${label})
     execute_process(COMMAND ${PROGRAM} --filenames-as-tags ${${label}} --list-test-names-only
@@ -22,7 +22,7 @@ list(REMOVE_DUPLICATES all)
 set(script "")
 foreach(test ${all})
   set(labels "")
-  foreach(label slow gl kill)
+  foreach(label slow gl kill fuzz)
     if(test IN_LIST tests_${label})
       list(APPEND labels ${label})
     endif()

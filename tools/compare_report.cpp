@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "umbrick/core/error.h"
+#include "umbrick/core/printable.h"
 
 namespace umbrick::tools {
 
@@ -103,8 +104,8 @@ std::vector<Verdict> judge(const std::vector<LayerDifference>& layers, const Lim
 }
 
 void printTable(const Comparison& comparison) {
-  std::cout << "test       " << comparison.test << "\nreference  " << comparison.reference << "\npixels     "
-            << comparison.size.x << " x " << comparison.size.y << "\n\n";
+  std::cout << "test       " << printable(comparison.test) << "\nreference  " << printable(comparison.reference)
+            << "\npixels     " << comparison.size.x << " x " << comparison.size.y << "\n\n";
   Row head{"layer"};
   for (const Measure& measure : kMeasures) head.push_back(measure.title);
   head.push_back("maximum at x, y");
@@ -121,8 +122,8 @@ void printTable(const Comparison& comparison) {
 
 void printJson(const Comparison& comparison) {
   nlohmann::ordered_json json;
-  json["test"] = comparison.test;
-  json["reference"] = comparison.reference;
+  json["test"] = asUtf8(comparison.test);
+  json["reference"] = asUtf8(comparison.reference);
   json["size"] = {comparison.size.x, comparison.size.y};
   const glm::dvec3& background = comparison.options.background;
   json["background"] = {background.r, background.g, background.b};

@@ -22,6 +22,7 @@
 #include "umbrick/convert/convert_frames.h"
 #include "umbrick/convert/holds_grids.h"
 #include "umbrick/convert/plan_volumes.h"
+#include "umbrick/core/printable.h"
 #include "umbrick/core/stopwatch.h"
 
 namespace umbrick::tools {
@@ -85,7 +86,7 @@ int run(ConvertCommand command) {
     prepareOutput(frame, command.force);
   }
   const Outcome outcome = sequence ? convertSequence(*sequence, options, bar) : convertOne(command, options, bar);
-  std::cout << command.output.string() << ": ";
+  std::cout << printable(command.output.string()) << ": ";
   if (sequence) std::cout << sequence->frames.size() << (sequence->frames.size() == 1 ? " frame, " : " frames, ");
   std::cout << outcome.bytesIn << " bytes in, " << outcome.bytesOut << " bytes out, "
             << std::lround(stopwatch.elapsedMs()) << " ms\n";

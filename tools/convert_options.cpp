@@ -15,6 +15,7 @@
 #include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/ingest/open_volume.h"
 #include "validators.h"
+#include "volume_options.h"
 
 namespace umbrick::tools {
 namespace {
@@ -154,6 +155,7 @@ void addReadingOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& com
       ->check(CLI::IsMember({"lps", "ras", "file"}));
   app.add_flag("--override", command->options.source.open.overridePlace,
                "--spacing and --origin also take the place of what the file states, in the unit of its world");
+  app.add_flag("--beside-only", command->options.source.open.besideOnly, kBesideOnly);
   app.add_flag("--strict", command->options.source.open.strict,
                "refuse NRRD and MetaImage files whose plain voxels are longer than the header says, which else is only "
                "noted");

@@ -5,6 +5,8 @@
 #include <iostream>
 #include <string>
 
+#include "umbrick/core/printable.h"
+
 namespace umbrick::tools {
 namespace {
 
@@ -37,8 +39,8 @@ void printPlan(const VolumePlan& volume, VdbCodec codec) {
   if (volume.background) printBackground(*volume.background);
   char share[64];
   std::snprintf(share, sizeof share, "%.3g %%", 100 * double(plan.voxelsRead) / double(plan.voxels));
-  std::cout << "plan of " << volume.input.string() << ", from " << share << " of its voxels: " << plan.layersRead
-            << " of " << plan.layers << " layers of 8 slices\n";
+  std::cout << "plan of " << printable(volume.input.string()) << ", from " << share
+            << " of its voxels: " << plan.layersRead << " of " << plan.layers << " layers of 8 slices\n";
   std::snprintf(share, sizeof share, " (%.2f %%)", 100 * plan.activeVoxels.value / double(plan.voxels));
   std::cout << "  active voxels   " << count(plan.activeVoxels) << " of " << plan.voxels << share << '\n'
             << "  leaves          " << count(plan.leaves) << '\n'

@@ -7,6 +7,8 @@
 #include <set>
 #include <sstream>
 
+#include "umbrick/core/printable.h"
+
 namespace umbrick::tools {
 namespace {
 
@@ -65,7 +67,7 @@ void printResampled(const ResampleReport& report) {
 }
 
 void printGrid(const ConvertedGrid& grid, const ConvertOptions& options) {
-  std::cout << "grid \"" << grid.label << "\"\n";
+  std::cout << "grid \"" << printable(grid.label) << "\"\n";
   if (grid.isosurface)
     printIsosurface(*grid.isosurface, options.isosurface->value);
   else
@@ -112,15 +114,15 @@ void printFrame(const ConvertReport& report) {
   const ConvertedGrid& first = report.grids.front();
   if (first.background) extras << ", background " << first.background->value;
   if (first.verified) extras << ", verified";
-  std::cout << report.output.string() << ": " << line << extras.str() << std::endl;
+  std::cout << printable(report.output.string()) << ": " << line << extras.str() << std::endl;
 }
 
 void printNotes(const ConvertReport& report, std::set<std::string>* said) {
   for (const ConvertedGrid& grid : report.grids)
     for (const std::string& note : grid.notes)
-      if (!said || said->insert(note).second) std::cerr << grid.input.string() << ": " << note << '\n';
+      if (!said || said->insert(note).second) std::cerr << printable(grid.input.string() + ": " + note) << '\n';
   for (const std::string& note : report.notes)
-    if (!said || said->insert(note).second) std::cerr << report.output.string() << ": " << note << '\n';
+    if (!said || said->insert(note).second) std::cerr << printable(report.output.string() + ": " + note) << '\n';
 }
 
 namespace {
@@ -145,7 +147,7 @@ void printUsual(const ConvertedGrid& grid) {
                   name, 100.0 * double(grid.build.activeVoxels) / all, double(*grid.border));
   else
     return;
-  std::cerr << grid.input.string() << ": " << line << '\n';
+  std::cerr << printable(grid.input.string() + ": " + line) << '\n';
 }
 
 }  // namespace
@@ -153,11 +155,11 @@ void printUsual(const ConvertedGrid& grid) {
 void printWarnings(const ConvertReport& report) {
   for (const ConvertedGrid& grid : report.grids) printUsual(grid);
   for (const LeftOutGrid& grid : report.leftOut)
-    std::cerr << report.grids.front().input.string() << ": grid \"" << grid.label
+    std::cerr << printable(report.grids.front().input.string()) << ": grid \"" << printable(grid.label)
               << "\" is left out: expected a scalar grid, found " << grid.type << '\n';
   for (const ConvertedGrid& grid : report.grids)
     if (grid.keptLevelSet)
-      std::cerr << grid.input.string() << ": grid \"" << grid.label
+      std::cerr << printable(grid.input.string()) << ": grid \"" << printable(grid.label)
                 << "\" is a level set: --background, --tolerance, --threshold and --range do not apply to it\n";
 }
 

@@ -11,6 +11,7 @@
 
 #include "command.h"
 #include "umbrick/convert/holds_grids.h"
+#include "umbrick/core/printable.h"
 #include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/ingest/open_volume.h"
 
@@ -54,8 +55,8 @@ void printMissing(const fs::path& pattern, const std::vector<FrameRange>& missin
     gaps += (i == 0 ? "" : ", ") + std::to_string(first) + (last > first ? " to " + std::to_string(last) : "");
   }
   if (count == 0) return;
-  std::cerr << pattern.string() << ": " << count << (count == 1 ? " frame is" : " frames are") << " missing: " << gaps
-            << (missing.size() > kMostGaps ? ", ..." : "") << '\n';
+  std::cerr << printable(pattern.string()) << ": " << count << (count == 1 ? " frame is" : " frames are")
+            << " missing: " << gaps << (missing.size() > kMostGaps ? ", ..." : "") << '\n';
 }
 
 // Nothing has a number but the output or --frames.
@@ -113,7 +114,7 @@ std::optional<FrameSequence> findSequence(const ConvertCommand& command, const C
   FrameSequence sequence = findFrames(*input, command.output, asked, options);
   printMissing(*input, sequence.missing);
   for (const fs::path& file : sequence.leftOut)
-    std::cerr << file.string() << ": left out: another file has its number, or the number is too large\n";
+    std::cerr << printable(file.string()) << ": left out: another file has its number, or the number is too large\n";
   return sequence;
 }
 

@@ -24,6 +24,7 @@ OpenOptions openInput(const ConvertCommand& command) {
   open.series = command.options.source.open.series;
   open.lengthUnit = command.options.source.open.lengthUnit;
   open.strict = command.options.source.open.strict;
+  open.besideOnly = command.options.source.open.besideOnly;
   open.where = command.options.source.open.where;
   open.overridePlace = command.options.source.open.overridePlace;
   if (command.space != "file") open.space = command.space;

@@ -6,6 +6,7 @@
 
 #include "info_text.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/printable.h"
 #include "umbrick/vdb/summary.h"
 
 namespace umbrick::tools {
@@ -52,7 +53,7 @@ nlohmann::json toJson(const GridSummary& grid) {
 nlohmann::json toJson(const fs::path& path, const FileSummary& file) {
   nlohmann::json grids = nlohmann::json::array();
   for (const GridSummary& grid : file.grids) grids.push_back(toJson(grid));
-  return {{"file", path.string()},
+  return {{"file", asUtf8(path.string())},
           {"file_bytes", file.fileBytes},
           {"file_version", numberOrText(file.version)},
           {"library_version", file.libraryVersion},
@@ -61,7 +62,7 @@ nlohmann::json toJson(const fs::path& path, const FileSummary& file) {
 }
 
 void print(const GridSummary& grid) {
-  std::cout << "grid \"" << grid.label << "\"\n  type           " << grid.valueType
+  std::cout << "grid \"" << printable(grid.label) << "\"\n  type           " << grid.valueType
             << (grid.savedAsHalf ? ", saved as half" : "") << (grid.scalar ? "" : " (not a scalar)") << '\n';
   std::cout << "  file bytes     " << grid.fileBytes << '\n';
   if (grid.transformType.empty()) {
@@ -122,8 +123,8 @@ void printGridInfo(const fs::path& path, const std::vector<std::string>& only, i
     printJson(toJson(path, file));
     return;
   }
-  std::cout << path.string() << ": " << file.fileBytes << " bytes, file version " << file.version << ", written by "
-            << (file.libraryVersion.starts_with("NanoVDB") ? "" : "OpenVDB ")
+  std::cout << printable(path.string()) << ": " << file.fileBytes << " bytes, file version " << file.version
+            << ", written by " << (file.libraryVersion.starts_with("NanoVDB") ? "" : "OpenVDB ")
             << file.libraryVersion.substr(0, file.libraryVersion.find('/')) << '\n';
   for (const GridSummary& grid : file.grids) print(grid);
   if (file.grids.empty()) std::cout << "no grids\n";

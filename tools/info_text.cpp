@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <iostream>
 
+#include "umbrick/core/printable.h"
+
 namespace umbrick::tools {
 namespace {
 
@@ -54,7 +56,7 @@ void printSource(const std::map<std::string, std::string>& metadata) {
     if (found == metadata.end()) continue;
     std::string label = key;
     label.resize(std::max<std::size_t>(label.size() + 1, 15), ' ');
-    std::cout << "  " << label << found->second << '\n';
+    std::cout << "  " << label << printable(found->second) << '\n';
   }
 }
 

@@ -9,6 +9,7 @@
 #include "command.h"
 #include "info_text.h"
 #include "umbrick/convert/holds_grids.h"
+#include "umbrick/core/printable.h"
 #include "umbrick/ingest/dicom_volume.h"
 #include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/ingest/list_arrays.h"
@@ -122,7 +123,7 @@ nlohmann::json toJson(const VolumeInfo& info) {
 }
 
 nlohmann::json toJson(const Described& found) {
-  nlohmann::json out{{"file", found.input.string()}};
+  nlohmann::json out{{"file", asUtf8(found.input.string())}};
   if (found.volume) out["volume"] = toJson(*found.volume);
   if (found.volume && found.several) out["to_pick"] = pickText(*found.volume);
   if (found.values) {
@@ -141,7 +142,7 @@ nlohmann::json toJson(const Described& found) {
 }
 
 void printLine(const std::string& field, const std::string& value) {
-  std::cout << "  " << field << std::string(field.size() < 15 ? 15 - field.size() : 1, ' ') << value << '\n';
+  std::cout << "  " << field << std::string(field.size() < 15 ? 15 - field.size() : 1, ' ') << printable(value) << '\n';
 }
 
 std::string numberText(double value) {
@@ -219,7 +220,7 @@ void printArrays(const Described& found) {
 }
 
 void print(const Described& found) {
-  std::cout << found.input.string() << ": ";
+  std::cout << printable(found.input.string()) << ": ";
   if (!found.frames.empty())
     std::cout << found.frames.size() << " frames, " << found.frames.front().number << " to "
               << found.frames.back().number << "; of the first: ";

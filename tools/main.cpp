@@ -9,12 +9,15 @@
 #include <vector>
 
 #include "command.h"
+#include "foreign_messages.h"
 #include "label_words.h"
 #include "option_words.h"
 #include "scene_options.h"
 #include "standard_output.h"
 #include "stop_request.h"
+#include "umbrick/core/memory.h"
 #include "umbrick/core/output.h"
+#include "umbrick/core/printable.h"
 #include "volume_options.h"
 
 namespace {
@@ -35,6 +38,14 @@ std::vector<std::string> spelledOut(std::vector<std::string> words, const std::v
     if (background && background->get_expected_min() == 3) return spellOutBackground(std::move(words));
   }
   return words;
+}
+
+// "render head.nii", for messages of what ends in the middle.
+std::string jobOf(const CLI::App& command) {
+  std::string job = command.get_name();
+  for (const CLI::Option* option : command.get_options())
+    if (option->get_positional() && !option->results().empty()) return job + ' ' + option->results().front();
+  return job;
 }
 
 // Returns the exit status: 0 success, 1 a failed job or comparison, 2 wrong usage.
@@ -63,7 +74,10 @@ int runProgram(int argc, char** argv) {
     return app.exit(error, std::cout, std::cerr) == 0 ? 0 : 2;
   }
   for (const auto& [command, run] : commands)
-    if (command->parsed()) return run();
+    if (command->parsed()) {
+      nameJob(jobOf(*command));
+      return run();
+    }
   return 2;
 }
 }  // namespace
@@ -77,21 +91,21 @@ int endByClosedPipe() {
   return 1;
 }
 
-int complain(const std::string& message, int status) {
-  std::cerr << "umbrick: " << message << '\n';
-  return status;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   openStandardDescriptors();
   const SignalWatch signals;
   StandardOutput out;
+  ForeignMessages foreign;
+  const auto complain = [&](const std::string& message, int exitStatus) {
+    std::cerr << "umbrick: " << umbrick::printable(message) << foreign.take() << '\n';
+    return exitStatus;
+  };
   int status = 0;
   try {
     try {
-      status = runProgram(argc, argv);
+      status = umbrick::withinMemory(jobName, [&] { return runProgram(argc, argv); });
     } catch (const umbrick::PipeClosed&) {
       throw;
     } catch (const UsageError& error) {

@@ -10,6 +10,7 @@
 #include "command.h"
 #include "option_words.h"
 #include "umbrick/core/names.h"
+#include "umbrick/core/printable.h"
 #include "umbrick/core/short_number.h"
 #include "umbrick/scene/capabilities.h"
 
@@ -26,11 +27,11 @@ struct Choices {
 };
 
 std::string lineOf(const VolumeReference& volume, const Choices& choices) {
-  std::string line = volume.file.string() + ":";
+  std::string line = printable(volume.file.string()) + ":";
   for (const std::string& option : choices.options) line += ' ' + option;
   const bool both = !choices.options.empty() && !choices.reasons.empty();
   for (std::size_t i = 0; i < choices.reasons.size(); ++i)
-    line += (i > 0 ? "; " : both ? " (" : " ") + choices.reasons[i];
+    line += (i > 0 ? "; " : both ? " (" : " ") + printable(choices.reasons[i]);
   return line + (both ? ")\n" : "\n");
 }
 
@@ -95,7 +96,7 @@ SuggestedTransfer suggestFor(const std::filesystem::path& input, const VolumeOpt
   reference.file = input;
   applyVolumeOptions(options, reference);
   SuggestedTransfer suggested = suggestTransfer(*openVolumeOf(reference));
-  std::cerr << input.string() << ": " << suggested.reason << '\n';
+  std::cerr << printable(input.string() + ": " + suggested.reason) << '\n';
   return suggested;
 }
 

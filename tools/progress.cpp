@@ -8,25 +8,29 @@
 #include <cstdlib>
 #include <utility>
 
+#include "foreign_messages.h"
+#include "umbrick/core/printable.h"
+
 namespace umbrick::tools {
 namespace {
 
 // A line that is longer than this would not be rewritten but repeated.
 std::size_t terminalWidth() {
   winsize size{};
-  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  const bool known = ioctl(messageDescriptor(), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   return known ? size.ws_col : 80;
 }
 
 }  // namespace
 
 ProgressBar::ProgressBar(std::string label)
-    : label_(std::move(label)), pace_(progressStyle(std::getenv("UMBRICK_PROGRESS"), isatty(STDERR_FILENO) == 1)) {}
+    : label_(std::move(label)),
+      pace_(progressStyle(std::getenv("UMBRICK_PROGRESS"), isatty(messageDescriptor()) == 1)) {}
 
 ProgressBar::~ProgressBar() { clear(); }
 
 void ProgressBar::clear() {
-  if (drawn_) std::fputs("\r\033[K", stderr);
+  if (drawn_) dprintf(messageDescriptor(), "\r\033[K");
   drawn_ = false;
 }
 
@@ -44,12 +48,11 @@ void ProgressBar::show(double share, const std::string& step) {
   std::string text = progressText(pace_.style(), label_, share, part_.elapsedMs(), bytes_);
   if (!step.empty()) text += "; " + step;
   if (pace_.style() == ProgressStyle::rewritten) {
-    std::fprintf(stderr, "\r\033[K%s", text.substr(0, terminalWidth() - 1).c_str());
+    dprintf(messageDescriptor(), "\r\033[K%s", printable(text).substr(0, terminalWidth() - 1).c_str());
     drawn_ = true;
   } else {
-    std::fprintf(stderr, "%s\n", text.c_str());
+    dprintf(messageDescriptor(), "%s\n", printable(text).c_str());
   }
-  std::fflush(stderr);
 }
 
 std::function<void(double)> showShare(ProgressBar& bar, const StopRequest& stop, std::string interrupted) {

@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/printable.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/scene_fields.h"
 
@@ -410,7 +411,7 @@ Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults) {
   Scene scene;
   const bool fromScene = options.input.extension() == ".json";
   if (fromScene) {
-    scene = readScene(options.input);
+    scene = readScene(options.input, options.volume.besideOnly);
   } else {
     scene.volume.file = options.input;
     scene.model = defaults.model;
@@ -441,7 +442,8 @@ void refuseBackdrop(const SceneOptions& options) {
 
 void warnOfNonFinite(const Scene& scene, std::uint64_t voxels) {
   if (voxels > 0)
-    std::cerr << scene.volume.file.string() << ": " << voxels << " voxels are not finite and count as background\n";
+    std::cerr << printable(scene.volume.file.string()) << ": " << voxels
+              << " voxels are not finite and count as background\n";
 }
 
 }  // namespace umbrick::tools

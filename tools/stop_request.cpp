@@ -9,7 +9,9 @@
 #include <csignal>
 #include <cstring>
 #include <ctime>
+#include <system_error>
 
+#include "foreign_messages.h"
 #include "umbrick/core/pending_file.h"
 
 namespace umbrick::tools {
@@ -58,8 +60,8 @@ bool waitForSignal(long ms) {
 [[noreturn]] void endBy(int number) {
   abandonPendingFiles();
   constexpr char kTerminal[] = "\r\033[Kumbrick: interrupted\n", kPlain[] = "umbrick: interrupted\n";
-  const char* said = isatty(STDERR_FILENO) == 1 ? kTerminal : kPlain;
-  if (write(STDERR_FILENO, said, std::strlen(said)) < 0) errno = 0;  // there is nobody to tell
+  const char* said = isatty(messageDescriptor()) == 1 ? kTerminal : kPlain;
+  if (write(messageDescriptor(), said, std::strlen(said)) < 0) errno = 0;  // there is nobody to tell
   std::signal(number, SIG_DFL);
   sigset_t unblocked;
   sigemptyset(&unblocked);
@@ -81,7 +83,11 @@ void watchSignals() {
 
 SignalWatch::SignalWatch() {
   sem_init(&signalled, 0, 0);
-  watcher_ = std::thread(watchSignals);
+  try {
+    watcher_ = std::thread(watchSignals);
+  } catch (const std::system_error&) {
+    return;  // without a thread to watch them, signals end the program as they always do
+  }
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action {};
     sigaction(number, nullptr, &action);
@@ -98,7 +104,7 @@ SignalWatch::SignalWatch() {
 SignalWatch::~SignalWatch() {
   programLeaves = true;
   sem_post(&signalled);
-  watcher_.join();
+  if (watcher_.joinable()) watcher_.join();
 }
 
 StopRequest::~StopRequest() { partsToKeep = false; }

@@ -85,6 +85,7 @@ void addVolumeOptions(CLI::App& command, VolumeOptions& o) {
   command.add_option("--origin", o.origin, "position of the first voxel, for formats that state none, world [0 0 0]")
       ->expected(3)
       ->group(group);
+  command.add_flag("--beside-only", o.besideOnly, kBesideOnly)->group(group);
 }
 
 namespace {
@@ -103,6 +104,7 @@ void applyParts(const VolumeOptions& o, VolumeReference& volume) {
 }  // namespace
 
 void applyVolumeOptions(const VolumeOptions& o, VolumeReference& volume) {
+  if (o.besideOnly) volume.besideOnly = true;
   if (o.grid) volume.grid = *o.grid;
   applyParts(o, volume);
   if (!o.series.empty()) volume.series = o.series;

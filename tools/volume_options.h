@@ -21,9 +21,15 @@ struct VolumeOptions {
   std::int64_t headerBytes = 0;
   int bitsStored = 0;
   std::optional<std::vector<double>> spacing, origin;  // three numbers each
+  bool besideOnly = false;
 };
 
 void addVolumeOptions(CLI::App& command, VolumeOptions& options);
+
+/// What is said of --beside-only.
+inline constexpr const char* kBesideOnly =
+    "for files of others: refuse a header or scene that names files outside of its own folder and what is below it, "
+    "links and \"..\" followed";
 
 /// Sets what the options name. @throw UsageError  headerless raw without its layout, or the other way round
 void applyVolumeOptions(const VolumeOptions& options, VolumeReference& volume);

@@ -1,5 +1,6 @@
 // What becomes of a file of several volumes, or of several numbers a voxel: one grid of vec3, or a grid for each
-// number. SPDX-License-Identifier: Apache-2.0
+// number.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <string>

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/replace_by_isosurface.h"
 
+#include <new>
+
 #include "umbrick/core/error.h"
+#include "umbrick/core/memory.h"
 #include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
@@ -14,6 +17,10 @@ IsosurfaceReport replaceByIsosurface(const std::filesystem::path& input, const I
   return surface.report;
 } catch (const InvalidArgument& error) {
   throw InvalidArgument(input.string() + ": " + error.what());
+} catch (const MemoryError& error) {
+  throw MemoryError(input.string() + ": " + error.what());
+} catch (const std::bad_alloc&) {
+  throw outOfMemory(input.string() + ": isosurface");
 }
 
 }  // namespace umbrick

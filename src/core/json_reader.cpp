@@ -42,7 +42,8 @@ std::string shortened(const std::string& text) {
   return "'" + text.substr(0, length) + "...'";
 }
 
-// Returns nlohmann's message without the place that it names, which is not the one that we report.
+// Returns nlohmann's message without the place that it names, which is not the one that we report, and without the
+// text that it quotes: what is no JSON may be any file, and what stands there is nobody's business.
 std::string reason(const std::string& what) {
   std::size_t begin = what.find("] ");
   begin = begin == std::string::npos ? 0 : begin + 2;
@@ -50,7 +51,7 @@ std::string reason(const std::string& what) {
     const std::size_t colon = what.find(": ", begin);
     if (colon != std::string::npos) begin = colon + 2;
   }
-  return what.substr(begin);
+  return what.substr(begin, what.find("; last read: ", begin) - begin);
 }
 
 }  // namespace
@@ -89,8 +90,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
   bool end_array() override { return close(); }
   bool key(string_t& name) override {
     const std::size_t begin = nextToken();
-    if (!open_.back().keys.insert(name).second)
-      throw IoError(document_.where(begin) + ": the field " + shortened(name) + " is given twice");
+    if (!open_.back().keys.insert(name).second) throw IoError(document_.where(begin) + ": a field is given twice");
     key_ = name;
     return true;
   }
@@ -139,7 +139,10 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
     document_.nodes_[add(JsonDocument::Kind::number)].number = value;
     return true;
   }
-  void open(JsonDocument::Kind kind) { open_.push_back({add(kind), {}}); }
+  void open(JsonDocument::Kind kind) {
+    open_.push_back({add(kind), {}});
+    document_.depth_ = std::max(document_.depth_, open_.size());
+  }
   bool close() {
     nextToken();
     open_.pop_back();
@@ -319,8 +322,9 @@ std::string JsonValue::found() const {
   return {};
 }
 
-void JsonValue::fail(const std::string& message) const {
-  const std::string at = path();
+void JsonValue::fail(const std::string& message) const { failAt(path(), message); }
+
+void JsonValue::failAt(const std::string& at, const std::string& message) const {
   throw IoError(document_->where(node().begin) + ": " + (at.empty() ? "" : at + ": ") + message);
 }
 
@@ -339,8 +343,10 @@ void JsonValue::failUnknownField(const std::vector<std::string_view>& known) con
   });
   const bool near =
       nearest != known.end() && editDistance(name, *nearest) <= std::max<std::size_t>(1, (name.size() + 1) / 3);
-  fail("unknown field" + (near ? "; did you mean '" + std::string(*nearest) + "'?"
-                               : "; known are " + joined({known.begin(), known.end()})));
+  if (near) fail("unknown field; did you mean '" + std::string(*nearest) + "'?");
+  // The text may be that of another file, whose fields are nobody's business.
+  failAt(JsonValue(*document_, node().parent).path(),
+         "unknown field; known are " + joined({known.begin(), known.end()}));
 }
 
 }  // namespace umbrick

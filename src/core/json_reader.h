@@ -25,6 +25,9 @@ class JsonDocument {
 
   /// Returns the outermost value. It lives as long as the document, as do the values below it.
   JsonValue root() const;
+  /// How many arrays and objects are open at once where it is nested deepest. Who hands the text to a parser that needs
+  /// stack for each looks at this before.
+  std::size_t depth() const { return depth_; }
   /// Returns the value at a path such as `points[2].sigma_t` or, where the text leaves it out, the closest value that
   /// contains it.
   JsonValue closest(std::string_view path) const;
@@ -46,6 +49,7 @@ class JsonDocument {
   std::string where(std::size_t offset) const;  // returns "source:line:column"
 
   std::string text_, source_;
+  std::size_t depth_ = 0;
   std::vector<Node> nodes_;  // the root first, and parents before their children
 };
 
@@ -107,6 +111,7 @@ class JsonValue {
   std::string_view numberText() const;
   std::string path() const;
   std::string found() const;
+  [[noreturn]] void failAt(const std::string& at, const std::string& message) const;
   [[noreturn]] void failUnknownChoice(const std::vector<std::string_view>& known) const;
   [[noreturn]] void failUnknownField(const std::vector<std::string_view>& known) const;
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "umbrick/core/error.h"
+#include "umbrick/core/printable.h"
 
 namespace umbrick {
 namespace {
@@ -71,13 +72,7 @@ std::string jsonDegrees(double radians) {
   return shortest(degrees);
 }
 
-std::string jsonString(const std::string& text) {
-  try {
-    return nlohmann::json(text).dump();
-  } catch (const nlohmann::json::exception&) {
-    throw InvalidArgument("JSON cannot hold a text that is not UTF-8: '" + text + "'");
-  }
-}
+std::string jsonString(const std::string& text) { return nlohmann::json(asUtf8(text)).dump(); }
 
 std::string jsonArray(const std::vector<std::string>& values) { return bracketed('[', values, ']'); }
 

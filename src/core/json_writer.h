@@ -13,7 +13,7 @@ std::string jsonNumber(double number);
 /// Returns an angle in degrees, from which JsonValue::degrees() reads back the same radians. Where a double in degrees
 /// cannot say the angle, the text has more digits than a double.
 std::string jsonDegrees(double radians);
-/// @throw InvalidArgument  not UTF-8
+/// Bytes that are no UTF-8 become \xNN: JSON holds none.
 std::string jsonString(const std::string& text);
 std::string jsonArray(const std::vector<std::string>& values);
 std::string jsonNumbers(const std::vector<double>& numbers);

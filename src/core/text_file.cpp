@@ -2,25 +2,29 @@
 #include "core/text_file.h"
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
+#include "core/input_file.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
 
 std::string readTextFile(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw IoError(path.string() + ": cannot read: is a directory");
+  constexpr std::int64_t kMostBytes = std::int64_t(1) << 30;
+  const std::int64_t bytes = ordinaryFileSize(path);
+  if (bytes > kMostBytes)
+    throw IoError(path.string() + ": expected a text of at most " + std::to_string(kMostBytes) + " bytes, found " +
+                  std::to_string(bytes));
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw IoError(path.string() + ": cannot read: " + std::strerror(errno));
-  std::ostringstream text;
-  text << in.rdbuf();
-  // Reading an empty file inserts nothing, which sets failbit but is no error here.
+  std::string text(static_cast<std::size_t>(bytes), '\0');
+  in.read(text.data(), bytes);
   if (in.bad()) throw IoError(path.string() + ": cannot read: " + std::strerror(errno));
-  return std::move(text).str();
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
 }
 
 }  // namespace umbrick

@@ -6,7 +6,7 @@
 
 namespace umbrick {
 
-/// @throw IoError  the file is missing, a folder, or unreadable
+/// @throw IoError  the file is missing, a folder, a pipe or device, unreadable, or longer than 1 GiB
 std::string readTextFile(const std::filesystem::path& path);
 
 }  // namespace umbrick

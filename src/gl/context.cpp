@@ -5,9 +5,17 @@
 
 #include "gl/backends.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/memory.h"
 #include "umbrick/gl/functions.h"
 
 namespace umbrick {
+namespace {
+
+// Mesa ends the program where it is refused memory in some places, so it is not begun with less than its libraries, its
+// compiler and its threads map.
+constexpr double kContextAddresses = 450.0 * (1 << 20), kContextBytes = 100.0 * (1 << 20);
+
+}  // namespace
 
 GlContext::GlContext() = default;
 GlContext::~GlContext() = default;
@@ -30,6 +38,8 @@ void GlContext::initialise(Backend backend, std::unique_ptr<GlFunctions> functio
 
 std::unique_ptr<GlContext> createGlContext(Backend backend) {
   if (backend == Backend::foreign) throw InvalidArgument("backend: a foreign context is adopted, not created");
+  requireAddressSpace("OpenGL: a context with its compiler", kContextAddresses);
+  requireMemory("OpenGL: a context with its compiler", kContextBytes);
   std::string reasons;
   const auto attempt = [&](const char* name, auto create) -> std::unique_ptr<GlContext> {
     try {

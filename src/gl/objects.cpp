@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "umbrick/core/error.h"
+#include "umbrick/core/memory.h"
 
 namespace umbrick {
 namespace {
@@ -19,9 +20,48 @@ std::string hex(GLenum value) {
 void checkStorage(const GlFunctions& gl, GLenum format, int width, int height, int depth) {
   const GLenum error = gl.GetError();
   if (error == GL_NO_ERROR) return;
+  if (error == GL_OUT_OF_MEMORY)
+    throw outOfMemory("OpenGL: a texture of " + std::to_string(width) + " x " + std::to_string(height) + " x " +
+                      std::to_string(depth) + " texels of format " + hex(format));
   throw GlError("no texture of " + std::to_string(width) + " x " + std::to_string(height) + " x " +
-                std::to_string(depth) + " texels of format " + hex(format) +
-                (error == GL_OUT_OF_MEMORY ? ": out of memory" : ": error " + hex(error)));
+                std::to_string(depth) + " texels of format " + hex(format) + ": error " + hex(error));
+}
+
+double texelBytes(GLenum format) {
+  switch (format) {
+    case GL_R8:
+      return 1;
+    case GL_R16:
+    case GL_R16F:
+    case GL_RG8:
+      return 2;
+    case GL_R32F:
+    case GL_R32UI:
+    case GL_RG16:
+    case GL_RG16F:
+    case GL_RGBA8:
+    case GL_DEPTH24_STENCIL8:
+      return 4;
+    case GL_RG32F:
+    case GL_RGBA16:
+    case GL_RGBA16F:
+      return 8;
+    default:
+      return 16;
+  }
+}
+
+// Textures of software OpenGL lie in the program's memory, and Mesa does not always survive that it is refused some.
+void checkMemory(const GlFunctions& gl, GLenum format, int width, int height, int depth) {
+  constexpr double kLooked = 16 << 20;  // to ask the system takes longer than to make a small one
+  const double bytes = texelBytes(format) * width * height * depth;
+  if (bytes < kLooked) return;
+  const GLubyte* const name = gl.GetString(GL_RENDERER);
+  const std::string renderer = name ? reinterpret_cast<const char*>(name) : "";
+  if (renderer.find("llvmpipe") == renderer.npos && renderer.find("softpipe") == renderer.npos) return;
+  requireMemory("OpenGL: a texture of " + std::to_string(width) + " x " + std::to_string(height) + " x " +
+                    std::to_string(depth) + " texels",
+                bytes);
 }
 
 void setSampling(const GlFunctions& gl, GLuint texture, GLenum filter) {
@@ -70,6 +110,7 @@ void GlQueryKind::destroy(const GlFunctions& gl, GLuint name) { gl.DeleteQueries
 
 GlTexture makeTexture2d(const GlFunctions& gl, GLenum format, int width, int height, GLenum filter) {
   GlTexture texture(gl, static_cast<GLenum>(GL_TEXTURE_2D));
+  checkMemory(gl, format, width, height, 1);
   gl.TextureStorage2D(texture.name(), 1, format, width, height);
   checkStorage(gl, format, width, height, 1);
   setSampling(gl, texture.name(), filter);
@@ -78,6 +119,7 @@ GlTexture makeTexture2d(const GlFunctions& gl, GLenum format, int width, int hei
 
 GlTexture makeTextureArray(const GlFunctions& gl, GLenum format, int width, int height, int layers, GLenum filter) {
   GlTexture texture(gl, static_cast<GLenum>(GL_TEXTURE_2D_ARRAY));
+  checkMemory(gl, format, width, height, layers);
   gl.TextureStorage3D(texture.name(), 1, format, width, height, layers);
   checkStorage(gl, format, width, height, layers);
   setSampling(gl, texture.name(), filter);
@@ -86,6 +128,7 @@ GlTexture makeTextureArray(const GlFunctions& gl, GLenum format, int width, int 
 
 GlTexture makeTexture3d(const GlFunctions& gl, GLenum format, int width, int height, int depth) {
   GlTexture texture(gl, static_cast<GLenum>(GL_TEXTURE_3D));
+  checkMemory(gl, format, width, height, depth);
   gl.TextureStorage3D(texture.name(), 1, format, width, height, depth);
   checkStorage(gl, format, width, height, depth);
   setSampling(gl, texture.name(), GL_LINEAR);

@@ -10,6 +10,7 @@
 #include "grid/empty_grid.h"
 #include "grid/slab_builder.h"
 #include "grid/sparse_rule.h"
+#include "umbrick/core/memory.h"
 #include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
@@ -33,11 +34,18 @@ BuiltGrid buildGrid(VoxelSource& source, const BuildOptions& options) {
   const std::int64_t atOnce = slabSlices(info.dims);
   checkSlabFits(info, std::min(atOnce, info.dims.z));
 
+  // A leaf of 512 voxels also has masks and its place.
+  constexpr double kLeafBytes =
+      static_cast<double>(sizeof(openvdb::FloatTree::LeafNodeType) + 512 * sizeof(float)) / 512;
   SlabBuilder builder(info.dims, rule);
   SparseTally tally;
   VoxelSlab slab(source), next(source);
   built.report.conversionError = slab.read(0, atOnce);
   while (slab.slices() > 0) {
+    // Voxels that all stay take this much; the sparse rule tells how many do, voxel by voxel.
+    requireMemory(info.name + ": building the grid, slices " + std::to_string(slab.firstSlice()) + " to " +
+                      std::to_string(slab.firstSlice() + slab.slices() - 1) + " of " + std::to_string(info.dims.z),
+                  kLeafBytes * static_cast<double>(slab.slices() * sliceVoxels));
     // The next voxel slab is read while the leaves of this one are built.
     auto reading = std::async(std::launch::async, [&] { return next.read(slab.firstSlice() + slab.slices(), atOnce); });
     tally.add(builder.addTo(built.grid->tree(), slab));

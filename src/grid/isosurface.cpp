@@ -10,15 +10,18 @@
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <vector>
 
+#include "grid/crossing_edges.h"
 #include "grid/isosurface_error.h"
 #include "grid/sparse_rule.h"
 #include "grid/surface_band.h"
 #include "grid/surface_distance.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/memory.h"
 #include "umbrick/core/range.h"
 #include "umbrick/grid/affine_matrix.h"
 #include "umbrick/grid/float_grid.h"
@@ -83,6 +86,32 @@ glm::dmat4 cubicPlace(const glm::dmat4& place) {
 openvdb::math::Transform::Ptr transformOf(const FloatGrid& volume, const glm::dmat4& before, const glm::dmat4& place) {
   if (place == before) return volume.transform().copy();
   return openvdb::math::Transform::createLinearTransform(rowMatrix(place));
+}
+
+// Refuses what is too large for the memory: where spacings differ much, each edge of the volume that crosses the value
+// is stretched over many cubes. Voxels near the surface get values, those of the band distances, and each cube of the
+// surface some discs.
+void checkBand(const ScalarGrid& volume, const IsosurfaceOptions& options, const glm::dmat4& toLevelSet) {
+  std::array<std::uint64_t, 3> crossings{};
+  const auto add = [&](const openvdb::Coord&, int axis, int) { ++crossings[static_cast<std::size_t>(axis)]; };
+  CrossingEdges edges(volume.grid->tree(), options.value);
+  for (auto leaf = volume.grid->tree().cbeginLeaf(); leaf; ++leaf) edges.inLeaf(*leaf, add);
+  eachTileOf(volume.grid->tree(), [&](const openvdb::CoordBBox& box, float here) { edges.inTile(box, here, add); });
+  const glm::dmat3 axes(toLevelSet);
+  const double cell = std::abs(glm::determinant(axes));  // voxels of the level set in one of the volume
+  double area = 0, near = 0;                             // in voxels of the level set
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto count = static_cast<double>(crossings[static_cast<std::size_t>(axis)]);
+    area += count * glm::length(glm::cross(axes[(axis + 1) % 3], axes[(axis + 2) % 3]));
+    near += count * cell;
+  }
+  // Leaves reach a few voxels beyond the band; a surface voxel has one to three discs.
+  constexpr double kLeafVoxel = 5, kDiscs = 2 * sizeof(Disc);  // bytes, with masks
+  const double band = area * (2 * double(options.halfWidth) + 6);
+  std::ostringstream step;
+  step.precision(3);
+  step << "grid \"" << volume.name << "\": isosurface: a band of some " << band << " cubes of the smallest spacing";
+  requireMemory(step.str(), kLeafVoxel * (band + 2 * near) + kDiscs * area);
 }
 
 // Returns the value at a voxel of another lattice.
@@ -165,6 +194,7 @@ Isosurface makeIsosurface(const ScalarGrid& volume, const IsosurfaceOptions& opt
            options.value);
   }
   const bool same = place == before;
+  if (!same) checkBand(volume, options, toLevelSet);
   const glm::dmat4 toVolume = glm::inverse(toLevelSet);
   const auto isInside = [&]() -> std::function<bool(const openvdb::Coord&)> {
     return [access = volume.grid->getConstAccessor(), toVolume, same, value = options.value](const openvdb::Coord& at) {

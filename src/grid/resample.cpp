@@ -13,6 +13,7 @@
 #include "grid/box_overlap.h"
 #include "grid/slab_builder.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/memory.h"
 
 namespace umbrick {
 namespace {
@@ -78,6 +79,11 @@ class ResampledSource : public VoxelSource {
         z_(overlapOf(source_->info(), 2, spacing.z)),
         report_(report ? std::move(report) : std::make_shared<ResampleReport>()) {
     checkSlabFits(source_->info(), 1);
+    const double plane = double(x_.count()) * double(y_.count()), rows = double(x_.count()) * double(from_.y);
+    std::ostringstream step;
+    step << source_->info().name << ": resample: a slice of " << x_.count() << " x " << y_.count() << " voxels";
+    requireMemory(step.str(), plane * double(sizeof(Moments) + sizeof(MomentSum) + 2 * sizeof(float)) +
+                                  rows * double(sizeof(Moments)));
     info_ = source_->info();
     info_.dims = {std::int64_t(x_.count()), std::int64_t(y_.count()), std::int64_t(z_.count())};
     info_.type = VoxelType::f32;

@@ -16,9 +16,11 @@
 #include <cstdint>
 #include <set>
 
-#include "core/text_file.h"
+#include "core/input_file.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/memory.h"
 #include "umbrick/core/pending_file.h"
+#include "umbrick/core/printable.h"
 
 namespace umbrick {
 namespace {
@@ -89,7 +91,7 @@ void writePlanes(std::ostream& out, const std::string& name, int width, int heig
                  const std::vector<ChannelRows>& planes, const std::map<std::string, std::string>& metadata) {
   Imf::Header header(width, height);
   header.compression() = Imf::ZIP_COMPRESSION;
-  for (const auto& [key, text] : metadata) header.insert(key, Imf::StringAttribute(text));
+  for (const auto& [key, text] : metadata) header.insert(key, Imf::StringAttribute(asUtf8(text)));
   Imf::FrameBuffer buffer;
   for (const ChannelRows& plane : planes) {
     header.channels().insert(plane.name, Imf::Channel(plane.type));
@@ -153,11 +155,16 @@ ExrFile readOpened(Imf::InputFile& file) {
       result.metadata[attribute.name()] = text->value();
 
   const std::vector<FileLayer> layers = layersOf(header.channels());
+  std::size_t channels = 0;
+  for (const FileLayer& layer : layers) channels += layer.channels.size();
+  requireMemory(
+      std::to_string(width) + " x " + std::to_string(height) + " pixels of " + std::to_string(channels) + " channels",
+      double(sizeof(float)) * double(width) * double(height) * double(channels));
   if (layers.empty()) throw IoError("no channels");
   Imf::FrameBuffer buffer;
   for (const FileLayer& layer : layers) {
-    const auto channels = static_cast<int>(layer.channels.size());
-    result.layers.push_back({layer.name, Image(static_cast<int>(width), static_cast<int>(height), channels)});
+    const auto layerChannels = static_cast<int>(layer.channels.size());
+    result.layers.push_back({layer.name, Image(static_cast<int>(width), static_cast<int>(height), layerChannels)});
     Image& image = result.layers.back().image;
     for (std::size_t c = 0; c < layer.channels.size(); ++c) {
       const Imf::Channel& channel = header.channels()[layer.channels[c].c_str()];
@@ -208,8 +215,7 @@ void writeExr(const std::filesystem::path& path, const std::vector<ImageLayer>& 
 }
 
 ExrFile readExr(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) readTextFile(path);  // throws and says what is wrong with it
+  ordinaryFileSize(path);
   bool tiled = false, deep = false;
   if (!Imf::isOpenExrFile(path.c_str(), tiled, deep)) throw IoError(path.string() + ": not an EXR file");
   if (deep) throw IoError(path.string() + ": a deep EXR file, which has no scan lines of pixels");

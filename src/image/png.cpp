@@ -16,7 +16,7 @@
 #include <ostream>
 #include <vector>
 
-#include "core/text_file.h"
+#include "core/input_file.h"
 #include "image/finite.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
@@ -165,8 +165,7 @@ void writePng(const std::filesystem::path& path, const Image& image, const PngOp
 }
 
 Image readPng(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) readTextFile(path);  // throws and says what is wrong with it
+  ordinaryFileSize(path);
   const auto fail = [&](const std::string& reason) { throw IoError(path.string() + ": cannot read: " + reason); };
   const File file(std::fopen(path.c_str(), "rb"));
   if (!file) fail(std::strerror(errno));

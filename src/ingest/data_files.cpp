@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/input_file.h"
 #include "ingest/header_text.h"
 #include "ingest/parts.h"
 #include "ingest/streams/dense_source.h"
@@ -11,6 +12,51 @@
 
 namespace umbrick {
 namespace fs = std::filesystem;
+namespace {
+
+// Does something with a data file. Whoever reads what went wrong knows the header, which names the file.
+template <class Action>
+auto ofHeader(const fs::path& header, const Action& action) {
+  try {
+    return action();
+  } catch (const IoError& error) {
+    const std::string what = error.what();
+    if (what.starts_with(header.string() + ":")) throw;
+    throw IoError(header.string() + ": " + what);
+  }
+}
+
+// The voxels of a data file, which are neither more nor fewer than its share.
+class ShareOfHeader : public ByteStream {
+ public:
+  ShareOfHeader(std::unique_ptr<ByteStream> stream, fs::path header, fs::path file, std::int64_t bytes)
+      : stream_(std::move(stream)), header_(std::move(header)), file_(std::move(file)), bytes_(bytes) {}
+  std::size_t read(std::span<std::byte> out) override {
+    const std::size_t got = ofHeader(header_, [&] { return stream_->read(out); });
+    count(static_cast<std::int64_t>(got), got < out.size());
+    return got;
+  }
+  std::int64_t skip(std::int64_t most) override {
+    const std::int64_t got = ofHeader(header_, [&] { return stream_->skip(most); });
+    count(got, got < most);
+    return got;
+  }
+  bool skipsFast() override { return stream_->skipsFast(); }
+
+ private:
+  void count(std::int64_t got, bool ended) {
+    done_ += got;
+    if (done_ > bytes_ || (ended && done_ < bytes_))
+      throw IoError(header_.string() + ": " + file_.string() + ": expected " + std::to_string(bytes_) +
+                    " bytes of voxels, found " + (done_ > bytes_ ? "more" : std::to_string(done_)));
+  }
+
+  std::unique_ptr<ByteStream> stream_;
+  fs::path header_, file_;
+  std::int64_t bytes_, done_ = 0;
+};
+
+}  // namespace
 
 bool announcesList(std::string_view value) {
   const std::vector<std::string> parts = words(value);
@@ -44,21 +90,32 @@ std::unique_ptr<ByteStream> openDataFiles(VolumeInfo& info, const std::string& f
                   " files for " + describeBytes(info));
   std::vector<std::function<std::unique_ptr<ByteStream>()>> shares;
   const auto add = [&](const fs::path& file, std::int64_t offset) {
-    shares.push_back([open, file, offset, bytes = total / count] { return open(file, offset, bytes); });
+    shares.push_back([open, header, file, offset, bytes = total / count]() -> std::unique_ptr<ByteStream> {
+      return ofHeader(header, [&]() -> std::unique_ptr<ByteStream> {
+        auto share = open(file, offset, bytes);
+        if (file == header) return share;
+        return std::make_unique<ShareOfHeader>(std::move(share), header, file, bytes);
+      });
+    });
     shares.back()();
   };
   if (files.empty()) add(header, headerBytes);
   for (const fs::path& file : files) {
     add(file, 0);
-    info.fileBytes += checkedFileSize(file);
+    info.fileBytes += dataFileSize(file);
   }
   return joinStreams(std::move(shares));
+}
+
+void requireDataBeside(const std::vector<fs::path>& files, const fs::path& header) {
+  requireBeside(header, header);
+  for (const fs::path& file : files) requireBeside(file, header);
 }
 
 std::int64_t dataFileSize(const fs::path& path) {
   const std::int64_t size = checkedFileSize(path);
   if (size < 0) throw IoError(path.string() + ": expected a file, found a pipe or device");
-  return size;
+  return ordinaryFileSize(path);
 }
 
 std::unique_ptr<ByteStream> openPlainShare(const fs::path& path, std::int64_t offset, std::int64_t skip,

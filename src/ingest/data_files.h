@@ -36,7 +36,8 @@ using OpenShare =
     std::function<std::unique_ptr<ByteStream>(const std::filesystem::path&, std::int64_t offset, std::int64_t bytes)>;
 
 /// The shares, joined. Each is opened at once and again when its turn comes: a missing or short file is told before the
-/// first voxel is read. Adds the sizes of `files` to info.fileBytes.
+/// first voxel is read. What is wrong with one is said by the names of header and file. Adds the sizes of `files` to
+/// info.fileBytes.
 /// @param files        empty: the voxels follow the header in its own file
 /// @param headerBytes  of the header
 /// @throw IoError      as `open` does, or voxels that are no multiple of the files
@@ -44,7 +45,10 @@ std::unique_ptr<ByteStream> openDataFiles(VolumeInfo& info, const std::string& f
                                           const std::filesystem::path& header, std::int64_t headerBytes,
                                           const std::vector<std::filesystem::path>& files, const OpenShare& open);
 
-/// The size of a share's file. @throw IoError  missing, a directory, a pipe or device
+/// Checks that a header and the files that it names lie beside or below it, links and ".." followed. @throw IoError
+void requireDataBeside(const std::vector<std::filesystem::path>& files, const std::filesystem::path& header);
+
+/// The size of a share's file. @throw IoError  missing, a directory, a pipe or device, made up by the system
 std::int64_t dataFileSize(const std::filesystem::path& path);
 
 /// A share of voxels that are stored as they are.

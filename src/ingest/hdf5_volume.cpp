@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/input_file.h"
 #include "ingest/array_lists.h"
 #include "ingest/hdf5_handle.h"
 #include "ingest/hdf5_meaning.h"
@@ -206,6 +207,22 @@ std::string onlyVolume(const fs::path& path, hid_t file) {
                                        : "none of numbers: " + found.other));
 }
 
+std::string fileNameOf(hid_t object) {
+  std::string name(4096, '\0');
+  const ssize_t length = H5Fget_name(object, name.data(), name.size());
+  name.resize(length > 0 ? std::min(static_cast<std::size_t>(length), name.size()) : 0);
+  return name;
+}
+
+// A dataset may lie in another file (a link), have its bytes in one of any kind (external storage) or be put together
+// from datasets of other files (a virtual dataset).
+void refuseOtherFiles(const std::string& name, hid_t file, hid_t dataset) {
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  const bool linked = fileNameOf(dataset) != fileNameOf(file);
+  if (linked || H5Pget_external_count(creation.get()) != 0 || H5Pget_layout(creation.get()) == H5D_VIRTUAL)
+    throw IoError(name + ": expected a dataset with its bytes in the same file, found one that names other files");
+}
+
 // Chunks are unpacked whole, so those of one layer are kept until the slabs have passed them.
 Handle openDataset(hid_t file, const std::string& name) {
   Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
@@ -294,11 +311,11 @@ std::vector<ArrayRow> listHdf5Arrays(const fs::path& path) {
 
 bool isHdf5Dataset(const fs::path& path) { return !split(path).dataset.empty(); }
 
-std::unique_ptr<VoxelSource> openHdf5(const fs::path& path) {
+std::unique_ptr<VoxelSource> openHdf5(const fs::path& path, bool besideOnly) {
   const Quiet quiet;
   Place place = split(path);
   VolumeInfo info;
-  info.fileBytes = checkedFileSize(place.file);
+  info.fileBytes = ordinaryFileSize(place.file);
   Handle file(H5Fopen(place.file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file.good())
     throw IoError(place.file.string() + ": expected an HDF5 file, found" +
@@ -309,6 +326,7 @@ std::unique_ptr<VoxelSource> openHdf5(const fs::path& path) {
   info.name = place.file.string() + ':' + place.dataset;
   Handle dataset = openDataset(file.get(), place.dataset);
   if (!dataset.good()) throw IoError(info.name + ": expected a dataset, found: " + complaint());
+  if (besideOnly) refuseOtherFiles(info.name, file.get(), dataset.get());
 
   const auto type = numberType(dataset.get());
   if (!type)

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/input_file.h"
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
 #include "ingest/parts.h"
@@ -161,7 +162,7 @@ void SliceImages::promise(std::int64_t count) {
   throw IoError("expected an image for each of " + std::to_string(count) + " slices");
 }
 
-std::unique_ptr<VoxelSource> openImageStack(const fs::path& path, const PartChoice& parts) {
+std::unique_ptr<VoxelSource> openImageStack(const fs::path& path, const PartChoice& parts, bool besideOnly) {
   VolumeInfo info;
   info.name = path.string();
   Stack stack;
@@ -172,6 +173,8 @@ std::unique_ptr<VoxelSource> openImageStack(const fs::path& path, const PartChoi
   const bool elsewhere = std::any_of(stack.place.slices.begin(), stack.place.slices.end(),
                                      [](const SlicePage& slice) { return !slice.file.empty(); });
   if (!stack.place.slices.empty() && (stack.files.size() == 1 || elsewhere)) takeStated(path, stack);
+  if (besideOnly)
+    for (const fs::path& file : stack.files) requireBeside(file, firstFile);
   checkFiles(*first, stack, info);
   info.type = first->layout.type;
   info.dims = {first->width, first->height, std::ssize(stack.slices)};

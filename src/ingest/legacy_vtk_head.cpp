@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ingest/header_text.h"
+#include "ingest/other_text.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -68,7 +69,7 @@ class LegacyHeadReader {
   struct NoSingleNumbers {};  // the file ends, and had arrays of several numbers alone
 
   void begin() {
-    if (!line().starts_with("# vtk DataFile Version")) failField(path_, "first line", "# vtk DataFile Version", line_);
+    if (!line().starts_with("# vtk DataFile Version")) failText(path_, "first line", "# vtk DataFile Version");
     line();  // the title
     const std::string form = lower(trimmed(filledLine()));
     if (form != "ascii" && form != "binary") failField(path_, "third line", "ASCII or BINARY", form);
@@ -80,7 +81,8 @@ class LegacyHeadReader {
     line_.clear();
     char c = 0;
     while (in_.get(c) && c != '\n')
-      if (line_.push_back(c); line_.size() > kMaxVtkLine) failField(path_, "head", "lines of text", line_);
+      if (line_.push_back(c); line_.size() > kMaxVtkLine)
+        failText(path_, "head", "lines of at most " + std::to_string(kMaxVtkLine) + " characters");
     if (!in_ && listing_) throw EndOfFile{};
     if (!in_ && several_) throw NoSingleNumbers();
     if (!in_)

@@ -14,6 +14,7 @@
 #include "ingest/header_lines.h"
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
+#include "ingest/other_text.h"
 #include "ingest/parts.h"
 #include "ingest/place.h"
 #include "ingest/streams/dense_source.h"
@@ -63,7 +64,7 @@ class MetaHeaderReader {
     for (std::string text; lines_.next(text);) {
       if (trimmed(text).empty()) continue;
       const std::size_t sign = text.find_first_of("=:");
-      if (sign == text.npos) fields_.fail("header", "\"Key = value\"", text);
+      if (sign == text.npos) failText(fields_.path(), "header", "lines \"Key = value\"");
       const std::string key(trimmed(std::string_view(text).substr(0, sign)));
       fields_.set(key, trimmed(std::string_view(text).substr(sign + 1)));
       if (key != "ElementDataFile") continue;

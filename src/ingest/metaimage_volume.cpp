@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/input_file.h"
 #include "ingest/data_files.h"
 #include "ingest/metaimage_header.h"
 #include "ingest/parts.h"
@@ -31,9 +32,11 @@ std::unique_ptr<ByteStream> openMetaShare(const MetaHeader& header, const fs::pa
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openMetaImage(const fs::path& path, bool strict, const PartChoice& parts) {
-  const std::int64_t ownBytes = checkedFileSize(path);
+std::unique_ptr<VoxelSource> openMetaImage(const fs::path& path, bool strict, const PartChoice& parts,
+                                           bool besideOnly) {
+  const std::int64_t ownBytes = ordinaryFileSize(path);
   const auto header = std::make_shared<const MetaHeader>(readMetaHeader(path));
+  if (besideOnly) requireDataBeside(header->files, path);
   VolumeInfo info = header->info;
   info.fileBytes = std::max<std::int64_t>(ownBytes, 0);
   addProvenance(info, path, "MetaImage");

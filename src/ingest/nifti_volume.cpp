@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/input_file.h"
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
 #include "ingest/nifti_header.h"
@@ -151,11 +152,12 @@ void place(const NiftiHeader& header, VolumeInfo& info) {
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openNifti(const fs::path& path, const PartChoice& parts) {
+std::unique_ptr<VoxelSource> openNifti(const fs::path& path, const PartChoice& parts, bool besideOnly) {
   checkedFileSize(path);
   const fs::path headerPath = isPairName(path) ? partner(path, ".hdr") : path;
   const std::int64_t headerBytes = checkedFileSize(headerPath);
   if (headerBytes < 0) throw IoError(path.string() + ": expected a file, found a pipe or device");
+  if (besideOnly) requireBeside(headerPath, path);
   const NiftiHeader header = readNiftiHeader(headerPath);
 
   VolumeInfo info;
@@ -205,6 +207,7 @@ std::unique_ptr<VoxelSource> openNifti(const fs::path& path, const PartChoice& p
   }
 
   const fs::path voxels = header.kind == NiftiHeader::Kind::single ? headerPath : partner(headerPath, ".img");
+  if (besideOnly) requireBeside(voxels, path);
   info.fileBytes = checkedFileSize(voxels) + (voxels == headerPath ? 0 : headerBytes);
   auto first = openVoxels(info, voxels, header.voxOffset);
   auto open = openOnceMore(std::move(first),

@@ -12,6 +12,7 @@
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
 #include "ingest/nrrd_axes.h"
+#include "ingest/other_text.h"
 
 namespace umbrick {
 namespace fs = std::filesystem;
@@ -94,7 +95,7 @@ class NrrdHeaderReader {
     std::string text;
     lines_.next(text);
     if (!text.starts_with("NRRD000") || text.size() != 8 || text[7] < '1' || text[7] > '5')
-      fields_.fail("first line", "NRRD0001 to NRRD0005", text);
+      failText(fields_.path(), "first line", "NRRD0001 to NRRD0005");
     while (lines_.next(text) && !text.empty()) {
       if (text.front() == '#') continue;
       const std::string field = readField(text);
@@ -110,7 +111,7 @@ class NrrdHeaderReader {
   std::string readField(const std::string& text) {
     const std::size_t colon = text.find(':');
     if (colon == text.npos || colon + 1 >= text.size() || (text[colon + 1] != ' ' && text[colon + 1] != '='))
-      fields_.fail("header", "\"field: value\" or \"key:=value\"", text);
+      failText(fields_.path(), "header", "lines \"field: value\" or \"key:=value\"");
     if (text[colon + 1] == '=') {
       header_.metadata[text.substr(0, colon)] = text.substr(colon + 2);
       return {};
@@ -119,7 +120,7 @@ class NrrdHeaderReader {
     std::string field = lower(text.substr(0, colon));
     std::erase(field, ' ');
     if (field == "centerings") field = "centers";
-    if (fields_.has(field)) fields_.fail(field, "the field once", text);
+    if (fields_.has(field)) fields_.fail(field, "the field once", text.substr(colon + 1));
     fields_.set(field, trimmed(std::string_view(text).substr(colon + 1)));
     return field;
   }

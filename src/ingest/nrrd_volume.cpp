@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/input_file.h"
 #include "ingest/data_files.h"
 #include "ingest/length_unit.h"
 #include "ingest/nrrd_header.h"
@@ -62,9 +63,10 @@ std::unique_ptr<ByteStream> openNrrdShare(const NrrdHeader& header, const fs::pa
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openNrrd(const fs::path& path, bool strict, const PartChoice& parts) {
-  const std::int64_t headerFileBytes = checkedFileSize(path);
+std::unique_ptr<VoxelSource> openNrrd(const fs::path& path, bool strict, const PartChoice& parts, bool besideOnly) {
+  const std::int64_t headerFileBytes = ordinaryFileSize(path);
   const auto header = std::make_shared<const NrrdHeader>(readNrrdHeader(path));
+  if (besideOnly) requireDataBeside(header->dataFiles, path);
   VolumeInfo info;
   info.name = path.string();
   info.dims = header->dims;

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "core/input_file.h"
 #include "ingest/dicom/dicom_series.h"
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
@@ -51,14 +52,16 @@ std::vector<Format> formats() {
         "scalar volumes; raw, gzip, bzip2, text and hex; detached, in lists and in numbered files"},
        [](Bytes b) { return b.starts_with("NRRD000"); },
        true,
-       [](const fs::path& path, const OpenOptions& options) { return openNrrd(path, options.strict, options.parts); }},
+       [](const fs::path& path, const OpenOptions& options) {
+         return openNrrd(path, options.strict, options.parts, options.besideOnly);
+       }},
       {{"MetaImage",
         {".mha", ".mhd"},
         "scalar volumes; binary, compressed and ASCII; in one file, beside, in lists and in numbered files"},
        [](Bytes b) { return b.starts_with("ObjectType") || b.starts_with("NDims"); },
        true,
        [](const fs::path& path, const OpenOptions& options) {
-         return openMetaImage(path, options.strict, options.parts);
+         return openMetaImage(path, options.strict, options.parts, options.besideOnly);
        }},
       {{"NIfTI and Analyze",
         {".nii", ".nii.gz", ".hdr", ".img", ".img.gz"},
@@ -67,7 +70,9 @@ std::vector<Format> formats() {
          return b.size() >= 348 && (b.substr(344, 4) == Bytes("n+1\0", 4) || b.substr(4, 4) == Bytes("n+2\0", 4));
        },
        true,
-       [](const fs::path& path, const OpenOptions& options) { return openNifti(path, options.parts); }},
+       [](const fs::path& path, const OpenOptions& options) {
+         return openNifti(path, options.parts, options.besideOnly);
+       }},
       {{"DICOM",
         {".dcm", ".ima"},
         "a file or a folder of them: grey series, single- and multi-frame, raw and compressed"},
@@ -82,7 +87,9 @@ std::vector<Format> formats() {
                 b.starts_with(Bytes("II+\0", 4)) || b.starts_with(Bytes("MM\0+", 4)) || b.starts_with("\x89PNG");
        },
        false,
-       [](const fs::path& path, const OpenOptions& options) { return openImageStack(path, options.parts); }},
+       [](const fs::path& path, const OpenOptions& options) {
+         return openImageStack(path, options.parts, options.besideOnly);
+       }},
       {{"VTK ImageData",
         {".vti"},
         "one scalar array of points or cells: file.vti:name, or the only one; ascii, base64 and raw; zlib, LZ4 and "
@@ -99,7 +106,7 @@ std::vector<Format> formats() {
         "a dataset of three axes, also of netCDF-4: file.h5:/path, or the only one; scale, offset, missing values"},
        [](Bytes b) { return b.starts_with("\x89HDF\r\n\x1a\n"); },
        false,
-       [](const fs::path& path, const OpenOptions&) { return openHdf5(path); }},
+       [](const fs::path& path, const OpenOptions& options) { return openHdf5(path, options.besideOnly); }},
       {{"NumPy",
         {".npy", ".npy.gz", ".npy.xz", ".npy.zst", ".npy.bz2"},
         "arrays of two or three axes in C or Fortran order"},
@@ -141,6 +148,30 @@ std::optional<Format> formatOf(const fs::path& path) {
   for (const Format& format : all)
     if (format.begins && format.begins(std::string_view(bytes.data(), got))) return format;
   return std::nullopt;
+}
+
+// Only headerless raw is read from what may have no end, or tells of the machine: a header that is found there means
+// nothing. What is no file is a pattern of names, a dataset in a file or a folder, whose readers look at each file.
+void requireOrdinary(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored) || fs::is_directory(path, ignored)) return;
+  ordinaryFileSize(path);
+}
+
+// Refuses links that lead out of the folder of what is opened.
+void requireNoWayOut(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return requireBeside(path, path);
+  const bool folder = fs::is_directory(path, error);
+  const fs::path top = folder ? path : path.parent_path().empty() ? fs::path(".") : path.parent_path();
+  if (!fs::is_directory(top, error)) return;
+  for (auto each = fs::recursive_directory_iterator(top, error); !error && each != fs::recursive_directory_iterator();
+       each.increment(error)) {
+    if (!folder) each.disable_recursion_pending();
+    if (each->is_symlink() && !liesBelow(each->path(), top))
+      throw IoError(path.string() + ": expected only files in its folder, found the link " + each->path().string());
+  }
+  if (error) throw IoError(top.string() + ": cannot read: " + error.message());
 }
 
 // The world in a unit that OpenVDB can hold, unless one was asked for.
@@ -200,6 +231,8 @@ std::unique_ptr<VoxelSource> openPlaced(const fs::path& path, const OpenOptions&
     return options.lengthUnit.empty() ? std::move(source) : inLengthUnit(std::move(source), options.lengthUnit);
   };
   if (options.raw) return inUnit(openRaw(path, *options.raw, options.parts));
+  requireOrdinary(path);
+  if (options.besideOnly) requireNoWayOut(path);
   const auto format = formatOf(path);
   if (!format) {
     checkedFileSize(path);

@@ -19,6 +19,7 @@
 #include "reference/monte_carlo.h"
 #include "reference/quadrature.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/memory.h"
 #include "umbrick/core/pixel_points.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/scene/capabilities.h"
@@ -69,12 +70,19 @@ std::optional<LightSet> lightsOf(const ResolvedScene& scene, const ReferenceOpti
 std::vector<LightDirection> directionsOf(const ResolvedScene& scene, const ReferenceOptions& options,
                                          const LightSet* lights) {
   if (options.integrator != Integrator::quadrature) return {};
+  // A light of its own makes each list of directions, and they are put together.
+  requireMemory("directions: a list of " + std::to_string(options.directions),
+                2.0 * sizeof(LightDirection) * options.directions);
   if (traitsOf(scene.model).sphere) return evenLight(sphereDirections(options.directions));
   if (!lights) return {};
   return options.lights.empty() ? lights->directions(options.directions, 0) : options.lights;
 }
 
 ReferencePicture blankPicture(const Camera& camera) {
+  // Ten numbers a pixel, and as many again where they are written.
+  requireMemory(
+      "camera.size: a picture of " + std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels",
+      2 * 10.0 * sizeof(float) * camera.width * camera.height);
   ReferencePicture picture;
   picture.colour = Image(camera.width, camera.height, 4);
   picture.visibility = Image(camera.width, camera.height, 1);

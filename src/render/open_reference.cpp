@@ -53,6 +53,7 @@ OpenOptions openOptions(const VolumeReference& reference) {
   OpenOptions open;
   open.parts = partOf(reference);
   open.series = reference.series;
+  open.besideOnly = reference.besideOnly;
   open.where = reference.where;
   if (reference.raw) {
     open.raw = rawOptions(reference);

@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "core/input_file.h"
 #include "umbrick/convert/holds_grids.h"
 #include "umbrick/convert/load_volume.h"
 #include "umbrick/core/error.h"
@@ -121,6 +122,7 @@ VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& 
     file.notes.push_back("frame " + std::to_string(frames.front().number) + ", the first of " +
                          std::to_string(frames.size()));
   }
+  if (reference.besideOnly && fs::is_regular_file(file.source.file)) requireBeside(file.source.file, file.source.file);
   if (!file.source.raw && holdsGrids(file.source.file))
     readGrid(file, progress);
   else

@@ -2,6 +2,7 @@
 #include "scene/light_json.h"
 
 #include "core/json_writer.h"
+#include "scene/scene_folder.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -40,12 +41,13 @@ ListedLight readListed(const JsonValue& value) {
   return light;
 }
 
-EnvironmentLight readEnvironment(const JsonValue& value, LightFrame frame, const std::filesystem::path& folder) {
+EnvironmentLight readEnvironment(const JsonValue& value, LightFrame frame, const SceneFolder& folder) {
   value.allowFields({"type", "frame", "file", "up", "front", "scale"});
   const JsonValue file = value.at("file");
+  const std::filesystem::path path = folder.file(file);
   EnvironmentLight light;
   try {
-    light = loadEnvironment(folder / file.string());
+    light = loadEnvironment(path);
   } catch (const IoError& error) {
     file.fail(error.what());
   }
@@ -95,7 +97,7 @@ glm::dvec3 readVector(const JsonValue& value) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-LightSource readLightSource(const JsonValue& value, const std::filesystem::path& folder) {
+LightSource readLightSource(const JsonValue& value, const SceneFolder& folder) {
   LightSource source;
   if (const auto frame = value.find("frame")) source.frame = frame->choice<LightFrame>(kLightFrames);
   switch (value.at("type").choice<LightType>(kLightTypes)) {

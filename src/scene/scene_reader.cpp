@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/input_file.h"
 #include "core/json_reader.h"
 #include "core/overload.h"
 #include "core/text_file.h"
 #include "scene/light_json.h"
 #include "scene/scene_check.h"
+#include "scene/scene_folder.h"
 #include "umbrick/core/error.h"
 #include "umbrick/optics/transfer_json.h"
 #include "umbrick/scene/scene_fields.h"
@@ -64,9 +66,10 @@ RawLayout readRawLayout(const JsonValue& value) {
   return raw;
 }
 
-void readVolume(const JsonValue& value, const std::filesystem::path& folder, VolumeReference& volume) {
+void readVolume(const JsonValue& value, const SceneFolder& folder, VolumeReference& volume) {
+  volume.besideOnly = folder.besideOnly();
   value.allowFields({"file", "grid", "series", "where", "raw", "spacing", "origin"});
-  if (const auto file = value.find("file")) volume.file = folder / file->string();
+  if (const auto file = value.find("file")) volume.file = folder.file(*file);
   if (const auto grid = value.find("grid")) volume.grid = grid->string();
   if (const auto series = value.find("series")) volume.series = series->string();
   if (const auto where = value.find("where"))
@@ -90,12 +93,12 @@ void readCamera(const JsonValue& value, Scene& scene) {
   readSection(value, "camera", scene);
 }
 
-TransferFunction readTransfer(const JsonValue& value, const std::filesystem::path& folder) {
+TransferFunction readTransfer(const JsonValue& value, const SceneFolder& folder) {
   if (!value.isString()) return readTransferFunction(value);
   const std::string& name = value.string();
   const std::vector<std::string> presets = transferPresets();
   if (std::find(presets.begin(), presets.end(), name) != presets.end()) return loadTransferFunction(name);
-  const std::filesystem::path file = folder / name;
+  const std::filesystem::path file = folder.file(value);
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
     std::string names;
@@ -105,7 +108,7 @@ TransferFunction readTransfer(const JsonValue& value, const std::filesystem::pat
   return parseTransferFunction(readTextFile(file), file.string());
 }
 
-void readLight(const JsonValue& value, const std::filesystem::path& folder, Scene& scene) {
+void readLight(const JsonValue& value, const SceneFolder& folder, Scene& scene) {
   readSection(value, "light", scene, {"sources"});
   if (const auto sources = value.find("sources"))
     for (const JsonValue& source : sources->items()) scene.lights.push_back(readLightSource(source, folder));
@@ -129,7 +132,8 @@ void readClip(const JsonValue& value, Scene& scene) {
 
 }  // namespace
 
-Scene parseScene(std::string_view text, const std::string& source, const std::filesystem::path& folder) {
+Scene parseScene(std::string_view text, const std::string& source, const std::filesystem::path& path, bool besideOnly) {
+  const SceneFolder folder(path, besideOnly);
   const JsonDocument document(text, source);
   const JsonValue root = document.root();
   Scene scene;
@@ -157,8 +161,10 @@ Scene parseScene(std::string_view text, const std::string& source, const std::fi
   return scene;
 }
 
-Scene readScene(const std::filesystem::path& path) {
-  return parseScene(readTextFile(path), path.string(), path.parent_path());
+Scene readScene(const std::filesystem::path& path, bool besideOnly) {
+  const std::string text = readTextFile(path);
+  if (besideOnly) requireBeside(path, path);
+  return parseScene(text, path.string(), path.parent_path(), besideOnly);
 }
 
 }  // namespace umbrick

@@ -2,10 +2,16 @@
 #include "shade/render_targets.h"
 
 #include <glm/vec4.hpp>
+#include <string>
+
+#include "umbrick/core/memory.h"
 
 namespace umbrick {
 
 RenderTargets::RenderTargets(const GlFunctions& gl, const TargetOptions& o) : options(o) {
+  // Memory that is read back takes up to 15 numbers a pixel, until it is written.
+  requireMemory("camera.size: buffers of " + std::to_string(o.width) + " x " + std::to_string(o.height) + " pixels",
+                static_cast<double>(bytes()) + 15.0 * sizeof(float) * o.width * o.height);
   const auto target = [&](GLenum format, GLenum filter) {
     return makeTexture2d(gl, format, o.width, o.height, filter);
   };

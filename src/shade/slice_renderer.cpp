@@ -264,12 +264,22 @@ class SliceRenderer::Implementation {
                             " voxels");
   }
 
+  // Planes are uniforms of the shaders. Those of the clip box, of the near distance and of the medium count, too.
+  void checkPlanes(std::size_t planes) const {
+    const std::size_t most = transfer_->freeUniforms(gl_);
+    if (planes > most)
+      throw InvalidArgument("clip.planes: " + std::to_string(planes) +
+                            " planes in all are beyond the driver's limit of " + std::to_string(most) +
+                            " beside this transfer function");
+  }
+
   void prepareFrame(const ResolvedScene& scene, const RenderSample& sample) {
     const Camera& camera = scene.camera;
     IndexView view = indexView(camera, volume_.indexToWorld);
     checkReach(view, scene);  // rays through other places in the pixels lie between those at the edges of the image
     view.seeThrough(sample.pixel);
     std::vector<glm::dvec4> planes = viewPlanes(scene, volume_, backgroundVisible_);
+    checkPlanes(planes.size());
     std::vector<glm::dvec4> bounds = viewBounds(scene, volume_, backgroundVisible_, planes);
     const double spacing = scene.sampling.spacing;
     ProxySlices slices = cutSlices(view, selection_->origins(), volume_.layout.interior, bounds, spacing);

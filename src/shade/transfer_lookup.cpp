@@ -194,6 +194,13 @@ TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& tr
                  .upload(gl);
 }
 
+std::size_t TransferLookup::freeUniforms(const GlFunctions& gl) const {
+  GLint vectors = 0;
+  gl.GetIntegerv(GL_MAX_FRAGMENT_UNIFORM_VECTORS, &vectors);
+  const std::size_t used = uniforms_.size() + kOtherUniforms;
+  return static_cast<std::size_t>(vectors) - std::min(used, static_cast<std::size_t>(vectors));
+}
+
 // Returns what values of a range may be read as. Empty space is read as it is.
 Range TransferLookup::widened(const Range& values) const {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();

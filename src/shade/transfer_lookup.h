@@ -27,6 +27,8 @@ class TransferLookup {
   /// Sets the uniforms that medium.glsl needs to look up the atlas's texels.
   void setUniforms(GlProgram& program, const BrickAtlas& atlas) const;
   GLuint texture() const { return texture_.name(); }
+  /// How many vectors of a shader's uniforms are left beside those of the transfer function and of what every pass has.
+  std::size_t freeUniforms(const GlFunctions& gl) const;
 
  private:
   Range widened(const Range& values) const;

@@ -92,6 +92,7 @@ EarlierStudy readEarlierStudy(std::string_view text, const std::string& source, 
   const JsonDocument document(text, source);
   const JsonValue root = document.root();
   if (!root.isObject() || !root.find("umbrick_study")) throw IoError(source + ": not the record of a study");
+  checkDepth(document, source);
   for (const char* field : {"scene", "volume", "machine"})
     if (!root.at(field).isObject()) root.at(field).failExpected("an object");
   root.at("volume").at("bytes").number();

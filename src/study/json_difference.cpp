@@ -5,6 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/json_reader.h"
+#include "umbrick/core/error.h"
+
 namespace umbrick {
 namespace {
 using Json = nlohmann::ordered_json;
@@ -33,6 +36,13 @@ std::string firstDifference(const std::string& path, const Json& there, const Js
   }
   const auto text = [](const Json& value) { return value.is_null() ? "missing" : shortened(value.dump()); };
   return path + " is " + text(there) + " there and " + text(here) + " here";
+}
+
+void checkDepth(const JsonDocument& document, const std::string& source) {
+  constexpr std::size_t kDeepest = 64;
+  if (document.depth() > kDeepest)
+    throw IoError(source + ": expected at most " + std::to_string(kDeepest) + " values in each other, found " +
+                  std::to_string(document.depth()));
 }
 
 }  // namespace umbrick

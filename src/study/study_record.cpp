@@ -279,6 +279,7 @@ void restoreRecord(StudyRecord& record, std::string_view text, const std::string
   const JsonDocument document(text, source);
   const JsonValue root = document.root();
   if (!root.isObject() || !root.find("umbrick_study")) throw IoError(source + ": not the record of a study");
+  checkDepth(document, source);
   if (root.at("umbrick_study").integer() != kFormat) root.at("umbrick_study").failExpected(std::to_string(kFormat));
   for (const char* field : {"settings", "scene", "volume", "machine"})
     if (!root.at(field).isObject()) root.at(field).failExpected("an object");

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "core/input_file.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/printable.h"
 
 namespace umbrick {
 
@@ -38,10 +40,11 @@ VolumeIdentity identifyVolume(const fs::path& volume) {
   VolumeIdentity identity;
   std::error_code ignored;
   const fs::path absolute = fs::weakly_canonical(volume, ignored);
-  identity.file = (ignored ? volume : absolute).string();
+  identity.file = asUtf8((ignored ? volume : absolute).string());  // for records and pages
   std::vector<char> block(std::size_t{1} << 20);
   uLong crc = ::crc32(0, nullptr, 0);
   for (const fs::path& file : filesOf(volume)) {
+    ordinaryFileSize(file);
     std::ifstream in(file, std::ios::binary);
     if (!in) throw IoError(file.string() + ": cannot read");
     while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {

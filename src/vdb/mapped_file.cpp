@@ -15,7 +15,8 @@
 namespace umbrick {
 
 MappedFile::MappedFile(const std::filesystem::path& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // Of a pipe nobody may ever open the other end.
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0 && errno == ENOENT) throw IoError(path.string() + ": no such file");
   if (file < 0) throw IoError(path.string() + ": cannot read: " + std::strerror(errno));
   struct stat status {};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -163,6 +164,20 @@ std::string metaImageHeader(const openvdb::FloatGrid& grid, const DenseBox& box,
          "\nDimSize = " + sizes(box.dims) + "\nElementType = " + type + "\nElementDataFile = " + voxels + '\n';
 }
 
+// Returns the name of the data file as a header holds it so that readers find the file: they take off blanks at the
+// ends, and have their own meaning for a name that begins with the word LIST. @throw InvalidArgument  there is none
+std::string nameInMetaImage(const fs::path& header, const std::string& name) {
+  const bool spoken = name.find_first_of("\r\n") == name.npos;
+  // "slice%03d.raw 1 20 1" would be a pattern of numbered files.
+  const bool pattern = name.find('%') != name.npos && name.find_first_of(" \t") != name.npos;
+  if (!spoken || pattern)
+    throw InvalidArgument(header.string() + ": expected a name that a MetaImage can hold, found one with " +
+                          (pattern ? "both a % and a blank" : "an end of line"));
+  std::string word = name.substr(0, name.find_first_of(" \t"));
+  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
+  return word.empty() || word == "list" || name.front() == '"' ? "./" + name : name;
+}
+
 // Writes one layer of leaves after the other, so that a box larger than memory can be written.
 void writeVoxels(std::ostream& out, const openvdb::FloatGrid& grid, const DenseBox& box) {
   constexpr std::int64_t kSlices = 8;
@@ -219,6 +234,7 @@ DenseBox writeDense(const fs::path& path, const openvdb::FloatGrid& grid, const 
   }
   box.space = spaceOf(grid, nrrd);
   const Place place = placeOf(path, grid, active.min(), box.space);
+  if (!nrrd) nameInMetaImage(path, fs::path(path).replace_extension(".raw").filename().string());
   if (nrrd) {
     PendingFile pending(path);
     pending.stream() << nrrdHeader(grid, box, place);
@@ -229,7 +245,8 @@ DenseBox writeDense(const fs::path& path, const openvdb::FloatGrid& grid, const 
     PendingPair pending(path, voxelFileOf(path));
     writeVoxels(pending.data().stream(), grid, box);
     pending.data().stream().flush();
-    pending.writeHeader([&](const std::string& name) { return metaImageHeader(grid, box, place, name); });
+    pending.writeHeader(
+        [&](const std::string& name) { return metaImageHeader(grid, box, place, nameInMetaImage(path, name)); });
     if (check) check(pending.headerPath());
     pending.commit();
   }

@@ -21,7 +21,7 @@ namespace {
 const std::vector<std::int16_t> kValues{-1000, -1000, -1000, -1000, 200, -500, 1000, -1000, -1000, -1000, -1000, -1000};
 
 // 3 x 2 x 2 voxels of 2, 3 and 4 mm, the first at (-30, -40, 5), in a space that the file states.
-struct Scan {
+struct TargetScan {
   TemporaryFolder folder;
   fs::path out = folder.path() / "out.vdb";
   fs::path write(const std::string& space, const std::string& unit = "mm", const std::string& size = "2") const {
@@ -56,7 +56,7 @@ void checkNear(const openvdb::Vec3d& found, const openvdb::Vec3d& expected) {
 
 // The last voxel is at (-26, -37, 9) mm in LPS: 26 mm to the right of the patient, 37 in front, 9 up.
 TEST_CASE("Each target gets its unit, its axis that is up, and a patient who faces its front", "[convert][target]") {
-  const Scan scan;
+  const TargetScan scan;
   for (const bool ras : {false, true}) {
     const auto input = scan.write(ras ? "right-anterior-superior" : "left-posterior-superior");
     // The same numbers in RAS are a point to the left of the patient and behind.
@@ -79,7 +79,7 @@ TEST_CASE("Each target gets its unit, its axis that is up, and a patient who fac
 }
 
 TEST_CASE("Values go from 0, the background, to 1, and the metadata bring them back", "[convert][target]") {
-  const Scan scan;
+  const TargetScan scan;
   const ConvertReport report = convert({scan.write("left-posterior-superior")}, scan.out, forTarget(Target::blender));
   const ScalarGrid grid = readScalarGrid(scan.out);
   CHECK(grid.grid->saveFloatAsHalf());
@@ -106,7 +106,7 @@ TEST_CASE("Values go from 0, the background, to 1, and the metadata bring them b
 }
 
 TEST_CASE("What lies below a background that is given is left out and counted", "[convert][target]") {
-  const Scan scan;
+  const TargetScan scan;
   ConvertOptions options = forTarget(Target::unreal);
   options.build.background = 0.0f;
   const ConvertReport report = convert({scan.write("left-posterior-superior")}, scan.out, options);
@@ -116,7 +116,7 @@ TEST_CASE("What lies below a background that is given is left out and counted", 
 }
 
 TEST_CASE("Voxels that are too small for OpenVDB, and unknown units, are said", "[convert][target]") {
-  const Scan scan;
+  const TargetScan scan;
   const auto note = [&](const fs::path& input) {
     return convert({input}, scan.out, forTarget(Target::blender)).grids[0].notes.at(0);
   };
@@ -183,7 +183,7 @@ TEST_CASE("Limits of a target are said with the spacing that keeps them", "[conv
 }
 
 TEST_CASE("A target is for .vdb files", "[convert][target]") {
-  const Scan scan;
+  const TargetScan scan;
   const auto input = scan.write("");
   for (const char* name : {"out.nvdb", "out.mhd", "out.nrrd"})
     CHECK_THROWS_AS(convert({input}, scan.folder.path() / name, forTarget(Target::blender)), OptionsError);

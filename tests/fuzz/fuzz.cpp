@@ -1,4 +1,4 @@
-// A libFuzzer program: UMBRICK_FUZZ_TARGET names what it feeds, of gridTargets() with UMBRICK_FUZZ_GRIDS.
+// A libFuzzer program: UMBRICK_FUZZ_TARGET names what it feeds, of the map that UMBRICK_FUZZ_TARGETS returns.
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
@@ -10,11 +10,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace umbrick::fuzz;
-#ifdef UMBRICK_FUZZ_GRIDS
-  static const NamedTarget target = gridTargets().at(UMBRICK_FUZZ_TARGET);
-#else
-  static const NamedTarget target = targets().at(UMBRICK_FUZZ_TARGET);
-#endif
+  static const NamedTarget target = UMBRICK_FUZZ_TARGETS().at(UMBRICK_FUZZ_TARGET);
   static const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("umbrick-fuzz-" + std::to_string(getpid()) + target.extension);
   const std::string_view content(reinterpret_cast<const char*>(data), size);

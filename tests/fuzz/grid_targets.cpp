@@ -34,13 +34,7 @@ void patchedGrid(const std::filesystem::path& path, std::string_view changes) {
   static std::map<std::string, std::string> good;
   std::string& bytes = good[path.extension().string()];
   if (bytes.empty()) bytes = goodFile(path);
-  std::string patched = bytes;
-  for (std::size_t i = 0; i + 5 <= changes.size(); i += 5) {
-    std::size_t place = 0;
-    for (std::size_t k = 0; k < 4; ++k) place = place << 8 | static_cast<unsigned char>(changes[i + k]);
-    patched[place % patched.size()] = changes[i + 4];
-  }
-  writeBytes(path, patched);
+  writeBytes(path, patched(bytes, changes));
   readScalarGrid(path);
 }
 

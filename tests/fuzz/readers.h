@@ -87,7 +87,9 @@ inline std::map<std::string, NamedTarget> targets() {
       {"metaimage", {".mha", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
                        return openMetaImage(path, false, parts);
                      })}},
-      {"nifti", {".nii", volumeTarget(openNifti)}},
+      {"nifti", {".nii", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
+                   return openNifti(path, parts);
+                 })}},
       {"npy", {".npy", volumeTarget(openNpy)}},
       {"nrrd", {".nrrd", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
                   return openNrrd(path, false, parts);
@@ -99,7 +101,9 @@ inline std::map<std::string, NamedTarget> targets() {
           std::ofstream(path, std::ios::binary | std::ios::trunc) << describedTiff(content, std::string(64, 'x'));
           readAll(*openImageStack(path, allParts(0)));
         }}},
-      {"png", {".png", volumeTarget(openImageStack)}},
+      {"png", {".png", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
+                 return openImageStack(path, parts);
+               })}},
       {"raw",
        {".raw",
         // The first bytes choose the options, the rest is the file.
@@ -116,7 +120,9 @@ inline std::map<std::string, NamedTarget> targets() {
           options.components = 1 + byte(6) / 32;
           readAll(*openRaw(path, options, allParts(0)));
         }}},
-      {"tiff", {".tif", volumeTarget(openImageStack)}},
+      {"tiff", {".tif", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
+                  return openImageStack(path, parts);
+                })}},
       {"vti", {".vti", volumeTarget(openVti)}},
       {"vtk", {".vtk", volumeTarget(openLegacyVtk)}},
       {"scene", {".json", [](const auto&, std::string_view content) { parseScene(content, "scene.json"); }}},
@@ -129,6 +135,19 @@ inline std::map<std::string, NamedTarget> targets() {
 /// too large for libFuzzer to change to the point: what it gives are changes, of five bytes each, a place and the byte
 /// there, to a good file, which is made when it is first asked for.
 std::map<std::string, NamedTarget> gridTargets();
+
+/// The record of a study, "study", in study_target.cpp: changes to a good one, too.
+std::map<std::string, NamedTarget> studyTargets();
+
+/// Makes the changes that gridTargets() speaks of.
+inline std::string patched(std::string bytes, std::string_view changes) {
+  for (std::size_t i = 0; i + 5 <= changes.size(); i += 5) {
+    std::size_t place = 0;
+    for (std::size_t k = 0; k < 4; ++k) place = place << 8 | static_cast<unsigned char>(changes[i + k]);
+    bytes[place % bytes.size()] = changes[i + 4];
+  }
+  return bytes;
+}
 
 /// @throw what a reader must not throw
 inline void runTarget(const Target& target, const std::filesystem::path& path, std::string_view content) {

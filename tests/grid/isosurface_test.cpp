@@ -12,6 +12,7 @@
 #include "support/complaint.h"
 #include "support/test_grids.h"
 #include "umbrick/core/error.h"
+#include "umbrick/core/memory.h"
 #include "umbrick/grid/float_grid.h"
 
 using namespace umbrick;
@@ -151,6 +152,15 @@ TEST_CASE("Solid blocks have a surface where value meets background", "[grid]") 
   for (const double z : {-0.75, 7.75}) CHECK(distanceAt(block, {7.5, 3.5, z}) == Approx(0).margin(0.01));
   // A voxel that has exactly the value is inside.
   CHECK(distanceAt(makeIsosurface(makeGrid(grid), {4.0f}), {7.5, 3.5, 3.5}) == -3);
+}
+
+// Cubes have the smallest spacing, so that a face of a voxel may be as many of them as one likes.
+TEST_CASE("A level set that no machine could hold is refused before it is made", "[grid]") {
+  const glm::dmat4 flat = glm::scale(glm::dmat4(1), glm::dvec3(1e-6, 1, 1));
+  const std::string said = complaint<MemoryError>([&] {
+    makeIsosurface(ball(glm::ivec3(24), flat, {1.2e-5, 12, 12}, 8), {.value = 5000});
+  });
+  CHECK_THAT(said, Contains("grid \"density\": isosurface: a band of some ") && Contains(" of memory, there is "));
 }
 
 TEST_CASE("Where there is no isosurface, the message has the expected and the found value", "[grid]") {

@@ -13,6 +13,7 @@ TEST_CASE("Readers make a result or an Error of every file that fuzzing has kept
   const TemporaryFolder folder;
   auto targets = fuzz::targets();
   targets.merge(fuzz::gridTargets());
+  targets.merge(fuzz::studyTargets());
   for (const auto& [name, target] : targets) {
     std::size_t files = 0;
     for (const auto& entry : fs::directory_iterator(fs::path(UMBRICK_FUZZ_CORPUS) / name)) {

@@ -333,7 +333,7 @@ TEST_CASE("Maps that cannot be used are refused with what is wrong", "[scene]") 
              Contains("light.sources[0].front: is [-2, 0, 0], must be across up, which is [1, 0, 0]"));
   CHECK_THAT(refused(R"("file": "good.exr", "scale": -1)"),
              Contains("light.sources[0].scale: is -1, must be 0 or more"));
-  CHECK_THAT(refused(R"("file": "good.exr", "theta": 1)"), Contains("light.sources[0].theta: unknown field"));
+  CHECK_THAT(refused(R"("file": "good.exr", "theta": 1)"), Contains("light.sources[0]: unknown field; known are"));
   // The same light is refused when it is made in code.
   ResolvedScene scene = sceneWith({LightSource{LightFrame::view, EnvironmentLight{}}});
   CHECK_THAT(complaint<InvalidArgument>([&] { validateScene(scene); }),

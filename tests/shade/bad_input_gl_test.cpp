@@ -41,6 +41,10 @@ TEST_CASE("Scenes that cannot be rendered are refused with the reason", "[shade]
   bad = scene;
   bad.transfer = TransferFunction({0, 1}, {0, 1}, std::vector<Medium>(4, {glm::dvec3(1), 1}));
   CHECK_THAT(complaintOf(bad), Contains("gradients"));
+  // Planes share the uniforms of a shader with the transfer function: a linker would be the next to say so.
+  bad = scene;
+  bad.clipPlanes.assign(100000, ClipPlane(1, 0, 0, 1000));
+  CHECK_THAT(complaintOf(bad), Contains("clip.planes: 100000 planes in all are beyond the driver's limit of "));
 }
 
 TEST_CASE("A budget that one slice does not fit is refused with both sizes", "[shade][gl]") {

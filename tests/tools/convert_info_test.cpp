@@ -124,7 +124,7 @@ TEST_CASE("Failed conversions exit 1 with one line and leave nothing behind", "[
   failing.check("convert short.raw --dims 4 5 4 --type u8 -o o.vdb", 1, "found 100; does it begin with a header");
   failing.check("convert ." + raw, 1, "expected a file, found a directory");
   failing.check("convert short.raw --dims 10 10 1 --type u8 -o none/o.vdb", 1, "none/o.vdb: cannot write");
-  failing.check("convert none.nrrd -o o.vdb", 1, "none.nrrd: no such file");
+  failing.check("convert none.nrrd -o o.vdb", 1, "none.nrrd: cannot read: No such file");
   failing.check("convert broken.vdb -o o.vdb", 1, "broken.vdb: truncated or corrupt");
   failing.check("convert " + kSmoke + "--grid smoke -o o.vdb", 1,
                 "no grid \"smoke\": the file has \"density\" (float), \"heat\" (float)");

@@ -69,7 +69,7 @@ TEST_CASE("Inputs that cannot stand beside each other are refused in one line, a
   check("a.nrrd --unit K --unit C", 2, "for each of 1 inputs, found 2");
   check("a.nrrd '" UMBRICK_ASSETS "/densityAndHeat.vdb'", 2, "found a file of grids");
   check("a.nrrd short.nrrd", 1, "short.nrrd: ");
-  check("a.nrrd missing.nrrd", 1, "missing.nrrd: no such file");
+  check("a.nrrd missing.nrrd", 1, "missing.nrrd: cannot read: No such file");
 }
 
 TEST_CASE("Worlds that differ are brought to one, which is said in a line", "[tools]") {

@@ -76,7 +76,7 @@ TEST_CASE("info of headerless raw takes the layout that convert takes", "[tools]
   CHECK_THAT(bare.err, Contains("headerless raw") && Contains("--dims and --type"));
   const ProgramResult lost = runProgram(folder, "info nothing.nrrd");
   CHECK(lost.status == 1);
-  CHECK_THAT(lost.err, Contains("nothing.nrrd: no such file"));
+  CHECK_THAT(lost.err, Contains("nothing.nrrd: cannot read: No such file"));
 }
 
 TEST_CASE("info lists the arrays of a file, and describes the one that is named", "[tools]") {

@@ -9,6 +9,7 @@
 #include "core/text_file.h"
 #include "study_page/plots.h"
 #include "umbrick/core/pending_file.h"
+#include "umbrick/core/printable.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/study/case_scene.h"
 
@@ -140,7 +141,7 @@ std::string machineSection(const StudyRecord& record) {
   if (!record.cases.empty())
     row("Load average while timing", printShort(least) + " to " + printShort(most) + " (1 minute)");
   row("Versions", "umbrick " + machine.version + ", " + machine.compiler + ", " + machine.plotter);
-  row("Volume", record.volume.file + ", " + std::to_string(record.volume.bytes) + " bytes");
+  row("Volume", printable(record.volume.file) + ", " + std::to_string(record.volume.bytes) + " bytes");
   row("Visible extent along the view axis", printShort(record.geometry.extent) + " world units");
   row("Base point", baseText(record.plan));
   const StudySettings& settings = record.plan.settings;
@@ -165,7 +166,7 @@ std::string machineSection(const StudyRecord& record) {
 }
 
 std::string intro(const StudyRecord& record, const std::vector<ComparableCases>& groups) {
-  const std::string volume = std::filesystem::path(record.volume.file).filename().string();
+  const std::string volume = printable(std::filesystem::path(record.volume.file).filename().string());
   std::string html = "<h1>Speed against error: " + escapeHtml(volume) + "</h1>\n<p class=\"quiet\">" +
                      std::to_string(record.cases.size()) +
                      " pictures, each timed beside a baseline and compared with "
@@ -202,7 +203,7 @@ std::string assembled(const StudyRecord& record, const PageFolder& folder) {
     navigation += "<a href=\"#" + part.id + "\">" + part.title + "</a> ";
     body += section(part.id, part.title, part.html);
   }
-  const std::string volume = std::filesystem::path(record.volume.file).filename().string();
+  const std::string volume = printable(std::filesystem::path(record.volume.file).filename().string());
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" "
          "content=\"width=device-width, initial-scale=1\"/>\n<title>Speed against error: " +
          escapeHtml(volume) + "</title>\n<style>\n" + std::string(pageText("page.css")) +

@@ -29,8 +29,8 @@ struct Isosurface {
 };
 
 /// Makes a grid of signed distance in world units, negative inside, of OpenVDB's class "level set". It has the metadata
-/// of the volume, and isosurface_value, isosurface_error_max and isosurface_error_rms (in voxels). Each edge between two
-/// voxels that crosses the value gets a small disc of the surface, at right angles to the gradient, and a voxel the
+/// of the volume, and isosurface_value, isosurface_error_max and isosurface_error_rms (in voxels). Each edge between
+/// two voxels that crosses the value gets a small disc of the surface, at right angles to the gradient, and a voxel the
 /// distance to the nearest disc, up to five voxels from the surface; what is farther is swept from there by OpenVDB's
 /// dilateSdf. The side of the surface on which a voxel lies is told by its value, so cavities are outside too.
 ///
@@ -41,6 +41,8 @@ struct Isosurface {
 /// @param volume  a fog volume
 /// @throw InvalidArgument  value not finite or not above the background, no surface (the message tells the range of the
 ///                         values), halfWidth outside [1, 100], a level set, or a transform that is not affine
+/// @throw MemoryError      the level set would not fit: the cubes of a volume whose spacings differ are many more than
+///                         its voxels
 Isosurface makeIsosurface(const ScalarGrid& volume, const IsosurfaceOptions& options);
 
 }  // namespace umbrick

@@ -16,7 +16,7 @@ namespace umbrick {
 /// The last axis, which is the fastest, is x. A dataset states no place: voxels are 1 apart and the first is at 0.
 ///
 /// @throw IoError  missing, truncated, no such dataset, several to choose from (they are listed), another type or rank
-std::unique_ptr<VoxelSource> openHdf5(const std::filesystem::path& path);
+std::unique_ptr<VoxelSource> openHdf5(const std::filesystem::path& path, bool besideOnly = false);
 
 /// True for "file:/dataset" where the file exists and is HDF5.
 bool isHdf5Dataset(const std::filesystem::path& path);

@@ -24,7 +24,8 @@ namespace umbrick {
 /// @throw SeveralParts  colours, of which `parts` chooses no component
 /// @throw IoError       no file, a gap in the numbers, unreadable, a palette of TIFF, or images of different sizes or
 /// types
-std::unique_ptr<VoxelSource> openImageStack(const std::filesystem::path& path, const PartChoice& parts = {});
+std::unique_ptr<VoxelSource> openImageStack(const std::filesystem::path& path, const PartChoice& parts = {},
+                                            bool besideOnly = false);
 
 /// True for a pattern of names, and for a folder with images.
 bool isImageStack(const std::filesystem::path& path);

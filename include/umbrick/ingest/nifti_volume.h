@@ -24,6 +24,7 @@ namespace umbrick {
 ///
 /// @throw SeveralParts  several frames or components, and `parts` chooses none
 /// @throw IoError       missing, short, long, malformed, more axes, or 128-bit voxels
-std::unique_ptr<VoxelSource> openNifti(const std::filesystem::path& path, const PartChoice& parts = {});
+std::unique_ptr<VoxelSource> openNifti(const std::filesystem::path& path, const PartChoice& parts = {},
+                                       bool besideOnly = false);
 
 }  // namespace umbrick

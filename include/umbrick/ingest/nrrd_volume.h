@@ -22,6 +22,6 @@ namespace umbrick {
 /// @throw IoError  a file is missing, short, long or malformed
 /// @throw SeveralParts  axes of components, a list or time, and `parts` chooses none
 std::unique_ptr<VoxelSource> openNrrd(const std::filesystem::path& path, bool strict = false,
-                                      const PartChoice& parts = {});
+                                      const PartChoice& parts = {}, bool besideOnly = false);
 
 }  // namespace umbrick

@@ -16,7 +16,7 @@ namespace umbrick {
 
 struct OpenOptions {
   std::optional<RawOptions> raw = {};  // when given, the file is read as headerless raw, whatever its name
-  bool strict = false;                 // refuses plain voxels of NRRD and MetaImage that are longer than the header says
+  bool strict = false;  // refuses plain voxels of NRRD and MetaImage that are longer than the header says
   /// The unit of length that the world gets: nm, um, mm, cm, m, or "file" for the one that the file states. Where a
   /// file states none, its numbers are taken for this unit. Empty: mm, or smaller where voxels are too small for
   /// OpenVDB.
@@ -24,6 +24,10 @@ struct OpenOptions {
   /// Which way the axes of the world point: three letters such as "LPS" or "RAS". Of a file that does not say it, the
   /// numbers are taken for that space. Empty or "file": as in the file.
   std::string space = {};
+  /// Refuses what lies outside of the folder of the file, links and ".." followed: the data files that a header names,
+  /// links among the files of a folder, what an HDF5 file takes from others. Without it a header of a stranger can take
+  /// the bytes of any readable file into the volume.
+  bool besideOnly = false;
   std::string series = {};                 // of DICOM: the UID of a series, or its number in the list, from 1
   std::vector<std::string> where = {};     // of DICOM: only slices with this "Tag=value", see DicomOptions
   bool evenSlices = false;                 // of DICOM: slices that are not evenly spaced are interpolated

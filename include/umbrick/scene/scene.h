@@ -143,6 +143,7 @@ struct VolumeReference {
   std::optional<RawLayout> raw = {};       // of a file without a header
   std::optional<glm::dvec3> spacing = {};  // world units between voxel centres, of formats that state none
   std::optional<glm::dvec3> origin = {};   // world position of the first voxel, of the same formats
+  bool besideOnly = false;                 // as OpenOptions::besideOnly; is not written to JSON
   bool operator==(const VolumeReference&) const = default;
 };
 
@@ -208,13 +209,15 @@ struct Scene : SceneSettings {
 ///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]
 ///   bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16", "half", "float32"), budgetMiB
 /// @param source  what messages call the text, usually its file name
+/// @param besideOnly  refuses files outside of `folder` and what is below it, for scenes of others; so does the volume
 /// @throw IoError  malformed JSON, or a field of the wrong kind or out of range: names source, line, column and field
-Scene parseScene(std::string_view text, const std::string& source, const std::filesystem::path& folder = {});
-/// Reads a scene from a file. @throw IoError  as parseScene; the file cannot be read
-Scene readScene(const std::filesystem::path& path);
+Scene parseScene(std::string_view text, const std::string& source, const std::filesystem::path& folder = {},
+                 bool besideOnly = false);
+/// Reads a scene from a file. @throw IoError  as parseScene; the file cannot be read, or is a pipe or device
+Scene readScene(const std::filesystem::path& path, bool besideOnly = false);
 /// Returns JSON that parses back to an equal scene, to the last bit, as long as the files that it names are there. With
 /// an orbit, what follows from the volume (eye, lookAt, up and viewHeight) is left out.
-/// @throw InvalidArgument  a number is not finite, a name is not UTF-8, or an environment map comes from no file
+/// @throw InvalidArgument  a number is not finite, or an environment map comes from no file
 std::string printScene(const Scene& scene);
 
 /// How much work is spent on the light of a picture: ordinates for a draft, else light volumes.

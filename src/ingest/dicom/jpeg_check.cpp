@@ -106,7 +106,8 @@ class HuffmanTable {
       }
   }
   int symbol(Bits& bits) const {
-    if (codes_.empty()) throw NotChecked{};  // an abbreviated stream
+    // DICOM has interchange streams, PS3.5 section 8.2.1: abbreviated ones have their tables elsewhere.
+    if (codes_.empty()) throw Damage{"a table of Huffman codes is missing"};
     const Code code = codes_[bits.peek()];
     if (code.length == 0) throw Damage{"expected a Huffman code, found none"};
     bits.drop(code.length);
@@ -128,6 +129,9 @@ class JpegCheck {
     if (bytes_.marker() != 0xd8) throw NotChecked{};
     for (int marker = bytes_.marker(); marker != 0xd9; marker = bytes_.marker()) {
       if (marker >= 0xd0 && marker <= 0xd7) throw Damage{"a restart marker stands outside of the codes"};
+      if (marker == 0x01) continue;  // TEM, which has no segment
+      if (marker < 0xc0)
+        throw Damage{"expected a marker, found other bytes"};  // 0 belongs to codes, 2 to bf are reserved
       JpegBytes segment = bytes_.segment();
       if (marker == 0xc4)
         readTables(segment);

@@ -105,13 +105,19 @@ class DecimalStream : public ByteStream {
       const bool plus = word_.front() == '+' && !word_.starts_with("+-");  // from_chars takes none
       if (!storeAs(type_, std::string_view(word_).substr(plus), out.data() + done))
         throw IoError(name_ + ": voxel " + std::to_string(voxel_) + ": expected a number that " +
-                      std::string(voxelTypeName(type_)) + " can hold, found \"" + word_.substr(0, 40) + '"');
+                      std::string(voxelTypeName(type_)) + " can hold, found " + foundWord());
       ++voxel_;
     }
     return done;
   }
 
  private:
+  // Text that is no number is not quoted: a header may name any file.
+  std::string foundWord() const {
+    if (word_.find_first_not_of("+-.0123456789eE") != std::string::npos) return "other text";
+    return '"' + word_.substr(0, 40) + '"';
+  }
+
   bool word() {
     word_.clear();
     int c = text_.next();
@@ -151,7 +157,7 @@ class HexStream : public ByteStream {
     if (c >= '0' && c <= '9') return c - '0';
     if (c >= 'a' && c <= 'f') return c - 'a' + 10;
     if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    throw IoError(name_ + ": hex: expected a digit 0 to f, found character " + std::to_string(c));
+    throw IoError(name_ + ": hex: expected digits 0 to f, found another character");
   }
 
   Characters text_;
@@ -183,7 +189,7 @@ class Base64Stream : public ByteStream {
     if (c == '+') return 62;
     if (c == '/') return 63;
     if (c == '=') return kPadding;
-    throw IoError(name_ + ": base64: expected A to Z, a to z, 0 to 9, + or /, found character " + std::to_string(c));
+    throw IoError(name_ + ": base64: expected A to Z, a to z, 0 to 9, + or /, found another character");
   }
 
   // Four digits to three bytes, or fewer where the group is padded. @return false at the end
