@@ -14,7 +14,7 @@
 namespace umbrick {
 namespace {
 
-constexpr std::size_t kMostLabels = 65535;
+constexpr std::size_t kMostLabels = 4096;
 
 std::string namesOf(const VolumeInfo& info) {
   constexpr std::size_t kMostNamed = 20;
@@ -126,7 +126,8 @@ LabelGrids WantedLabels::collect(const VolumeInfo& info, std::map<LabelKey, Labe
 LabelGrid& labelGrid(const VolumeInfo& info, const LabelKey& key, std::map<LabelKey, LabelGrid>& found) {
   LabelGrid& label = found[key];
   if (label.grid) return label;
-  if (found.size() > kMostLabels) throw InvalidArgument(info.name + ": expected at most 65535 labels, found more");
+  if (found.size() > kMostLabels)
+    throw InvalidArgument(info.name + ": expected at most " + std::to_string(kMostLabels) + " labels, found more");
   label.grid = openvdb::FloatGrid::create(0.0f);
   placeVolumeGrid(info, "", *label.grid);
   return label;

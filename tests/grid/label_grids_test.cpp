@@ -129,8 +129,8 @@ TEST_CASE("Voxels that are no labels are refused", "[grid]") {
   voxels[100] = 1.5f;
   MemorySource source({8, 8, 8}, voxels);
   CHECK_THROWS_WITH(buildLabelGrids(source), Contains("memory: expected labels that are integers") && Contains("1.5"));
-  std::vector<float> many(64 * 64 * 17);
+  std::vector<float> many(64 * 64 * 2);
   for (std::size_t i = 0; i < many.size(); ++i) many[i] = static_cast<float>(i);
-  MemorySource tooMany({64, 64, 17}, many);
-  CHECK_THROWS_WITH(buildLabelGrids(tooMany), Contains("expected at most 65535 labels"));
+  MemorySource tooMany({64, 64, 2}, many);
+  CHECK_THROWS_WITH(buildLabelGrids(tooMany), Contains("expected at most 4096 labels"));
 }

@@ -57,13 +57,13 @@ TEST_CASE("A full device is an error of render, check and study", "[tools]") {
   expectRefusal(at.folder, kStudy + "-o report", 1, "study.json: cannot write: is read-only; --force replaces it");
 }
 
-TEST_CASE("A check stops within a second of a signal, and prints what it has measured", "[tools]") {
+TEST_CASE("A check stops at a signal, and prints what it has measured", "[tools]") {
   if (!testContext()) return;
   const BallWorkplace at;
   const auto begin = std::chrono::steady_clock::now();
   const auto later = [&] { return std::chrono::steady_clock::now() - begin > std::chrono::seconds(2); };
   const Ended check = endProgram(at.folder, "check ball.vdb --tf ball.json --size 512x512 --edges 8 16 32 --slices 100",
                                  SIGTERM, later);
-  CHECK(check.seconds < 3 * kMostSeconds);  // with what it prints of the laws that are measured, and the end of OpenGL
+  CHECK(check.seconds < kMostSeconds);  // with what it prints of the laws that are measured, and the end of OpenGL
   CHECK(check.result.status != 0);
 }

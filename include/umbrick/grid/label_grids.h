@@ -35,7 +35,8 @@ struct LabelGrids {
 /// Of several numbers a voxel each is a layer of labels of its own, see VolumeLabel::component.
 /// @param progress  may be empty; is called now and then with the share that is done
 /// @throw IoError          the source fails
-/// @throw InvalidArgument  a voxel is no integer or beyond 2^24, there are more than 65535 labels, or a label that is
+/// @throw InvalidArgument  a voxel is no integer or beyond 2^24, there are more than 4096 labels (each grid takes some
+/// 300 KiB at the least), or a label that is
 ///                         wanted is not there
 LabelGrids buildLabelGrids(VoxelSource& source, const LabelChoice& choice = {},
                            const std::function<void(double)>& progress = {});
