@@ -34,7 +34,7 @@ void writeRough(const fs::path& path, int points) {
 
 }  // namespace
 
-TEST_CASE("Each signal ends a job that waits for a pipe within a second, and leaves nothing", "[tools]") {
+TEST_CASE("Each signal ends a job that waits for a pipe within a second, and leaves nothing", "[tools][slow]") {
   const BallWorkplace at;
   REQUIRE(mkfifo((at.folder.path() / "p").c_str(), 0600) == 0);
   const std::size_t before = filesIn(at.folder);
@@ -116,7 +116,7 @@ TEST_CASE("A file that may not grow is an error of one line, and leaves nothing"
   }
 }
 
-TEST_CASE("A transfer function of a million points is as fast as it is fine, and can be interrupted", "[tools]") {
+TEST_CASE("A transfer function of a million points is as fast as it is fine, and can be interrupted", "[tools][slow]") {
   const BallWorkplace at;
   writeRough(at.folder.path() / "rough.json", 1'000'000);
   const std::string command =
