@@ -11,5 +11,8 @@ template <class... Handlers>
 struct Overload : Handlers... {
   using Handlers::operator()...;
 };
+// Compilers before Clang 17 do not deduce the handlers of an aggregate by themselves.
+template <class... Handlers>
+Overload(Handlers...) -> Overload<Handlers...>;
 
 }  // namespace umbrick
