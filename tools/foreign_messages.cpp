@@ -174,12 +174,7 @@ ForeignMessages::~ForeignMessages() {
   const std::string caught = take();
   if (!caught.empty()) std::cerr << "umbrick: " << caught.substr(2) << '\n';
   std::cerr.rdbuf(before_);
-  if (caughtDescriptor < 0) return;
-  dup2(ownDescriptor, STDERR_FILENO);
-  close(ownDescriptor);
-  close(caughtDescriptor);
-  ownDescriptor = STDERR_FILENO;
-  caughtDescriptor = -1;
+  // The descriptors stay as they are: libhdf5, for one, prints as the process ends, when all has been said.
 }
 
 std::string ForeignMessages::take() {

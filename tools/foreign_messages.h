@@ -19,7 +19,7 @@ int messageDescriptor();
 class ForeignMessages {
  public:
   ForeignMessages();
-  /// Says in one line what was caught, unless it has been taken.
+  /// Says in one line what was caught, unless it has been taken. What is written later, as the process ends, is lost.
   ~ForeignMessages();
   ForeignMessages(const ForeignMessages&) = delete;
   ForeignMessages& operator=(const ForeignMessages&) = delete;

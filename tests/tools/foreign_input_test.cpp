@@ -100,6 +100,13 @@ TEST_CASE("Control characters of a header reach no terminal", "[tools][foreign]"
   CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
 }
 
+// libhdf5 says as the process ends that it could not close all, in a line of a hundred words.
+TEST_CASE("What libraries print as the program ends is no line of its own", "[tools][foreign]") {
+  const TemporaryFolder folder;
+  fs::copy_file(fs::path(UMBRICK_FUZZ_CORPUS) / "hdf5" / "closing-library", folder.path() / "a.h5");
+  expectRefusal(folder, "convert a.h5 -o a.vdb", 1, "a.h5: expected an HDF5 file, found: ");
+}
+
 TEST_CASE("A MetaImage of any name reads back, or is refused", "[tools][foreign]") {
   const BallWorkplace at;
   for (const std::string name : {"list of", " blank", "LIST", "a % b", "\"quoted\" x", "b\xe9", "tab\there", "100%"}) {
