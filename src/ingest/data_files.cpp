@@ -107,6 +107,23 @@ std::unique_ptr<ByteStream> openDataFiles(VolumeInfo& info, const std::string& f
   return joinStreams(std::move(shares));
 }
 
+std::function<std::unique_ptr<ByteStream>()> openDataOften(VolumeInfo& info, const std::string& fieldTitle,
+                                                           const fs::path& header, std::int64_t headerBytes,
+                                                           const std::vector<fs::path>& files, bool strict,
+                                                           const OpenNotedShare& open) {
+  const auto longer = strict ? nullptr : std::make_shared<std::vector<std::string>>();
+  const auto openAll = [=, ownBytes = info.fileBytes](VolumeInfo& of) {
+    of.fileBytes = ownBytes;
+    return openDataFiles(of, fieldTitle, header, headerBytes, files,
+                         [open, longer](const fs::path& file, std::int64_t offset, std::int64_t share) {
+                           return open(file, offset, share, longer.get());
+                         });
+  };
+  auto first = openAll(info);
+  if (longer) info.notes.insert(info.notes.end(), longer->begin(), longer->end());
+  return openOnceMore(std::move(first), [openAll, of = info]() mutable { return openAll(of); });
+}
+
 void requireDataBeside(const std::vector<fs::path>& files, const fs::path& header) {
   requireBeside(header, header);
   for (const fs::path& file : files) requireBeside(file, header);

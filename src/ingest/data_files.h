@@ -45,6 +45,19 @@ std::unique_ptr<ByteStream> openDataFiles(VolumeInfo& info, const std::string& f
                                           const std::filesystem::path& header, std::int64_t headerBytes,
                                           const std::vector<std::filesystem::path>& files, const OpenShare& open);
 
+/// A share whose file may be longer, for which `longer` gets a note; where it is null, that is an error.
+using OpenNotedShare = std::function<std::unique_ptr<ByteStream>(const std::filesystem::path&, std::int64_t offset,
+                                                                 std::int64_t bytes, std::vector<std::string>* longer)>;
+
+/// The same voxels each time that the function is called. All files are looked at before it returns, and what they have
+/// behind the voxels becomes notes of `info`.
+/// @param strict  that is an error
+std::function<std::unique_ptr<ByteStream>()> openDataOften(VolumeInfo& info, const std::string& fieldTitle,
+                                                           const std::filesystem::path& header,
+                                                           std::int64_t headerBytes,
+                                                           const std::vector<std::filesystem::path>& files, bool strict,
+                                                           const OpenNotedShare& open);
+
 /// Checks that a header and the files that it names lie beside or below it, links and ".." followed. @throw IoError
 void requireDataBeside(const std::vector<std::filesystem::path>& files, const std::filesystem::path& header);
 

@@ -40,18 +40,11 @@ std::unique_ptr<VoxelSource> openMetaImage(const fs::path& path, bool strict, co
   VolumeInfo info = header->info;
   info.fileBytes = std::max<std::int64_t>(ownBytes, 0);
   addProvenance(info, path, "MetaImage");
-  const auto longer = strict ? nullptr : std::make_shared<std::vector<std::string>>();
-  const std::int64_t ownSize = info.fileBytes;
-  const auto openAll = [header, longer, path, ownSize](VolumeInfo& of) {
-    of.fileBytes = ownSize;
-    return openDataFiles(of, "ElementDataFile", path, header->headerBytes, header->files,
-                         [header, longer](const fs::path& file, std::int64_t offset, std::int64_t share) {
-                           return openMetaShare(*header, file, offset, share, longer.get());
-                         });
-  };
-  auto first = openAll(info);  // looks at all files before the first voxel is read
-  if (longer) info.notes.insert(info.notes.end(), longer->begin(), longer->end());
-  auto open = openOnceMore(std::move(first), [openAll, of = info]() mutable { return openAll(of); });
+  const auto open = openDataOften(
+      info, "ElementDataFile", path, header->headerBytes, header->files, strict,
+      [header](const fs::path& file, std::int64_t offset, std::int64_t share, std::vector<std::string>* longer) {
+        return openMetaShare(*header, file, offset, share, longer);
+      });
   return openParts(std::move(info), PartAxes{}, header->layout, parts, open);
 }
 

@@ -84,21 +84,14 @@ std::unique_ptr<VoxelSource> openNrrd(const fs::path& path, bool strict, const P
   addProvenance(info, path, "NRRD");
   info.fileBytes = std::max<std::int64_t>(headerFileBytes, 0);
 
-  const auto longer = strict ? nullptr : std::make_shared<std::vector<std::string>>();
-  const std::int64_t ownSize = info.fileBytes;
-  const auto openAll = [header, longer, path, ownSize](VolumeInfo& of) {
-    of.fileBytes = ownSize;
-    return openDataFiles(of, "data file", path, header->bytes, header->dataFiles,
-                         [header, longer](const fs::path& file, std::int64_t offset, std::int64_t share) {
-                           return openNrrdShare(*header, file, offset, share, longer.get());
-                         });
-  };
-  auto first = openAll(info);  // looks at all files before the first voxel is read
-  if (longer) info.notes.insert(info.notes.end(), longer->begin(), longer->end());
+  const auto open = openDataOften(
+      info, "data file", path, header->bytes, header->dataFiles, strict,
+      [header](const fs::path& file, std::int64_t offset, std::int64_t share, std::vector<std::string>* longer) {
+        return openNrrdShare(*header, file, offset, share, longer);
+      });
   const bool text = header->encoding == NrrdEncoding::text;
   const std::endian endian = text ? std::endian::native : header->bigEndian ? std::endian::big : std::endian::little;
   const VoxelLayout layout{header->type, endian, 0};
-  auto open = openOnceMore(std::move(first), [openAll, of = info]() mutable { return openAll(of); });
   return openParts(std::move(info), header->parts, layout, parts, open);
 }
 
