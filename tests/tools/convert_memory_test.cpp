@@ -11,18 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "support/sanitized.h"
 #include "tools/program.h"
 
 using namespace umbrick;
 namespace fs = std::filesystem;
 
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 
 // 1024 x 1024 x 256 of u16, 512 MiB: 0 but for a block of 224 x 224 x 56 in the middle, 1 % of it. Layers of 8 slices,
 // as the slabs that are read, of which 7 have a part of the block.

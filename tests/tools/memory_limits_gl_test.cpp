@@ -5,18 +5,13 @@
 #include <string>
 
 #include "support/gl_fixture.h"
+#include "support/sanitized.h"
 #include "tools/ball_workplace.h"
 
 using namespace umbrick;
 using Catch::Contains;
 
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 
 // Runs the program with so much address space, MiB.
 ProgramResult runWithin(const BallWorkplace& at, int mebibytes, const std::string& arguments) {
