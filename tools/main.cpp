@@ -80,9 +80,6 @@ int runProgram(int argc, char** argv) {
     }
   return 2;
 }
-}  // namespace
-
-namespace {
 
 // Ends quietly, as every program does whose reader has gone: by the signal that was ignored so far.
 int endByClosedPipe() {

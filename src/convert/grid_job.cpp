@@ -2,7 +2,6 @@
 #include "convert/grid_job.h"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -115,15 +114,11 @@ openvdb::FloatGrid::Ptr build(GridJob& job, std::size_t i, BuildOptions options)
   ConvertedGrid& row = job.report.grids[i];
   const ScalarGrid source =
       job.grids.empty() ? readFiltered(job, row.label, row.masked, row.notes) : std::exchange(job.grids[i], {});
-  if (source.grid->getGridClass() != openvdb::GRID_LEVEL_SET)
-    refuseKept(job.input, options, options.background.value_or(source.grid->background()),
-               options.background ? "as was asked for" : "that of the grid");
-  // What lies below the background would be below the 0 of the target.
-  if (const auto target = job.options.output.target; target && traitsOf(*target).unitValues &&
-                                                     !job.options.isosurface &&
-                                                     source.grid->getGridClass() != openvdb::GRID_LEVEL_SET)
-    options.clipBelow = std::max(options.clipBelow.value_or(-std::numeric_limits<float>::infinity()),
-                                 options.background.value_or(source.grid->background()));
+  if (source.grid->getGridClass() != openvdb::GRID_LEVEL_SET) {
+    const float background = options.background.value_or(source.grid->background());
+    refuseKept(job.input, options, background, options.background ? "as was asked for" : "that of the grid");
+    if (mapsValues(job.options)) leaveOutBelow(background, options);
+  }
   row.keptLevelSet = keepsLevelSet(*source.grid, options);
   BuiltGrid built = sparsifyGrid(source, options);
   if (job.options.isosurface) row.isosurface = replaceByIsosurface(job.input, *job.options.isosurface, built);
@@ -152,14 +147,7 @@ std::vector<std::optional<ValueMap>> prepareForTarget(GridJob& job, const std::v
   if (!output.target) return maps;
   std::vector<openvdb::FloatGrid*> changed;
   for (std::size_t i = 0; i < grids.size(); ++i) {
-    ConvertedGrid& row = job.report.grids[i];
-    std::optional<double> left;
-    if (job.options.build.maxError) left = *job.options.build.maxError - row.build.maxError;
-    const TargetChange change = prepareFor(output, /*foreign=*/true, left, *grids[i]);
-    maps[i] = change.map;
-    if (change.half) row.build.storage = "half";
-    if (!job.options.isosurface) addQuantising(row.build, change.error, /*activeOnly=*/true);
-    row.notes.insert(row.notes.end(), change.notes.begin(), change.notes.end());
+    maps[i] = prepareFor(job.options, /*foreign=*/true, *grids[i], job.report.grids[i]);
     changed.push_back(grids[i].get());
   }
   if (const std::string line = nameFor(*output.target, changed); !line.empty()) job.report.notes.push_back(line);

@@ -13,6 +13,7 @@
 #include "umbrick/core/patient_space.h"
 #include "umbrick/core/short_number.h"
 #include "umbrick/grid/affine_matrix.h"
+#include "umbrick/grid/change_values.h"
 #include "umbrick/grid/grid_world.h"
 #include "umbrick/grid/orientation.h"
 
@@ -23,9 +24,17 @@ using openvdb::FloatGrid;
 using openvdb::FloatTree;
 using openvdb::StringMetadata;
 
-std::string stated(const FloatGrid& grid, const char* key) {
-  const auto text = grid.getMetadata<StringMetadata>(key);
-  return text ? text->value() : std::string();
+// What was done to a grid.
+struct TargetChange {
+  std::optional<ValueMap> map;
+  bool half = false;    // values are saved as half floats, which they were not before
+  QuantiseError error;  // of mapping and of half floats, grid units before
+  std::vector<std::string> notes;
+};
+
+// Shares a grid without owning it.
+ScalarGrid viewOf(const FloatGrid& grid) {
+  return {std::shared_ptr<const FloatGrid>(std::shared_ptr<void>(), &grid), grid.getName()};
 }
 
 glm::dmat3 bodyAxes(Axis up, Axis front, bool mirrored) {
@@ -44,9 +53,7 @@ double metresOf(const std::string& unit) {
 }
 
 Orientation orientationFor(const FloatGrid& grid, const OutputOptions& output, bool foreign) {
-  // It shares the grid without owning it.
-  const ScalarGrid scalar{std::shared_ptr<const FloatGrid>(std::shared_ptr<void>(), &grid), grid.getName()};
-  Orientation found = orientationOf(scalar, foreign);
+  Orientation found = orientationOf(viewOf(grid), foreign);
   if (output.up == Axis::automatic) return found;
   if (found.anatomy && output.up == found.up) return found;
   return {.up = output.up, .front = usualFront(output.up), .reason = "as was asked for"};
@@ -96,23 +103,6 @@ double place(const TargetTraits& target, const Orientation& orientation, FloatGr
   grid.insertMeta("length_unit", StringMetadata(unit));
   grid.insertMeta("made_for", StringMetadata(std::string(target.name)));
   return scale;
-}
-
-// Calls change(value) for all values of a tree, which it replaces.
-template <class Change>
-void changeValues(FloatTree& tree, const Change& change) {
-  openvdb::tree::LeafManager<FloatTree> leaves(tree);
-  leaves.foreach ([&](FloatTree::LeafNodeType& leaf, std::size_t) {
-    for (openvdb::Index i = 0; i < FloatTree::LeafNodeType::SIZE; ++i) leaf.setValueOnly(i, change(leaf.getValue(i)));
-  });
-  auto tile = tree.beginValueAll();
-  tile.setMaxDepth(FloatTree::ValueAllIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) {
-    const bool active = tile.isValueOn();
-    tile.setValue(change(*tile));
-    tile.setActiveState(active);
-  }
-  tree.root().setBackground(change(tree.background()), /*updateChildNodes=*/false);
 }
 
 float largestActive(const FloatTree& tree) {
@@ -173,7 +163,7 @@ void mapValues(std::optional<double> maxError, FloatGrid& grid, TargetChange& ch
   grid.setSaveFloatAsHalf(half);
   grid.insertMeta("value_low", openvdb::DoubleMetadata(map.low));
   grid.insertMeta("value_high", openvdb::DoubleMetadata(map.high));
-  if (const std::string unit = stated(grid, "value_unit"); !unit.empty()) {
+  if (const std::string unit = viewOf(grid).metadata("value_unit"); !unit.empty()) {
     grid.insertMeta("value_range_unit", StringMetadata(unit));
     grid.removeMeta("value_unit");
   }
@@ -216,9 +206,8 @@ void tellShear(const TargetTraits& target, const FloatGrid& grid, std::vector<st
                     "does not help, since voxels stay along the axes of the file");
 }
 
-}  // namespace
-
-TargetChange prepareFor(const OutputOptions& output, bool foreign, std::optional<double> maxError, FloatGrid& grid) {
+// @param maxError  what may still be lost; half floats are not taken where they would lose more
+TargetChange change(const OutputOptions& output, bool foreign, std::optional<double> maxError, FloatGrid& grid) {
   const TargetTraits& target = traitsOf(*output.target);
   TargetChange change;
   const double scale = place(target, orientationFor(grid, output, foreign), grid, change.notes);
@@ -232,6 +221,27 @@ TargetChange prepareFor(const OutputOptions& output, bool foreign, std::optional
   tellLimits(target, grid, scale, change.notes);
   tellShear(target, grid, change.notes);
   return change;
+}
+
+}  // namespace
+
+bool mapsValues(const ConvertOptions& options) {
+  return options.output.target && traitsOf(*options.output.target).unitValues && !options.isosurface;
+}
+
+void leaveOutBelow(float background, BuildOptions& build) {
+  build.clipBelow = std::max(build.clipBelow.value_or(background), background);
+}
+
+std::optional<ValueMap> prepareFor(const ConvertOptions& options, bool foreign, FloatGrid& grid,
+                                   ConvertedGrid& report) {
+  std::optional<double> left;
+  if (options.build.maxError) left = *options.build.maxError - report.build.maxError;
+  const TargetChange made = change(options.output, foreign, left, grid);
+  if (made.half) report.build.storage = "half";
+  if (!options.isosurface) addQuantising(report.build, made.error, /*activeOnly=*/foreign);
+  report.notes.insert(report.notes.end(), made.notes.begin(), made.notes.end());
+  return made.map;
 }
 
 std::string nameFor(Target target, const std::vector<FloatGrid*>& grids) {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "umbrick/convert/output_options.h"
-#include "umbrick/grid/build_grid.h"
+#include "umbrick/convert/convert_options.h"
+#include "umbrick/convert/convert_report.h"
 #include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
@@ -16,22 +16,20 @@ struct ValueMap {
   double low = 0, high = 1;  // grid units
 };
 
-/// What was done to a grid.
-struct TargetChange {
-  std::optional<ValueMap> map;
-  bool half = false;    // values are saved as half floats, which they were not before
-  QuantiseError error;  // of mapping and of half floats, grid units before
-  std::vector<std::string> notes;
-};
+/// Whether the values of fogs are mapped to 0..1 for a target.
+bool mapsValues(const ConvertOptions& options);
 
-/// Changes place, values and metadata of a grid to what the target expects. The inverse of the map of values is kept as
-/// metadata value_low and value_high, in value_range_unit. A level set keeps its surface: distances follow the unit of
-/// length.
-/// @param foreign   it comes from a file of grids
-/// @param maxError  what may be lost in all, with what is lost already; half floats are not taken where they would lose
-///                  more
-TargetChange prepareFor(const OutputOptions& output, bool foreign, std::optional<double> maxError,
-                        openvdb::FloatGrid& grid);
+/// Leaves out what lies below the background, which would be below the 0 of a target.
+void leaveOutBelow(float background, BuildOptions& build);
+
+/// Changes place, values and metadata of a converted grid to what the target expects, and tells in its report what that
+/// is and what it costs. The inverse of the map of values is kept as metadata value_low and value_high, in
+/// value_range_unit. A level set keeps its surface: distances follow the unit of length. Half floats are not taken
+/// where more would be lost than options.build.maxError.
+/// @param foreign  it comes from a file of grids
+/// @return how the values are found again, where they were mapped
+std::optional<ValueMap> prepareFor(const ConvertOptions& options, bool foreign, openvdb::FloatGrid& grid,
+                                   ConvertedGrid& report);
 
 /// Gives the one grid of a file, or the first of several, the name under which the target looks for a density, unless a
 /// grid has it.

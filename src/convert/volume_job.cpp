@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/volume_job.h"
 
-#include <limits>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -21,8 +20,6 @@
 namespace umbrick {
 namespace {
 namespace fs = std::filesystem;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // The options of a pass over the voxels, which tells how far it is.
 BuildOptions passOf(const VolumeJob& job, ConvertStage stage, const VolumeInfo& info) {
@@ -50,16 +47,12 @@ void judgeBackground(const openvdb::FloatGrid& grid, ConvertedGrid& report) {
   if (static_cast<double>(active) > kNearlyAll * static_cast<double>(all)) report.border = usualBorder(grid);
 }
 
-bool mapsValues(const ConvertOptions& options) {
-  return options.output.target && traitsOf(*options.output.target).unitValues && !options.isosurface;
-}
-
 // The background is the border's where that is asked for, where limits would keep the usual one or a surface would
 // lie below it, or where it will be the 0 of a target.
 void settleBackground(VolumeJob& job) {
   BuildOptions& build = job.options.build;
   const bool asked = job.options.source.backgroundFromBorder, given = build.background.has_value();
-  if (!asked) refuseKept(job.input, build, given ? *build.background : -kInfinity, "as was asked for");
+  if (!asked && given) refuseKept(job.input, build, *build.background, "as was asked for");
   const bool forTarget = !given && mapsValues(job.options) && !isPipe(job.input);
   const bool closed = !job.options.isosurface || job.options.isosurface->value > 0;
   const bool usualFits = given || (!keepsBackground(build, 0) && !forTarget && closed);
@@ -87,15 +80,8 @@ void prepareForTarget(std::span<VolumeJob> jobs, ConvertReport& report) {
   if (!output.target) return;
   std::vector<openvdb::FloatGrid*> grids;
   for (VolumeJob& job : jobs) {
-    ConvertedGrid& told = job.grids.front().report;
     auto& values = static_cast<openvdb::FloatGrid&>(*job.grids.front().grid);
-    std::optional<double> left;
-    if (job.options.build.maxError) left = *job.options.build.maxError - told.build.maxError;
-    const TargetChange change = prepareFor(output, /*foreign=*/false, left, values);
-    job.map = change.map;
-    if (change.half) told.build.storage = "half";
-    if (!job.options.isosurface) addQuantising(told.build, change.error, /*activeOnly=*/false);
-    told.notes.insert(told.notes.end(), change.notes.begin(), change.notes.end());
+    job.map = prepareFor(job.options, /*foreign=*/false, values, job.grids.front().report);
     grids.push_back(&values);
   }
   if (const std::string line = nameFor(*output.target, grids); !line.empty()) report.notes.push_back(line);
@@ -201,9 +187,8 @@ std::vector<VolumeJob> volumeJobs(const std::vector<fs::path>& inputs, const Con
 std::unique_ptr<VoxelSource> openJob(VolumeJob& job) {
   if (job.options.verify) expectFile(job.input, "options.verify");
   settleBackground(job);
-  // What lies below the background would be below the 0 of the target.
   if (BuildOptions& build = job.options.build; mapsValues(job.options))
-    build.clipBelow = std::max(build.clipBelow.value_or(-kInfinity), build.background.value_or(0));
+    leaveOutBelow(build.background.value_or(0), build);
   return openFiltered(job.input, job.options.source, job.options.build.background.value_or(0), *job.notes,
                       std::move(job.opened));
 }

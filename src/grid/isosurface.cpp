@@ -15,7 +15,6 @@
 #include <sstream>
 #include <vector>
 
-#include "grid/crossing_edges.h"
 #include "grid/isosurface_error.h"
 #include "grid/sparse_rule.h"
 #include "grid/surface_band.h"
@@ -24,6 +23,7 @@
 #include "umbrick/core/memory.h"
 #include "umbrick/core/range.h"
 #include "umbrick/grid/affine_matrix.h"
+#include "umbrick/grid/change_values.h"
 #include "umbrick/grid/float_grid.h"
 
 namespace umbrick {
@@ -92,12 +92,9 @@ openvdb::math::Transform::Ptr transformOf(const FloatGrid& volume, const glm::dm
 // is stretched over many cubes. Voxels near the surface get values, those of the band distances, and each cube of the
 // surface some discs; twice as much, since they are copied when the parts of threads are joined. Spheres of 96^3 voxels
 // with spacings of 1 : 1 : 10 to 1 : 1 : 100 and 0.1 : 1 : 1 took 0.85 to 0.95 of it.
-void checkBand(const ScalarGrid& volume, const IsosurfaceOptions& options, const glm::dmat4& toLevelSet) {
-  std::array<std::uint64_t, 3> crossings{};
-  const auto add = [&](const openvdb::Coord&, int axis, int) { ++crossings[static_cast<std::size_t>(axis)]; };
-  CrossingEdges edges(volume.grid->tree(), options.value);
-  for (auto leaf = volume.grid->tree().cbeginLeaf(); leaf; ++leaf) edges.inLeaf(*leaf, add);
-  eachTileOf(volume.grid->tree(), [&](const openvdb::CoordBBox& box, float here) { edges.inTile(box, here, add); });
+// @param crossings  of the edges along each axis
+void checkBand(const ScalarGrid& volume, const IsosurfaceOptions& options,
+               const std::array<std::uint64_t, 3>& crossings, const glm::dmat4& toLevelSet) {
   const glm::dmat3 axes(toLevelSet);
   const double cell = std::abs(glm::determinant(axes));  // voxels of the level set in one of the volume
   double area = 0, near = 0;                             // in voxels of the level set
@@ -153,23 +150,6 @@ FloatGrid::Ptr widened(const FloatGrid& band, float halfWidth) {
   return wide;
 }
 
-// Distances in voxels become distances in the world.
-void scale(FloatGrid& levelSet, double voxel) {
-  openvdb::tree::LeafManager<openvdb::FloatTree> leaves(levelSet.tree());
-  leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
-    for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
-      leaf.setValueOnly(i, static_cast<float>(voxel * double(leaf.getValue(i))));
-  });
-  auto tile = levelSet.tree().beginValueAll();
-  tile.setMaxDepth(openvdb::FloatTree::ValueAllIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) {
-    const bool active = tile.isValueOn();
-    tile.setValue(static_cast<float>(voxel * double(*tile)));
-    tile.setActiveState(active);
-  }
-  levelSet.tree().root().setBackground(static_cast<float>(voxel * double(levelSet.background())), false);
-}
-
 void describeSurface(FloatGrid& levelSet, const FloatGrid& volume, const IsosurfaceOptions& options,
                      const IsosurfaceReport& report) {
   levelSet.insertMeta(volume);
@@ -188,14 +168,14 @@ Isosurface makeIsosurface(const ScalarGrid& volume, const IsosurfaceOptions& opt
   check(volume, options);
   const glm::dmat4 before = volume.indexToWorld(), place = cubicPlace(before);
   const glm::dmat4 toLevelSet = place == before ? glm::dmat4(1) : glm::inverse(place) * before;
-  const std::uint64_t crossings = countCrossings(volume.grid->tree(), options.value);
-  if (crossings == 0) {
+  const std::array<std::uint64_t, 3> crossings = countCrossings(volume.grid->tree(), options.value);
+  if (crossings == std::array<std::uint64_t, 3>{}) {
     const Range range = rangeOf(volume.grid->tree());
     refuse(volume, "expected a value that the volume crosses, from ", range.min, " to ", range.max, ", found ",
            options.value);
   }
   const bool same = place == before;
-  if (!same) checkBand(volume, options, toLevelSet);
+  if (!same) checkBand(volume, options, crossings, toLevelSet);
   const glm::dmat4 toVolume = glm::inverse(toLevelSet);
   const auto isInside = [&]() -> std::function<bool(const openvdb::Coord&)> {
     return [access = volume.grid->getConstAccessor(), toVolume, same, value = options.value](const openvdb::Coord& at) {
@@ -215,9 +195,11 @@ Isosurface makeIsosurface(const ScalarGrid& volume, const IsosurfaceOptions& opt
   out.grid = distanceBand(discs, std::min(options.halfWidth, kMostDirect), isInside);
   if (options.halfWidth > kMostDirect) out.grid = widened(*out.grid, options.halfWidth);
   out.grid->setTransform(transformOf(*volume.grid, before, place));
-  scale(*out.grid, glm::length(glm::dvec3(place[0])));
+  // Distances in voxels become distances in the world.
+  const double voxel = glm::length(glm::dvec3(place[0]));
+  changeValues(out.grid->tree(), [voxel](float distance) { return static_cast<float>(voxel * double(distance)); });
   measureIsosurface(volume.grid->tree(), options.value, *out.grid, toLevelSet, out.report);
-  out.report.voxelSize = glm::length(glm::dvec3(place[0]));
+  out.report.voxelSize = voxel;
   out.report.activeVoxels = out.grid->activeVoxelCount();
   out.report.leaves = out.grid->tree().leafCount();
   describeSurface(*out.grid, *volume.grid, options, out.report);

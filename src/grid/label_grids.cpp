@@ -142,8 +142,7 @@ std::vector<VerifyReport> verifyLabelGrids(VoxelSource& source, const std::vecto
                                            const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
                                            const std::function<void(double)>& progress) {
   const VolumeInfo& info = source.info();
-  std::map<LabelKey, std::size_t> places;
-  for (std::size_t i = 0; i < labels.size(); ++i) places[{labels[i].component, labels[i].value}] = i;
+  const std::map<LabelKey, std::size_t> places = placesOf(labels);
   std::vector<VerifyReport> reports(grids.size());
   std::vector<std::uint64_t> right(grids.size(), 0);
   LabelSlab slab(source);
@@ -168,7 +167,7 @@ std::vector<VerifyReport> verifyLabelGrids(VoxelSource& source, const std::vecto
     if (progress) progress(slab.share());
   }
   for (std::size_t i = 0; i < grids.size(); ++i) {
-    reports[i].voxels = static_cast<std::uint64_t>(info.dims.x * info.dims.y) * static_cast<std::uint64_t>(info.dims.z);
+    reports[i].voxels = voxelsIn(info);
     reports[i].beyond = grids[i]->activeVoxelCount() - right[i];
   }
   return reports;

@@ -133,6 +133,12 @@ LabelGrid& labelGrid(const VolumeInfo& info, const LabelKey& key, std::map<Label
   return label;
 }
 
+std::map<LabelKey, std::size_t> placesOf(const std::vector<VolumeLabel>& labels) {
+  std::map<LabelKey, std::size_t> places;
+  for (std::size_t i = 0; i < labels.size(); ++i) places[{labels[i].component, labels[i].value}] = i;
+  return places;
+}
+
 std::uint64_t voxelsIn(const VolumeInfo& info) {
   return static_cast<std::uint64_t>(info.dims.x * info.dims.y) * static_cast<std::uint64_t>(info.dims.z);
 }

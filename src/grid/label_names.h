@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "umbrick/grid/label_grids.h"
 #include "umbrick/ingest/voxel_source.h"
@@ -32,6 +33,9 @@ class WantedLabels {
 
 /// The grid of a label, which is made when it is first asked for. @throw InvalidArgument  there are too many
 LabelGrid& labelGrid(const VolumeInfo& info, const LabelKey& key, std::map<LabelKey, LabelGrid>& found);
+
+/// The places of labels in their list.
+std::map<LabelKey, std::size_t> placesOf(const std::vector<VolumeLabel>& labels);
 
 std::uint64_t voxelsIn(const VolumeInfo& info);
 

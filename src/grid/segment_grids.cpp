@@ -68,8 +68,7 @@ std::vector<VerifyReport> verifySegmentGrids(SegmentSource& source, const std::v
                                              const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
                                              const std::function<void(double)>& progress) {
   const VolumeInfo& info = source.info();
-  std::map<LabelKey, std::size_t> places;
-  for (std::size_t i = 0; i < labels.size(); ++i) places[{labels[i].component, labels[i].value}] = i;
+  const std::map<LabelKey, std::size_t> places = placesOf(labels);
   // The shares once more, since of frames in one place the largest counts.
   std::vector<openvdb::FloatGrid::Ptr> seen;
   for (std::size_t i = 0; i < grids.size(); ++i) seen.push_back(openvdb::FloatGrid::create(0.0f));

@@ -5,7 +5,6 @@
 #include <tbb/parallel_reduce.h>
 
 #include <cmath>
-#include <functional>
 
 #include "grid/crossing_edges.h"
 
@@ -66,21 +65,25 @@ class Marks {
 
 }  // namespace
 
-std::uint64_t countCrossings(const FloatTree& volume, float value) {
+std::array<std::uint64_t, 3> countCrossings(const FloatTree& volume, float value) {
+  using Counts = std::array<std::uint64_t, 3>;
+  const auto addTo = [](Counts& counts) {
+    return [&counts](const Coord&, int axis, int) { ++counts[static_cast<std::size_t>(axis)]; };
+  };
   const Leaves leaves(volume);
-  std::uint64_t count = tbb::parallel_reduce(
-      leaves.leafRange(16), std::uint64_t(0),
-      [&](const Leaves::LeafRange& range, std::uint64_t sum) {
+  Counts all = tbb::parallel_reduce(
+      leaves.leafRange(16), Counts{},
+      [&](const Leaves::LeafRange& range, Counts sum) {
         CrossingEdges edges(volume, value);
-        for (auto leaf = range.begin(); leaf; ++leaf) edges.inLeaf(*leaf, [&](const Coord&, int, int) { ++sum; });
+        for (auto leaf = range.begin(); leaf; ++leaf) edges.inLeaf(*leaf, addTo(sum));
         return sum;
       },
-      std::plus<>());
+      [](const Counts& a, const Counts& b) {
+        return Counts{a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+      });
   CrossingEdges edges(volume, value);
-  eachTileOf(volume, [&](const CoordBBox& box, float here) {
-    edges.inTile(box, here, [&](const Coord&, int, int) { ++count; });
-  });
-  return count;
+  eachTileOf(volume, [&](const CoordBBox& box, float here) { edges.inTile(box, here, addTo(all)); });
+  return all;
 }
 
 MaskTree surfaceVoxels(const FloatTree& volume, float value, const glm::dmat4& toBand) {

@@ -1,6 +1,7 @@
 // The voxels of another lattice that lie close to the surface where a volume has a value.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 
@@ -8,8 +9,8 @@
 
 namespace umbrick {
 
-/// Counts the edges of the volume's lattice that cross the value.
-std::uint64_t countCrossings(const openvdb::FloatTree& volume, float value);
+/// Counts the edges of the volume's lattice along each axis that cross the value.
+std::array<std::uint64_t, 3> countCrossings(const openvdb::FloatTree& volume, float value);
 
 /// Returns all voxels that lie in the box around the four cells of the volume that share an edge which crosses the
 /// value.

@@ -28,11 +28,10 @@ using openvdb::FloatGrid;
 FloatGrid::ConstPtr readDense(const fs::path& file, const FloatGrid& written) {
   const openvdb::CoordBBox box = written.evalActiveVoxelBoundingBox();
   OpenOptions open;
-  const auto unit = written.getMetadata<openvdb::StringMetadata>("length_unit");
+  const World world = worldOf(written);
   for (const char* known : {"nm", "um", "mm", "cm", "m"})
-    if (unit && unit->value() == known) open.lengthUnit = known;
-  const std::string space = worldOf(written).space;
-  if (patientAxes(space)) open.space = space;
+    if (world.lengthUnit == known) open.lengthUnit = known;
+  if (patientAxes(world.space)) open.space = world.space;
   const auto source = openVolume(file, open);
   const VolumeInfo& info = source->info();
   const glm::i64vec3 dims(box.dim().x(), box.dim().y(), box.dim().z());
