@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "shade/picture_mean.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pixel_points.h"
 #include "umbrick/core/random.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/draw/picture_mean.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/resolve.h"
 #include "umbrick/shade/prepare.h"

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "umbrick/atlas/resident_volume.h"
-#include "umbrick/shade/renderer.h"
+#include "umbrick/draw/renderer.h"
 
 namespace umbrick {
 

@@ -7,9 +7,9 @@
 
 #include "umbrick/atlas/resident_volume.h"
 #include "umbrick/brick/bricks.h"
+#include "umbrick/draw/renderer.h"
 #include "umbrick/gl/context.h"
 #include "umbrick/shade/prepare.h"
-#include "umbrick/shade/renderer.h"
 
 namespace umbrick {
 

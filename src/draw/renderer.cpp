@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "umbrick/shade/renderer.h"
+#include "umbrick/draw/renderer.h"
 
 #include <glm/common.hpp>
 
-#include "shade/picture_mean.h"
 #include "umbrick/core/pixel_points.h"
+#include "umbrick/draw/picture_mean.h"
 
 namespace umbrick {
 namespace {

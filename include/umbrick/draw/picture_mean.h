@@ -4,7 +4,7 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
-#include "umbrick/shade/renderer.h"
+#include "umbrick/draw/renderer.h"
 
 namespace umbrick {
 

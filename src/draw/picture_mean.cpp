@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/picture_mean.h"
+#include "umbrick/draw/picture_mean.h"
 
 #include <cmath>
 #include <limits>
