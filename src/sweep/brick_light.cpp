@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sweep/brick_light.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "umbrick/core/stopwatch.h"
+
+namespace umbrick {
+namespace {
+
+// Tells whether a plane leaves anything out of bricks that are grown by a voxel.
+bool cutsAny(const glm::dvec4& plane, const std::vector<glm::ivec3>& cells, const glm::ivec3& interior) {
+  return std::ranges::any_of(cells, [&](const glm::ivec3& cell) {
+    double least = plane.w;
+    for (int axis = 0; axis < 3; ++axis)
+      least += std::min(plane[axis] * (cell[axis] - 2), plane[axis] * (cell[axis] + interior[axis] + 1));
+    return least < 0;
+  });
+}
+
+// Light is 0 at voxels without medium next to them. Rays read light half a slice away from the medium, too, so that it
+// goes on for one more voxel along each axis.
+void spread(std::vector<float>& light, const glm::ivec3& edge) {
+  const std::ptrdiff_t strides[3]{1, edge.x, static_cast<std::ptrdiff_t>(edge.x) * edge.y};
+  std::vector<float> line;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    line.resize(static_cast<std::size_t>(edge[axis]));
+    for (int i = 0; i < edge[a]; ++i)
+      for (int j = 0; j < edge[b]; ++j) {
+        float* const first = light.data() + i * strides[a] + j * strides[b];
+        bool some = false, all = true;
+        for (int k = 0; k < edge[axis]; ++k) {
+          line[static_cast<std::size_t>(k)] = first[k * strides[axis]];
+          some = some || line[static_cast<std::size_t>(k)] > 0;
+          all = all && line[static_cast<std::size_t>(k)] > 0;
+        }
+        if (!some || all) continue;
+        for (int k = 0; k < edge[axis]; ++k) {
+          if (line[static_cast<std::size_t>(k)] > 0) continue;
+          const float before = k > 0 ? line[static_cast<std::size_t>(k) - 1] : 0;
+          const float behind = k + 1 < edge[axis] ? line[static_cast<std::size_t>(k) + 1] : 0;
+          if (before > 0 || behind > 0)
+            first[k * strides[axis]] = before > 0 && behind > 0 ? 0.5f * (before + behind) : before + behind;
+        }
+      }
+  }
+}
+
+}  // namespace
+
+void BrickLight::update(BrickVoxels& voxels, const ResolvedScene& scene, const std::vector<LightDirection>& directions,
+                        std::span<const glm::dvec4> planes) {
+  const Stopwatch watch;
+  LightMedium medium{scene.transfer, directions, {}, {}};
+  for (const auto& brick : voxels.bricks()) medium.cells.push_back(brick->origin);
+  for (const glm::dvec4& plane : planes)
+    if (cutsAny(plane, medium.cells, voxels.volume().layout.interior)) medium.planes.push_back(plane);
+  const std::uint64_t most = std::max<std::uint64_t>(scene.bricks.budgetMiB << 20, std::uint64_t{2} << 30);
+  const bool computed = light_.update(medium, most);
+  if (computed || generation_ != voxels.generation()) store(voxels);
+  generation_ = voxels.generation();
+  ms_ = watch.elapsedMs();
+}
+
+void BrickLight::store(BrickVoxels& voxels) {
+  const std::size_t count = voxels.volume().layout.voxels(), channels = static_cast<std::size_t>(light_.channels());
+  const auto bricks = voxels.bricks();
+  const tbb::blocked_range<std::size_t> all(0, bricks.size(), 1);
+  tbb::enumerable_thread_specific<std::vector<float>> scratches;
+  const auto read = [&](std::size_t i) -> std::vector<float>& {
+    std::vector<float>& light = scratches.local();
+    light.resize(count * channels);
+    light_.read(bricks[i]->origin, light);
+    return light;
+  };
+  // Beyond planes that cut the medium light is more than all that arrives, so that the largest number is looked for.
+  const float largest = tbb::parallel_reduce(
+      all, 1.0f,
+      [&](const auto& range, float most) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+          for (const float light : read(i)) most = std::max(most, light);
+        return most;
+      },
+      [](float a, float b) { return std::max(a, b); });
+  unit_ = largest / 65535;
+  tbb::parallel_for(all, [&](const auto& range) {
+    std::vector<float> plane(count);
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const std::vector<float>& light = read(i);
+      VoxelBrick& brick = voxels.brick(i);
+      brick.light = std::make_unique_for_overwrite<std::uint16_t[]>(count * channels + BrickVoxels::kPadding);
+      for (std::size_t c = 0; c < channels; ++c) {
+        for (std::size_t v = 0; v < count; ++v) plane[v] = std::max(light[v * channels + c], 0.0f);
+        spread(plane, voxels.volume().layout.edge());
+        for (std::size_t v = 0; v < count; ++v)
+          brick.light[c * count + v] = static_cast<std::uint16_t>(std::lround(std::min(plane[v] / unit_, 65535.0f)));
+      }
+    }
+  });
+}
+
+}  // namespace umbrick

@@ -1,0 +1,42 @@
+// The light that reaches the voxels of visible bricks, beside them in memory.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <vector>
+
+#include "sweep/brick_voxels.h"
+#include "umbrick/light/light_volume.h"
+#include "umbrick/scene/resolve.h"
+
+namespace umbrick {
+
+/// Computes light where it depends on what has changed, and keeps it with the bricks in 16 bits a voxel and channel.
+class BrickLight {
+ public:
+  explicit BrickLight(const Bricks& volume) : light_(volume) {}
+
+  /// @param directions  the light
+  /// @param planes      that cut the medium, index coordinates
+  /// @throw InvalidArgument  more memory would be needed than the scene's budget and 2 GiB
+  void update(BrickVoxels& voxels, const ResolvedScene& scene, const std::vector<LightDirection>& directions,
+              std::span<const glm::dvec4> planes);
+
+  int channels() const { return light_.channels(); }
+  glm::dvec3 whole() const { return light_.whole(); }
+  float unit() const { return unit_; }  // share of whole() that a code of 1 stands for
+  double ms() const { return ms_; }     // of the last update
+  const LightStats& stats() const { return light_.stats(); }
+
+ private:
+  void store(BrickVoxels& voxels);
+
+  LightVolume light_;
+  float unit_ = 1;
+  double ms_ = 0;
+  std::uint64_t generation_ = 0;  // of the bricks that have light
+};
+
+}  // namespace umbrick

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sweep/brick_voxels.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <tuple>
+
+#include "umbrick/core/error.h"
+
+namespace umbrick {
+namespace {
+
+std::tuple<int, int, int> orderOf(const glm::ivec3& origin) { return {origin.z, origin.y, origin.x}; }
+
+std::size_t bytesOf(VoxelCode code) { return code == VoxelCode::u8 ? 1 : code == VoxelCode::u16 ? 2 : sizeof(float); }
+
+}  // namespace
+
+BrickVoxels::BrickVoxels(const Bricks& volume) : volume_(volume) {
+  if (volume.exactFormat == VoxelFormat::unorm8) code_ = VoxelCode::u8;
+  if (volume.exactFormat == VoxelFormat::unorm16) code_ = VoxelCode::u16;
+  if (code_ != VoxelCode::f32) offset_ = volume.value.min;
+  groups_ = (volume.layout.interior + kGroup - 1) / kGroup;
+}
+
+void BrickVoxels::select(const MediumTable& table, bool culling, bool backgroundVisible, std::uint64_t mostBytes) {
+  std::vector<Brick> wanted;
+  const auto isVisible = [&](const Brick& brick) {
+    return !culling || !table.isTransparent(brick.value, brick.gradient);
+  };
+  std::ranges::copy_if(volume_.bricks, std::back_inserter(wanted), isVisible);
+  if (backgroundVisible) std::ranges::copy(backgroundBricks(volume_), std::back_inserter(wanted));
+  std::ranges::sort(wanted, {}, [](const Brick& brick) { return orderOf(brick.origin); });
+  const std::uint64_t voxels = volume_.layout.voxels();
+  const std::uint64_t each = voxels * (bytesOf(code_) + (table.is2d() ? sizeof(float) : 0));
+  const auto held =
+      static_cast<std::uint64_t>(std::ranges::count_if(wanted, [](const Brick& brick) { return !brick.uniform(); }));
+  if (held * each > mostBytes)
+    throw InvalidArgument("bricks.budgetMiB: the voxels of " + std::to_string(held) + " visible bricks take " +
+                          std::to_string((held * each >> 20) + 1) + " MiB, more than " +
+                          std::to_string(mostBytes >> 20) + " MiB");
+  std::map<std::tuple<int, int, int>, std::unique_ptr<VoxelBrick>> before;
+  for (auto& brick : bricks_)
+    // Gradients are read with the voxels.
+    if (!table.is2d() || brick->gradients) before[orderOf(brick->origin)] = std::move(brick);
+  bricks_.clear();
+  std::vector<VoxelBrick*> missing;
+  for (const Brick& brick : wanted) {
+    const auto found = before.find(orderOf(brick.origin));
+    if (found != before.end()) {
+      bricks_.push_back(std::move(found->second));
+      continue;
+    }
+    auto made = std::make_unique<VoxelBrick>();
+    made->origin = brick.origin;
+    made->value = brick.value;
+    made->gradient = brick.gradient;
+    missing.push_back(made.get());
+    bricks_.push_back(std::move(made));
+  }
+  before.clear();
+  tbb::enumerable_thread_specific<std::vector<float>> scratches;
+  const bool gradients = table.is2d();
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, missing.size(), 1), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      if (gradients) missing[i]->gradients = std::make_unique_for_overwrite<float[]>(voxels + kPadding);
+      load(*missing[i], scratches.local());
+    }
+  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bricks_.size(), 4), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) activate(*bricks_[i], table, culling);
+  });
+  loaded_ = missing.size();
+  ++generation_;
+}
+
+void BrickVoxels::load(VoxelBrick& brick, std::vector<float>& values) const {
+  if (brick.value.min == brick.value.max && !brick.gradients) return;
+  values.resize(volume_.layout.voxels());
+  const std::span<float> gradients(brick.gradients.get(), brick.gradients ? values.size() : 0);
+  volume_.read(brick.origin, values, gradients);
+  findRanges(brick, values);
+  if (code_ == VoxelCode::u8) store<std::uint8_t>(brick, values);
+  if (code_ == VoxelCode::u16) store<std::uint16_t>(brick, values);
+  if (code_ == VoxelCode::f32) store<float>(brick, values);
+}
+
+template <class Code>
+void BrickVoxels::store(VoxelBrick& brick, std::span<const float> values) const {
+  // Some more bytes behind the last voxel let several be read at once.
+  brick.voxels = std::make_unique_for_overwrite<std::byte[]>((values.size() + kPadding) * sizeof(Code));
+  auto* const codes = reinterpret_cast<Code*>(brick.voxels.get());
+  const auto offset = static_cast<float>(offset_);
+  for (std::size_t i = 0; i < values.size(); ++i) codes[i] = static_cast<Code>(values[i] - offset);
+}
+
+void BrickVoxels::findRanges(VoxelBrick& brick, std::span<const float> values) const {
+  const glm::ivec3 edge = volume_.layout.edge();
+  const int apron = volume_.layout.apron;
+  const auto count =
+      static_cast<std::size_t>(groups_.x) * static_cast<std::size_t>(groups_.y) * static_cast<std::size_t>(groups_.z);
+  brick.ranges = std::make_unique_for_overwrite<float[]>(2 * count);
+  float* next = brick.ranges.get();
+  // A group's first and last voxel along an axis, the corners of its last cells included.
+  const auto first = [&](int group) { return group == 0 ? apron - 1 : apron + group * kGroup; };
+  const auto last = [&](int group, int interior) { return apron + std::min((group + 1) * kGroup, interior); };
+  for (int gz = 0; gz < groups_.z; ++gz)
+    for (int gy = 0; gy < groups_.y; ++gy)
+      for (int gx = 0; gx < groups_.x; ++gx, next += 2) {
+        float low = std::numeric_limits<float>::infinity(), high = -low;
+        for (int z = first(gz); z <= last(gz, volume_.layout.interior.z); ++z)
+          for (int y = first(gy); y <= last(gy, volume_.layout.interior.y); ++y) {
+            const float* row = values.data() + (static_cast<std::ptrdiff_t>(z) * edge.y + y) * edge.x;
+            for (int x = first(gx); x <= last(gx, volume_.layout.interior.x); ++x) {
+              low = std::min(low, row[x]);
+              high = std::max(high, row[x]);
+            }
+          }
+        next[0] = low;
+        next[1] = high;
+      }
+}
+
+void BrickVoxels::activate(VoxelBrick& brick, const MediumTable& table, bool culling) const {
+  const auto count =
+      static_cast<std::size_t>(groups_.x) * static_cast<std::size_t>(groups_.y) * static_cast<std::size_t>(groups_.z);
+  brick.active.assign(count, 1);
+  if (!culling || !brick.ranges) return;
+  for (std::size_t i = 0; i < count; ++i)
+    brick.active[i] = !table.isTransparent({brick.ranges[2 * i], brick.ranges[2 * i + 1]}, brick.gradient);
+}
+
+std::uint64_t BrickVoxels::bytes() const {
+  const std::uint64_t voxels = volume_.layout.voxels();
+  std::uint64_t sum = 0;
+  for (const auto& brick : bricks_) {
+    if (brick->voxels) sum += voxels * bytesOf(code_);
+    if (brick->gradients) sum += voxels * sizeof(float);
+    if (brick->light) sum += voxels * sizeof(std::uint16_t);
+    sum += brick->active.size() * (1 + (brick->ranges ? 2 * sizeof(float) : 0));
+  }
+  return sum;
+}
+
+}  // namespace umbrick

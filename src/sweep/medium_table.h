@@ -1,0 +1,66 @@
+// The transfer function as the CPU's renderers integrate it: its medium and the integral of that at equal steps.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "umbrick/core/range.h"
+#include "umbrick/optics/transfer_function.h"
+
+namespace umbrick {
+
+/// A 1D function at whole steps t of the value, and the integral over t from step 0 on. Where the value runs linearly
+/// from step a to step b, the mean medium is (integral(b) - integral(a)) / (b - a), so that no peak in between is
+/// missed. Integrals are whole numbers of 31 bits, since the difference of two floats would keep only 24 bits of the
+/// sum. A 2D function has points alone, on a lattice of steps of value and gradient.
+///
+/// Extinction is bounded by what is opaque over any segment, which keeps those bits for what is not.
+class MediumTable {
+ public:
+  /// @param exact     a value that is met by a step to the last bit, if it lies within the function: that of empty
+  /// space
+  /// @param most      largest sigma_t that makes a difference, 1/world unit
+  MediumTable(const TransferFunction& transfer, double exact, double most);
+
+  bool is2d() const { return gradientSteps_ > 0; }
+  /// The value of a voxel in steps: (value - origin()) * perUnit() + first().
+  double origin() const { return origin_; }
+  double perUnit() const { return perUnit_; }
+  double first() const { return first_; }
+  double stepsOf(double value) const { return (value - origin_) * perUnit_ + first_; }
+  double gradientPerUnit() const { return gradientPerUnit_; }
+  double gradientStepsOf(double gradient) const { return (gradient - gradientOrigin_) * gradientPerUnit_; }
+
+  /// Steps run from 0 to steps(); beyond, the function is constant.
+  int steps() const { return steps_; }
+  int gradientSteps() const { return gradientSteps_; }
+  /// sigma_t, then sigma_s of red, green and blue, 1/world unit, of each step: 4 (steps() + 1) numbers; of a 2D
+  /// function for each step of the gradient, value fastest.
+  const float* points() const { return points_.data(); }
+  /// The integrals of the same four from step 0 on, in units of sumUnit(); none of a 2D function.
+  const std::int32_t* sums() const { return sums_.data(); }
+  float sumUnit() const { return sumUnit_; }
+
+  /// Tells whether the medium is empty for all values between two, and for all gradients between two.
+  bool isTransparent(const Range& value, const Range& gradient) const;
+
+ private:
+  void fill1d(const TransferFunction& transfer, double most);
+  void fill2d(const TransferFunction& transfer, double most);
+  /// Where counts_ has the number of points with medium below a step of the value and one of the gradient.
+  std::size_t countAt(int value, int gradient) const {
+    return static_cast<std::size_t>(gradient) * static_cast<std::size_t>(steps_ + 2) + static_cast<std::size_t>(value);
+  }
+
+  double origin_ = 0, perUnit_ = 1, first_ = 0, gradientOrigin_ = 0, gradientPerUnit_ = 1;
+  int steps_ = 0, gradientSteps_ = 0;
+  float sumUnit_ = 1;
+  std::vector<float> points_;
+  std::vector<std::int32_t> sums_;
+  /// Of a 1D function: how many of the steps and of the ways behind them, in turn, have medium before each. Of a 2D
+  /// function a table of sums, see countAt().
+  std::vector<std::int64_t> counts_;
+};
+
+}  // namespace umbrick

@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sweep/row_kernels.h"
+
+// Highway compiles what lies between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each set of instructions, by
+// including this file again and again. Sets that give little over the next lower one are left out.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sweep/row_kernels.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace umbrick::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Lanes = hn::CappedTag<float, kRayGroup>;
+using Numbers = hn::Rebind<std::int32_t, Lanes>;
+using Floats = hn::Vec<Lanes>;
+using Ints = hn::Vec<Numbers>;
+
+// Loads codes of voxels that lie side by side as floats.
+HWY_INLINE Floats loadCodes(Lanes d, const std::uint8_t* from) {
+  const hn::Rebind<std::uint8_t, Lanes> narrow;
+  return hn::ConvertTo(d, hn::PromoteTo(Numbers(), hn::LoadU(narrow, from)));
+}
+HWY_INLINE Floats loadCodes(Lanes d, const std::uint16_t* from) {
+  const hn::Rebind<std::uint16_t, Lanes> narrow;
+  return hn::ConvertTo(d, hn::PromoteTo(Numbers(), hn::LoadU(narrow, from)));
+}
+HWY_INLINE Floats loadCodes(Lanes d, const float* from) { return hn::LoadU(d, from); }
+
+// As a + share (b - a): equal voxels give their value to the last bit.
+HWY_INLINE Floats between(Floats a, Floats b, Floats share) { return hn::MulAdd(share, hn::Sub(b, a), a); }
+
+template <class Code>
+void blend(const VoxelRows& rows, int count, float* out) {
+  const Lanes d;
+  const auto n = static_cast<int>(hn::Lanes(d));
+  const auto* const a = static_cast<const Code*>(rows.rows[0]);
+  const auto* const b = static_cast<const Code*>(rows.rows[1]);
+  const auto* const c = static_cast<const Code*>(rows.rows[2]);
+  const auto* const e = static_cast<const Code*>(rows.rows[3]);
+  if (rows.stride != 1) {
+    for (int i = 0; i < count; ++i) {
+      const std::ptrdiff_t at = i * rows.stride;
+      float value = static_cast<float>(a[at]) + rows.v * (static_cast<float>(b[at]) - static_cast<float>(a[at]));
+      if (rows.n > 0) {
+        const float next = static_cast<float>(c[at]) + rows.v * (static_cast<float>(e[at]) - static_cast<float>(c[at]));
+        value += rows.n * (next - value);
+      }
+      out[i] = (value - rows.bias) * rows.factor + rows.first;
+    }
+    return;
+  }
+  const Floats v = hn::Set(d, rows.v), depth = hn::Set(d, rows.n), bias = hn::Set(d, rows.bias),
+               factor = hn::Set(d, rows.factor), first = hn::Set(d, rows.first);
+  const auto value = [&](int i) HWY_ATTR {
+    Floats result = between(loadCodes(d, a + i), loadCodes(d, b + i), v);
+    if (rows.n > 0) result = between(result, between(loadCodes(d, c + i), loadCodes(d, e + i), v), depth);
+    return hn::MulAdd(hn::Sub(result, bias), factor, first);
+  };
+  // Rows end with bytes that may be read, and so do buffers with numbers that may be written.
+  for (int i = 0; i < count; i += n) hn::StoreU(value(i), d, out + i);
+}
+
+void blendRowsOf(VoxelCode code, const VoxelRows& rows, int count, float* out) {
+  if (code == VoxelCode::u8) blend<std::uint8_t>(rows, count, out);
+  if (code == VoxelCode::u16) blend<std::uint16_t>(rows, count, out);
+  if (code == VoxelCode::f32) blend<float>(rows, count, out);
+}
+
+// Looks up numbers of a row, which are at most 2 lanes of it apart, by permutations of registers.
+HWY_INLINE Floats lookUp(Lanes d, Floats low, Floats high, Ints index) {
+  const Numbers di;
+  const Ints last = hn::Set(di, static_cast<std::int32_t>(hn::Lanes(d)) - 1);
+  const auto lanes = hn::IndicesFromVec(d, hn::And(index, last));
+  return hn::IfThenElse(hn::RebindMask(d, hn::Gt(index, last)), hn::TableLookupLanes(high, lanes),
+                        hn::TableLookupLanes(low, lanes));
+}
+
+void sampleRowsOf(const RowPlaces& places, int first, int count, int length, int fields, const float* const* rows,
+                  float* const* out) {
+  const Lanes d;
+  const Numbers di;
+  const auto n = static_cast<int>(hn::Lanes(d));
+  const Floats steps = hn::Mul(hn::ConvertTo(d, hn::Iota(di, 0)), hn::Set(d, static_cast<float>(places.spacing)));
+  const bool near = n >= 8 && places.spacing * (n - 1) + 2 < 2 * n;
+  for (int i = first; i < first + count; i += n) {
+    const double x = places.x0 + i * places.spacing;
+    const double whole = std::floor(x);
+    // Places beyond the row's ends get its end.
+    const double begin = whole - static_cast<double>(places.begin);
+    const Floats place = hn::Add(steps, hn::Set(d, static_cast<float>(x - whole)));
+    Ints index = hn::ConvertTo(di, place);
+    const Floats share = hn::Sub(place, hn::ConvertTo(d, index));
+    if (near && begin >= 0 && begin + 2 * n <= length + kRowPadding) {
+      const auto at = static_cast<std::ptrdiff_t>(begin);
+      const Ints next = hn::Add(index, hn::Set(di, 1));
+      for (int f = 0; f < fields; ++f) {
+        const Floats low = hn::LoadU(d, rows[f] + at), high = hn::LoadU(d, rows[f] + at + n);
+        hn::StoreU(between(lookUp(d, low, high, index), lookUp(d, low, high, next), share), d, out[f] + i);
+      }
+      continue;
+    }
+    const double bounded = std::min(std::max(begin, -1e9), 1e9);
+    index = hn::Add(index, hn::Set(di, static_cast<std::int32_t>(bounded)));
+    index = hn::Min(hn::Max(index, hn::Zero(di)), hn::Set(di, std::max(length - 2, 0)));
+    for (int f = 0; f < fields; ++f)
+      hn::StoreU(between(hn::GatherIndex(d, rows[f], index), hn::GatherIndex(d, rows[f] + 1, index), share), d,
+                 out[f] + i);
+  }
+}
+
+// exp(-x) for x >= 0, within 3e-7 of it.
+HWY_INLINE Floats expNegative(Lanes d, Floats x) {
+  const Numbers di;
+  const Floats y = hn::Mul(hn::Min(x, hn::Set(d, 80.0f)), hn::Set(d, -1.44269504f));
+  const Floats whole = hn::Round(y);
+  const Floats f = hn::Mul(hn::Sub(y, whole), hn::Set(d, 0.69314718f));
+  Floats p = hn::Set(d, 1.0f / 720);
+  p = hn::MulAdd(p, f, hn::Set(d, 1.0f / 120));
+  p = hn::MulAdd(p, f, hn::Set(d, 1.0f / 24));
+  p = hn::MulAdd(p, f, hn::Set(d, 1.0f / 6));
+  p = hn::MulAdd(p, f, hn::Set(d, 0.5f));
+  p = hn::MulAdd(p, f, hn::Set(d, 1.0f));
+  p = hn::MulAdd(p, f, hn::Set(d, 1.0f));
+  const Ints exponent = hn::ShiftLeft<23>(hn::Add(hn::ConvertTo(di, whole), hn::Set(di, 127)));
+  return hn::Mul(p, hn::BitCast(d, exponent));
+}
+
+// (1 - exp(-x)) / x without cancellation, as in shaders/optics/slab.glsl.
+HWY_INLINE Floats slabFactorOf(Lanes d, Floats x) {
+  Floats p = hn::Set(d, 1.0f / 5040);
+  p = hn::MulAdd(p, x, hn::Set(d, -1.0f / 720));
+  p = hn::MulAdd(p, x, hn::Set(d, 1.0f / 120));
+  p = hn::MulAdd(p, x, hn::Set(d, -1.0f / 24));
+  p = hn::MulAdd(p, x, hn::Set(d, 1.0f / 6));
+  p = hn::MulAdd(p, x, hn::Set(d, -0.5f));
+  p = hn::MulAdd(p, x, hn::Set(d, 1.0f));
+  const Floats one = hn::Set(d, 1.0f), exact = hn::Div(hn::Sub(one, expNegative(d, x)), hn::Max(x, hn::Set(d, 0.5f)));
+  return hn::IfThenElse(hn::Lt(x, hn::Set(d, 0.5f)), p, exact);
+}
+
+// The medium of a part of a ray: sigma_t, and sigma_s by colour.
+struct MeanMedium {
+  Floats sigma_t, red, green, blue;
+};
+
+// Means between two values that are whole steps.
+class LinearMedium {
+ public:
+  explicit LinearMedium(const MediumTable& table)
+      : points_(table.points()), sums_(table.sums()), steps_(table.steps()), unit_(table.sumUnit()) {}
+
+  struct Part {
+    Ints low, high;  // entries
+    hn::Mask<Lanes> single;
+    Floats perStep;       // 1 / steps between them, times the unit of the sums
+    Floats below, above;  // shares that lie outside of the table
+  };
+
+  HWY_INLINE Part part(Lanes d, Floats from, Floats to) const {
+    const Numbers di;
+    const Floats last = hn::Set(d, static_cast<float>(steps_)), zero = hn::Zero(d);
+    const Floats low = hn::Min(from, to), high = hn::Max(from, to), span = hn::Sub(high, low);
+    const Floats lowIn = hn::Min(hn::Max(low, zero), last), highIn = hn::Min(hn::Max(high, zero), last);
+    const Floats share = hn::Div(hn::Set(d, 1.0f), hn::Max(span, hn::Set(d, 1.0f)));
+    Part part;
+    part.low = hn::ConvertTo(di, lowIn);
+    part.high = hn::ConvertTo(di, highIn);
+    part.single = hn::Lt(span, hn::Set(d, 0.5f));
+    part.perStep = hn::Mul(share, hn::Set(d, unit_));
+    part.below = hn::Mul(share, hn::Sub(hn::Min(high, zero), hn::Min(low, zero)));
+    part.above = hn::Mul(share, hn::Sub(hn::Max(high, last), hn::Max(low, last)));
+    return part;
+  }
+
+  HWY_INLINE Floats mean(Lanes d, const Part& part, int c) const {
+    const Numbers di;
+    const Ints low = hn::ShiftLeft<2>(part.low), high = hn::ShiftLeft<2>(part.high);
+    const Ints sum = hn::Sub(hn::GatherIndex(di, sums_ + c, high), hn::GatherIndex(di, sums_ + c, low));
+    Floats mean = hn::Mul(hn::ConvertTo(d, sum), part.perStep);
+    mean = hn::MulAdd(part.below, hn::Set(d, points_[c]), mean);
+    mean = hn::MulAdd(part.above, hn::Set(d, points_[4 * steps_ + c]), mean);
+    if (!hn::AllFalse(d, part.single)) mean = hn::IfThenElse(part.single, hn::GatherIndex(d, points_ + c, low), mean);
+    return mean;
+  }
+
+ private:
+  const float* points_;
+  const std::int32_t* sums_;
+  int steps_;
+  float unit_;
+};
+
+// The light that arrives at the middle of a part, by channel.
+struct Arriving {
+  Floats red, green, blue, power;
+};
+
+class Accumulator {
+ public:
+  Accumulator(const RowRays& rays, const RowSegment& segment, int at) : rays_(rays), at_(at) {
+    const Lanes d;
+    opacity_ = hn::LoadU(d, rays.opacity + at);
+    red_ = hn::LoadU(d, rays.red + at);
+    green_ = hn::LoadU(d, rays.green + at);
+    blue_ = hn::LoadU(d, rays.blue + at);
+    seen_ = depth_ = middle_ = hn::Zero(d);
+    if (rays.seen) {
+      seen_ = hn::LoadU(d, rays.seen + at);
+      depth_ = hn::LoadU(d, rays.depth + at);
+      middle_ = hn::Set(d, 0.5f * (segment.from + segment.to));
+    }
+  }
+
+  // sigma_s times the factor of the slab is what a ray of this length scatters, of light 1.
+  HWY_INLINE void add(const MeanMedium& medium, Floats tau, Floats length, const Arriving& light) {
+    const Lanes d;
+    const Floats factor = slabFactorOf(d, tau), through = hn::Sub(hn::Set(d, 1.0f), opacity_);
+    const Floats scattered = hn::Mul(hn::Mul(factor, length), through);
+    const Floats gained = hn::Mul(hn::Mul(factor, tau), through);
+    red_ = hn::MulAdd(hn::Mul(scattered, light.red), medium.red, red_);
+    green_ = hn::MulAdd(hn::Mul(scattered, light.green), medium.green, green_);
+    blue_ = hn::MulAdd(hn::Mul(scattered, light.blue), medium.blue, blue_);
+    opacity_ = hn::Add(opacity_, gained);
+    if (rays_.seen) {
+      seen_ = hn::MulAdd(gained, light.power, seen_);
+      depth_ = hn::MulAdd(gained, middle_, depth_);
+    }
+  }
+
+  HWY_INLINE void store() const {
+    const Lanes d;
+    hn::StoreU(opacity_, d, rays_.opacity + at_);
+    hn::StoreU(red_, d, rays_.red + at_);
+    hn::StoreU(green_, d, rays_.green + at_);
+    hn::StoreU(blue_, d, rays_.blue + at_);
+    if (rays_.seen) {
+      hn::StoreU(seen_, d, rays_.seen + at_);
+      hn::StoreU(depth_, d, rays_.depth + at_);
+    }
+  }
+
+ private:
+  const RowRays& rays_;
+  int at_;
+  Floats opacity_, red_, green_, blue_, seen_, depth_, middle_;
+};
+
+HWY_INLINE Arriving arrivingAt(Lanes d, const RowSegment& segment, const float* const* front, const float* const* back,
+                               int at, Floats place) {
+  const Floats one = hn::Set(d, 1.0f);
+  if (segment.lights == 0) return {one, one, one, one};
+  const auto light = [&](int c) HWY_ATTR {
+    return between(hn::LoadU(d, front[2 + c] + at), hn::LoadU(d, back[2 + c] + at), place);
+  };
+  const Floats first = light(0);
+  if (segment.lights == 1) return {first, first, first, first};
+  const Floats second = light(1), third = light(2);
+  Floats power = hn::Mul(first, hn::Set(d, segment.power[0]));
+  power = hn::MulAdd(second, hn::Set(d, segment.power[1]), power);
+  power = hn::MulAdd(third, hn::Set(d, segment.power[2]), power);
+  return {first, second, third, power};
+}
+
+void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const RowRays& rays, int first, int count,
+                     const float* const* front, const float* const* back) {
+  const Lanes d;
+  const Numbers di;
+  const auto n = static_cast<int>(hn::Lanes(d));
+  const LinearMedium linear(table);
+  const bool is2d = table.is2d();
+  const float whole = segment.to - segment.from;
+  const Floats half = hn::Set(d, 0.5f), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const Floats far = hn::Set(d, 1e6f);  // beyond all tables, where single precision still knows whole numbers
+  for (int group = first; group < first + count; group += kRayGroup) {
+    for (int at = group; at < group + kRayGroup; at += n) {
+      Floats from = hn::LoadU(d, front[0] + at), to = hn::LoadU(d, back[0] + at);
+      Floats length = hn::Mul(hn::LoadU(d, rays.length + at), hn::Set(d, whole));
+      Floats begin = zero, end = one;  // the part of the segment that is left
+      if (segment.clipped) {
+        const Floats start = hn::Set(d, segment.from), per = hn::Set(d, 1 / whole);
+        begin = hn::Min(hn::Max(hn::Mul(hn::Sub(hn::LoadU(d, rays.enter + at), start), per), zero), one);
+        end = hn::Min(hn::Max(hn::Mul(hn::Sub(hn::LoadU(d, rays.leave + at), start), per), begin), one);
+        const Floats change = hn::Sub(to, from);
+        to = hn::MulAdd(end, change, from);
+        from = hn::MulAdd(begin, change, from);
+        length = hn::Mul(length, hn::Sub(end, begin));
+      }
+      const Floats middle = hn::Mul(half, hn::Add(begin, end));
+      from = hn::Max(hn::Min(from, far), hn::Neg(far));
+      to = hn::Max(hn::Min(to, far), hn::Neg(far));
+      if (segment.midpoint) from = to = hn::Mul(half, hn::Add(from, to));
+      if (is2d) {
+        // The medium at the middles of two halves.
+        const Floats g0 = hn::LoadU(d, front[1] + at), g1 = hn::LoadU(d, back[1] + at);
+        Accumulator sum(rays, segment, at);
+        const Floats part = hn::Mul(half, length);
+        for (const float share : {0.25f, 0.75f}) {
+          const Floats place = between(begin, end, hn::Set(d, share));
+          const Floats value = hn::Round(between(from, to, hn::Set(d, segment.midpoint ? 0.5f : share)));
+          const Floats gradient = hn::Round(between(g0, g1, segment.midpoint ? middle : place));
+          const Ints column =
+              hn::ConvertTo(di, hn::Min(hn::Max(value, zero), hn::Set(d, static_cast<float>(table.steps()))));
+          const Ints row = hn::ConvertTo(
+              di, hn::Min(hn::Max(gradient, zero), hn::Set(d, static_cast<float>(table.gradientSteps()))));
+          const Ints entry = hn::ShiftLeft<2>(hn::Add(hn::Mul(row, hn::Set(di, table.steps() + 1)), column));
+          const float* points = table.points();
+          const MeanMedium medium{hn::GatherIndex(d, points, entry), hn::GatherIndex(d, points + 1, entry),
+                                  hn::GatherIndex(d, points + 2, entry), hn::GatherIndex(d, points + 3, entry)};
+          sum.add(medium, hn::Mul(medium.sigma_t, part), part, arrivingAt(d, segment, front, back, at, place));
+        }
+        sum.store();
+        continue;
+      }
+      from = hn::Round(from);
+      to = hn::Round(to);
+      const auto all = linear.part(d, from, to);
+      const Floats sigma_t = linear.mean(d, all, 0), tau = hn::Mul(sigma_t, length);
+      if (hn::AllFalse(d, hn::Gt(tau, zero))) continue;
+      Accumulator sum(rays, segment, at);
+      // Where a segment is thick, its front hides its back: it is taken in parts, between which that is exact.
+      const auto thick = hn::And(hn::Gt(tau, hn::Set(d, 0.2f)), hn::Gt(hn::Abs(hn::Sub(to, from)), one));
+      if (hn::AllFalse(d, thick)) {
+        const MeanMedium medium{sigma_t, linear.mean(d, all, 1), linear.mean(d, all, 2), linear.mean(d, all, 3)};
+        sum.add(medium, tau, length, arrivingAt(d, segment, front, back, at, middle));
+      } else {
+        // Rays that are not thick get all in the first part, so that none depends on its neighbours.
+        constexpr int kParts = 4;
+        Floats before = from;
+        for (int i = 0; i < kParts; ++i) {
+          const Floats endShare = hn::IfThenElse(thick, hn::Set(d, (i + 1.0f) / kParts), one);
+          const Floats next = hn::Round(between(from, to, endShare));
+          const Floats part = hn::Mul(hn::IfThenElse(thick, hn::Set(d, 1.0f / kParts), i == 0 ? one : zero), length);
+          const auto piece = linear.part(d, before, next);
+          const MeanMedium medium{linear.mean(d, piece, 0), linear.mean(d, piece, 1), linear.mean(d, piece, 2),
+                                  linear.mean(d, piece, 3)};
+          const Floats place = between(begin, end, hn::IfThenElse(thick, hn::Set(d, (i + 0.5f) / kParts), half));
+          sum.add(medium, hn::Mul(medium.sigma_t, part), part, arrivingAt(d, segment, front, back, at, place));
+          before = next;
+        }
+      }
+      sum.store();
+    }
+    bool full = segment.saturation > 0;
+    for (int at = group; full && at < group + kRayGroup; at += n)
+      full = hn::AllTrue(d, hn::Ge(hn::LoadU(d, rays.opacity + at), hn::Set(d, 1 - segment.saturation)));
+    if (full) rays.full[group / kRayGroup] = 1;
+  }
+}
+
+const char* instructions() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace
+}  // namespace umbrick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace umbrick {
+HWY_EXPORT(blendRowsOf);
+HWY_EXPORT(sampleRowsOf);
+HWY_EXPORT(integrateRowsOf);
+HWY_EXPORT(instructions);
+
+void blendRows(VoxelCode code, const VoxelRows& rows, int count, float* out) {
+  HWY_DYNAMIC_DISPATCH(blendRowsOf)(code, rows, count, out);
+}
+
+void sampleRows(const RowPlaces& places, int first, int count, int length, int fields, const float* const* rows,
+                float* const* out) {
+  HWY_DYNAMIC_DISPATCH(sampleRowsOf)(places, first, count, length, fields, rows, out);
+}
+
+void integrateRows(const MediumTable& table, const RowSegment& segment, const RowRays& rays, int first, int count,
+                   const float* const* front, const float* const* back) {
+  HWY_DYNAMIC_DISPATCH(integrateRowsOf)(table, segment, rays, first, count, front, back);
+}
+
+const char* rowInstructions() { return HWY_DYNAMIC_DISPATCH(instructions)(); }
+
+void useBaselineInstructions(bool baseline) {
+  hwy::SetSupportedTargetsForTest(baseline ? HWY_STATIC_TARGET : 0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace umbrick
+#endif
