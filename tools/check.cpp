@@ -177,7 +177,8 @@ Command addCheck(CLI::App& app) {
   addBackendOption(*sub, command->backend);
   // The check decides what is compared: emission and cone, with and without bricks and culling. So these
   // are no options.
-  for (const char* option : {"--model", "--unbricked", "--no-culling"}) sub->remove_option(sub->get_option(option));
+  for (const char* option : {"--model", "--unbricked", "--no-culling", "--technique"})
+    sub->remove_option(sub->get_option(option));
   sub->get_option("--size")->description("of the pictures, pixels [" + std::to_string(kPictureEdge) + "x" +
                                          std::to_string(kPictureEdge) + "]");
   const std::string group = "Check";

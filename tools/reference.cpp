@@ -140,7 +140,7 @@ Command addReference(CLI::App& app) {
   ReferenceOptions& o = command->reference;
   const std::string group = "Integration";
   // A reference has directions of its own, not the few that a scene gives to the slices.
-  sub->remove_option(sub->get_option("--directions"));
+  for (const char* option : {"--directions", "--technique"}) sub->remove_option(sub->get_option(option));
   sub->add_option("--directions", o.directions, "quadrature, K: about so many over the cone, the sphere or the lights")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str()

@@ -44,6 +44,14 @@ struct RenderCommand {
   bool strict = false;
 };
 
+// Says which options mean nothing to techniques on the CPU.
+void tellUnused(const RenderCommand& command) {
+  for (const char* option : {"eye-bits", "texel-format"})
+    if (command.scene->has(option))
+      std::cerr << command.scene->nameOf(option) << " has no effect on the CPU: it is of slices (--backend osmesa)\n";
+  if (command.timePasses) std::cerr << "--time-passes has no effect on the CPU: it is of slices (--backend osmesa)\n";
+}
+
 // The volume of a scene, cut into bricks for it.
 struct LoadedScene {
   ResolvedScene scene;
@@ -53,25 +61,29 @@ struct LoadedScene {
   std::unique_ptr<Bricks> bricks = {};
 };
 
-LoadedScene loadScene(const OpenedScene& opened, bool refined) {
+LoadedScene loadScene(const OpenedScene& opened, const Engine& engine, bool refined) {
   const Volume& volume = *opened.volume;
   LoadedScene loaded{.scene = volume.resolve(opened.scene),
                      .loadMs = volume.loadMs(),
                      .volume = opened.volume,
                      .units = unitsOf(volume.grid())};
+  loaded.scene.technique = engine.technique;
   const Stopwatch brick;
-  loaded.bricks = refined ? volume.cutForRefinement(loaded.scene) : volume.cut(loaded.scene);
+  loaded.bricks = !engine.context ? volume.cutForCpu(loaded.scene)
+                  : refined       ? volume.cutForRefinement(loaded.scene)
+                                  : volume.cut(loaded.scene);
   loaded.brickMs = brick.elapsedMs();
   warnOfNonFinite(opened.scene, loaded.bricks->nonFiniteVoxels);
   return loaded;
 }
 
 nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& picture,
-                                  const std::vector<double>& framesMs, const GlContext& context, double writeMs,
+                                  const std::vector<double>& framesMs, const std::string& engine, double writeMs,
                                   bool timePasses) {
   const RenderStats& stats = picture.stats;
   nlohmann::ordered_json json;
-  json["renderer"] = context.description();
+  json["renderer"] = engine;
+  json["technique"] = techniqueName(loaded.scene.technique);
   json["size"] = {loaded.scene.camera.width, loaded.scene.camera.height};
   json["time_ms"] = {{"load", loaded.loadMs},    {"brick", loaded.brickMs}, {"geometry", stats.geometryMs},
                      {"upload", stats.uploadMs}, {"sweep", stats.sweepMs},  {"read", stats.readMs},
@@ -122,7 +134,7 @@ nlohmann::ordered_json printPasses(const ProgressivePicture& picture, std::uint6
 }
 
 void writePicture(const PictureOutput& output, const Picture& picture, const ResolvedScene& scene,
-                  const GlContext& context, const std::string& progressive = {},
+                  const std::string& engine, const std::string& progressive = {},
                   PictureState state = PictureState::done) {
   std::vector<ImageLayer> layers{{"", picture.colour}};
   if (output.layers) {
@@ -130,7 +142,7 @@ void writePicture(const PictureOutput& output, const Picture& picture, const Res
     layers.push_back({"Z", picture.depth});
   }
   std::map<std::string, std::string> metadata{{"umbrick.scene", printScene(scene)},
-                                              {"umbrick.renderer", context.description()},
+                                              {"umbrick.renderer", engine},
                                               {"umbrick.filter", pixelFilter(scene.sampling.pixelSamples)},
                                               {"umbrick.version", UMBRICK_VERSION}};
   if (!progressive.empty()) metadata["umbrick.progressive"] = progressive;
@@ -199,8 +211,9 @@ ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& vo
       watch.kept = picture;
       watch.bar.clear();
       if (first || written.elapsedMs() > kWriteEveryMs) {
-        writePicture(*command.output, picture.picture, recordedScene(picture, progressive), volume.context(),
-                     printPasses(picture, command.seed).dump(), PictureState::unfinished);
+        writePicture(*command.output, picture.picture, recordedScene(picture, progressive),
+                     volume.context().description(), printPasses(picture, command.seed).dump(),
+                     PictureState::unfinished);
         written = Stopwatch();
         first = false;
       }
@@ -252,10 +265,14 @@ int render(const RenderCommand& command) {
   const std::string nothing = "interrupted; nothing was written";
   watch.bar.begin("loading " + scene.volume.file.filename().string());
   const OpenedScene opened = openScene(*command.scene, scene, showShare(watch.bar, watch.stop, nothing));
-  LoadedScene loaded = loadScene(opened, progressive);
+  const Engine engine = chooseEngine(opened.scene, parseName(kEngineKinds, command.backend, "--backend"), progressive);
+  if (!engine.context) tellUnused(command);
+  LoadedScene loaded = loadScene(opened, engine, progressive);
   prepareLook(*command.output, command.scene->backdrop, loaded.scene, loaded.units);
-  const auto context = createContext(command.backend);
-  ResidentVolume volume(*context, *loaded.bricks, atlasOptions(loaded.scene, *loaded.bricks));
+  std::unique_ptr<ResidentVolume> volume;
+  if (engine.context)
+    volume =
+        std::make_unique<ResidentVolume>(*engine.context, *loaded.bricks, atlasOptions(loaded.scene, *loaded.bricks));
   RenderOptions options;
   options.visibilityAndDepth = output.layers;
   options.countFragments = !output.stats.empty();
@@ -272,7 +289,7 @@ int render(const RenderCommand& command) {
   if (progressive) {
     begin();
     watch.stop.keepParts();
-    passes = renderPasses(command, volume, loaded.scene, options, watch, framesMs);
+    passes = renderPasses(command, *volume, loaded.scene, options, watch, framesMs);
     picture = passes->picture;
     loaded.scene = passes->scene;
   } else {
@@ -284,7 +301,8 @@ int render(const RenderCommand& command) {
       last = share;
       show((drawn + share) / (command.frames * loaded.scene.sampling.pixelSamples));
     };
-    const std::unique_ptr<Renderer> renderer = makeRenderer(volume, loaded.scene, options);
+    const std::unique_ptr<Renderer> renderer =
+        volume ? makeRenderer(*volume, loaded.scene, options) : makeRenderer(*loaded.bricks, loaded.scene, options);
     begin();
     for (int i = 0; i < command.frames; ++i) {
       const Stopwatch frame;
@@ -300,11 +318,11 @@ int render(const RenderCommand& command) {
     std::cerr << "texels of " << loaded.scene.bricks.format << " are off by up to " << picture.stats.formatError
               << ", in units of the grid\n";
   const Stopwatch write;
-  writePicture(output, picture, loaded.scene, *context,
+  writePicture(output, picture, loaded.scene, engine.description,
                passes ? printPasses(*passes, command.seed).dump() : std::string());
   printOutputs(output);
   if (!output.stats.empty()) {
-    auto stats = printStats(loaded, picture, framesMs, *context, write.elapsedMs(), command.timePasses);
+    auto stats = printStats(loaded, picture, framesMs, engine.description, write.elapsedMs(), command.timePasses);
     if (passes) stats["progressive"] = printPasses(*passes, command.seed);
     writeTextFile(output.stats, stats.dump(2) + "\n");
   }
@@ -324,7 +342,7 @@ Command addRender(CLI::App& app) {
   command->scene = addSceneOptions(*sub);
   command->output =
       addPictureOutput(*sub, "half", "V (visibility weighted by opacity) and Z (mean depth, world units)");
-  addBackendOption(*sub, command->backend);
+  addEngineOption(*sub, command->backend);
   sub->add_option("--frames", command->frames, "render so many times and time each; the last is written")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str()

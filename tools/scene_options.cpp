@@ -9,6 +9,7 @@
 #include "command.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/printable.h"
+#include "umbrick/render/engine.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/scene_fields.h"
 
@@ -400,6 +401,16 @@ void addStrictOption(CLI::App& command, bool& strict) {
 void addBackendOption(CLI::App& command, std::string& backend) {
   command.add_option("--backend", backend, "OpenGL: auto (OSMesa, else EGL), osmesa or egl")
       ->check(CLI::IsMember(listNames(kBackends)))
+      ->capture_default_str();
+}
+
+void addEngineOption(CLI::App& command, std::string& engine) {
+  command
+      .add_option(
+          "--backend", engine,
+          "what draws: cpu (SIMD, by rays or shear-warp), osmesa or egl (OpenGL, by slices), or auto: a GPU through "
+          "EGL where there is one, else cpu, or OpenGL in software for what cpu cannot do")
+      ->check(CLI::IsMember(listNames(kEngineKinds)))
       ->capture_default_str();
 }
 

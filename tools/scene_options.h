@@ -50,8 +50,10 @@ void addStrictOption(CLI::App& command, bool& strict);
 /// Writes the name of a background three times: an option has a fixed number of values, and a background has three
 /// numbers. @param arguments  of the command line
 std::vector<std::string> spellOutBackground(std::vector<std::string> arguments);
-/// Adds --backend, for sub-commands that draw with OpenGL.
+/// Adds --backend, for sub-commands that draw with OpenGL alone.
 void addBackendOption(CLI::App& command, std::string& backend);
+/// Adds --backend, for sub-commands that draw on the CPU, too.
+void addEngineOption(CLI::App& command, std::string& engine);
 /// Makes the context of that name.
 std::unique_ptr<GlContext> createContext(const std::string& backend);
 

@@ -102,7 +102,8 @@ int study(const StudyCommand& command) {
   checkFolder(command);
   const StudySettings settings = makeSettings(command);
   refuseBackdrop(*command.scene);
-  const Scene unopened = makeScene(*command.scene);
+  Scene unopened = makeScene(*command.scene);
+  unopened.technique = Technique::slices;            // what is studied
   planStudy(settings, unopened.occlusion.aperture);  // refuses wrong settings before a volume is loaded
   StopRequest stop;
   ProgressBar bar("loading " + command.scene->input.filename().string());
@@ -249,7 +250,7 @@ Command addStudy(CLI::App& app) {
   // What the study sweeps is no option of the scene, and errors are measured without background radiance.
   for (const char* option : {"--model", "--method", "--quality", "--theta", "--footprint", "--directions",
                              "--occlusion-scale", "--algorithm", "--passes", "--occlusion-bits", "--eye-bits",
-                             "--spacing", "--spacing-unit", "--segments", "--background"})
+                             "--spacing", "--spacing-unit", "--segments", "--background", "--technique"})
     sub->remove_option(sub->get_option(option));
   sub->get_option("--size")->description("its shape is that of the study's pictures [512x512]");
   sub->add_option("-o,--output", command->folder, "folder of the report: new, empty, or of the same study")

@@ -3,6 +3,7 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,6 +57,29 @@ struct Candidate {
   EGLDisplay display;
 };
 
+// A device that EGL lists, with its number.
+struct Device {
+  int number = 0;
+  EGLDeviceEXT device = nullptr;
+  bool software = false;
+};
+
+std::vector<Device> devicesOf(const Egl& egl) {
+  std::vector<Device> devices;
+  const auto queryDevices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(egl.getProcAddress("eglQueryDevicesEXT"));
+  const auto queryDevice =
+      reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(egl.getProcAddress("eglQueryDeviceStringEXT"));
+  if (!queryDevices || !queryDevice ||
+      !hasExtension(egl.queryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_platform_device"))
+    return devices;
+  EGLDeviceEXT found[16];
+  EGLint count = 0;
+  if (!queryDevices(16, found, &count)) count = 0;
+  for (int i = 0; i < count; ++i)
+    devices.push_back({i, found[i], hasExtension(queryDevice(found[i], EGL_EXTENSIONS), "EGL_MESA_device_software")});
+  return devices;
+}
+
 // Lists displays that need no screen, GPUs first: devices with hardware, Mesa's surfaceless platform, software devices,
 // and what the environment calls its default.
 std::vector<Candidate> candidates(const Egl& egl) {
@@ -63,19 +87,11 @@ std::vector<Candidate> candidates(const Egl& egl) {
   const char* client = egl.queryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   const auto getPlatformDisplay =
       reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.getProcAddress("eglGetPlatformDisplayEXT"));
-  const auto queryDevices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(egl.getProcAddress("eglQueryDevicesEXT"));
-  const auto queryDevice =
-      reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(egl.getProcAddress("eglQueryDeviceStringEXT"));
-  if (getPlatformDisplay && queryDevices && queryDevice && hasExtension(client, "EGL_EXT_platform_device")) {
-    EGLDeviceEXT devices[16];
-    EGLint count = 0;
-    if (!queryDevices(16, devices, &count)) count = 0;
-    for (int i = 0; i < count; ++i) {
-      const bool isSoftware = hasExtension(queryDevice(devices[i], EGL_EXTENSIONS), "EGL_MESA_device_software");
-      const EGLDisplay display = getPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr);
-      (isSoftware ? software : hardware).push_back({"device " + std::to_string(i), display});
+  if (getPlatformDisplay)
+    for (const Device& device : devicesOf(egl)) {
+      const EGLDisplay display = getPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, device.device, nullptr);
+      (device.software ? software : hardware).push_back({"device " + std::to_string(device.number), display});
     }
-  }
   std::vector<Candidate> all = hardware;
   if (getPlatformDisplay && hasExtension(client, "EGL_MESA_platform_surfaceless"))
     all.push_back({"surfaceless", getPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)});
@@ -155,6 +171,16 @@ class EglContext : public GlContext {
 };
 
 }  // namespace
+
+bool hasGpu() {
+  try {
+    const SharedLibrary library({"libEGL.so.1", "libEGL.so"});
+    const std::vector<Device> devices = devicesOf(Egl(library));
+    return std::any_of(devices.begin(), devices.end(), [](const Device& device) { return !device.software; });
+  } catch (const GlError&) {  // no EGL
+    return false;
+  }
+}
 
 std::unique_ptr<GlContext> createEglContext() { return std::make_unique<EglContext>(); }
 

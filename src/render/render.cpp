@@ -5,22 +5,29 @@
 
 namespace umbrick {
 
-VolumeView::VolumeView(const GlContext& context, const Volume& volume, const Scene& scene, const RenderOptions& options,
-                       std::string_view technique)
-    : VolumeView(context, volume, volume.resolve(scene), options, technique) {}
+VolumeView::VolumeView(const GlContext& context, const Volume& volume, const Scene& scene, const RenderOptions& options)
+    : VolumeView(context, volume, volume.resolve(scene), options) {}
+
+VolumeView::VolumeView(const Volume& volume, const Scene& scene, const RenderOptions& options)
+    : VolumeView(volume, volume.resolve(scene), options) {}
 
 VolumeView::VolumeView(const GlContext& context, const Volume& volume, const ResolvedScene& scene,
-                       const RenderOptions& options, std::string_view technique)
+                       const RenderOptions& options)
     : bricks_(volume.cut(scene)),
-      resident_(context, *bricks_, atlasOptions(scene, *bricks_)),
-      renderer_(makeRenderer(resident_, scene, options, technique)) {}
+      resident_(std::make_unique<ResidentVolume>(context, *bricks_, atlasOptions(scene, *bricks_))),
+      renderer_(makeRenderer(*resident_, scene, options)) {}
 
-Picture renderScene(const Scene& scene, const RenderOptions& options, const GlContext* context,
-                    std::string_view technique) {
+VolumeView::VolumeView(const Volume& volume, const ResolvedScene& scene, const RenderOptions& options)
+    : bricks_(volume.cutForCpu(scene)), renderer_(makeRenderer(*bricks_, scene, options)) {}
+
+Picture renderScene(const Scene& scene, const RenderOptions& options, const GlContext* context) {
   const Volume volume(scene.volume);
-  std::unique_ptr<GlContext> own;
-  if (!context) own = createGlContext();
-  return VolumeView(context ? *context : *own, volume, scene, options, technique).render();
+  if (context) return VolumeView(*context, volume, scene, options).render();
+  Scene decided = scene;
+  const Engine engine = chooseEngine(scene);
+  decided.technique = engine.technique;
+  return engine.context ? VolumeView(*engine.context, volume, decided, options).render()
+                        : VolumeView(volume, decided, options).render();
 }
 
 }  // namespace umbrick

@@ -74,6 +74,13 @@ std::unique_ptr<Bricks> Volume::cut(const ResolvedScene& scene) const {
   return cutGrid(grid_, requiredBricks(scene, indexToWorld_, worldBounds_), scene.bricks.bricked);
 }
 
+std::unique_ptr<Bricks> Volume::cutForCpu(const ResolvedScene& scene) const {
+  BrickOptions options;
+  if (scene.bricks.interior > 0) options.interior = scene.bricks.interior;
+  options.gradients = scene.transfer.is2d();
+  return cutGrid(grid_, options, scene.bricks.bricked);
+}
+
 std::unique_ptr<Bricks> Volume::cutForRefinement(const ResolvedScene& scene) const {
   const ResolvedScene coarser = coarserScene(scene);
   try {

@@ -87,6 +87,10 @@ const std::vector<SceneField>& table() {
       {"method", "method", "Light",
        "of the models cone (dos, ordinates or light-volume) and lights (ordinates or light-volume)",
        [](Scene& s) -> FieldPlace { return Choice(s.method, kMethods); }},
+      {"technique", "technique", "Sampling",
+       "how the picture is computed: slices (across the view, on OpenGL), rays (through each pixel, on the CPU), "
+       "shear-warp (rays in rows of voxels, on the CPU: quicker and coarser) or auto",
+       [](Scene& s) -> FieldPlace { return Choice(s.technique, kTechniques); }},
 
       {"light.ambient",
        "ambient",

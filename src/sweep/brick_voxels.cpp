@@ -13,6 +13,7 @@
 #include <tuple>
 
 #include "umbrick/core/error.h"
+#include "umbrick/core/memory.h"
 
 namespace umbrick {
 namespace {
@@ -46,6 +47,7 @@ void BrickVoxels::select(const MediumTable& table, bool culling, bool background
     throw InvalidArgument("bricks.budgetMiB: the voxels of " + std::to_string(held) + " visible bricks take " +
                           std::to_string((held * each >> 20) + 1) + " MiB, more than " +
                           std::to_string(mostBytes >> 20) + " MiB");
+  requireMemory("the voxels of " + std::to_string(held) + " visible bricks", static_cast<double>(held * each));
   std::map<std::tuple<int, int, int>, std::unique_ptr<VoxelBrick>> before;
   for (auto& brick : bricks_)
     // Gradients are read with the voxels.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/row_kernels.h"
 
+#include "umbrick/sweep/instructions.h"
+
 // Highway compiles what lies between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each set of instructions, by
 // including this file again and again. Sets that give little over the next lower one are left out.
 #undef HWY_TARGET_INCLUDE
@@ -378,7 +380,7 @@ void integrateRows(const MediumTable& table, const RowSegment& segment, const Ro
   HWY_DYNAMIC_DISPATCH(integrateRowsOf)(table, segment, rays, first, count, front, back);
 }
 
-const char* rowInstructions() { return HWY_DYNAMIC_DISPATCH(instructions)(); }
+std::string cpuInstructions() { return HWY_DYNAMIC_DISPATCH(instructions)(); }
 
 void useBaselineInstructions(bool baseline) {
   hwy::SetSupportedTargetsForTest(baseline ? HWY_STATIC_TARGET : 0);

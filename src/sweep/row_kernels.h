@@ -65,8 +65,6 @@ struct RowSegment {
 void integrateRows(const MediumTable& table, const RowSegment& segment, const RowRays& rays, int first, int count,
                    const float* const* front, const float* const* back);
 
-/// The name of the instructions that the loops are run with ("AVX3").
-const char* rowInstructions();
 /// For tests: do not use instructions better than the baseline of the machine's kind, or all again.
 void useBaselineInstructions(bool baseline);
 

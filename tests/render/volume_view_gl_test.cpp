@@ -327,15 +327,19 @@ TEST_CASE("One call renders what the parts render", "[render][gl]") {
   scene.camera.width = scene.camera.height = 32;
   const Image whole = renderScene(scene, {}, context.get()).colour;
   const Volume volume(scene.volume);
-  CHECK(maxDifference(whole, VolumeView(*context, volume, scene, {}, "slices").render().colour) == 0);
-  CHECK_THROWS_WITH(renderScene(scene, {}, context.get(), "splats"),
-                    "technique: expected one of slices, found 'splats'");
+  CHECK(maxDifference(whole, VolumeView(*context, volume, scene).render().colour) == 0);
+  scene.technique = Technique::shearWarp;
+  CHECK_THROWS_WITH(renderScene(scene, {}, context.get()), "technique: shear-warp does not run on OpenGL");
+  CHECK(maxDifference(renderScene(scene).colour, VolumeView(volume, scene).render().colour) == 0);
+  scene.technique = Technique::slices;
+  CHECK_THROWS_WITH(VolumeView(volume, scene), "technique: slices does not run on the CPU");
 }
 
 TEST_CASE("Techniques have names and say what they are", "[render]") {
   REQUIRE_FALSE(techniques().empty());
-  for (const Technique& technique : techniques()) {
-    CHECK_FALSE(technique.name.empty());
-    CHECK_FALSE(technique.meaning.empty());
+  for (const TechniqueTraits& traits : techniques()) {
+    CHECK_FALSE(techniqueName(traits.technique).empty());
+    CHECK_FALSE(traits.meaning.empty());
+    CHECK((traits.makeOnGl == nullptr) != (traits.makeOnCpu == nullptr));
   }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/test_grids.h"
+#include "umbrick/sweep/instructions.h"
 
 using namespace umbrick;
 
@@ -17,7 +18,7 @@ template <class Work>
 void forBothInstructions(const Work& work) {
   for (const bool baseline : {false, true}) {
     useBaselineInstructions(baseline);
-    INFO("instructions " << rowInstructions());
+    INFO("instructions " << cpuInstructions());
     work();
   }
   useBaselineInstructions(false);

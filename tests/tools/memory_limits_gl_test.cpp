@@ -48,9 +48,13 @@ TEST_CASE("Commands without OpenGL take any limit of memory in one line", "[tool
 
 TEST_CASE("Pictures take any limit of memory in one line", "[tools][memory]") {
   if (!testContext()) return;
-  checkLimits("render ball.vdb --tf ball.json --size 64x64 -o a.exr",
+  checkLimits("render ball.vdb --tf ball.json --size 64x64 --backend osmesa -o a.exr",
               {200, 300, 350, 400, 450, 500, 550, 600, 650, 700, 800, 1000});
-  checkLimits("render ball.vdb --tf ball.json --size 1500x1500 --model emission -o a.exr", {500, 650, 700, 800, 1000});
+  checkLimits("render ball.vdb --tf ball.json --size 1500x1500 --model emission --backend osmesa -o a.exr",
+              {500, 650, 700, 800, 1000});
+  for (const std::string technique : {"rays", "shear-warp"})
+    checkLimits("render ball.vdb --tf ball.json --size 900x900 --backend cpu --technique " + technique + " -o a.exr",
+                {100, 150, 200, 230, 260, 300, 350, 400, 500});
 }
 
 TEST_CASE("What would take more memory than there is, is refused before it is begun", "[tools][memory]") {

@@ -14,6 +14,7 @@
 using namespace umbrick;
 namespace fs = std::filesystem;
 using Catch::Contains;
+using Catch::StartsWith;
 
 namespace {
 
@@ -56,7 +57,8 @@ TEST_CASE("A picture can be made again from the scene in its EXR header", "[tool
   const auto stats = nlohmann::json::parse(readBytes(folder.path() / "a.json"));
   CHECK(stats["bricks"]["visible"] > 0);
   CHECK(stats["fragments_shaded"] > 0);
-  CHECK(stats["slices"] > 10);
+  CHECK(stats["technique"] == "rays");
+  CHECK_THAT(stats["renderer"], StartsWith("CPU: "));
   for (const char* stage : {"load", "brick", "geometry", "upload", "sweep", "read", "write"})
     CHECK(stats["time_ms"][stage] >= 0);
   CHECK(stats["bytes"]["peak_memory"] > 0);
@@ -88,7 +90,15 @@ TEST_CASE("Renders that fail say so in one line and leave nothing behind", "[too
   check(kSmall + "-o a.png --spacing -1", 1, "spacing: is -1, must be above 0");
   check(kSmoke + "--tf smoke --size 0x9 -o a.png", 1, "size: is 0 x 9, must be at least 1 x 1");
   check(kSmoke + "--tf smoke --size 9 -o a.png", 2, "expected WIDTHxHEIGHT");
-  check(kSmoke + "--tf smoke --azimuth 0 --grid density --size 99999x99999 -o a.png", 1, "beyond the driver's limit");
+  check(kSmoke + "--tf smoke --azimuth 0 --grid density --size 99999x99999 --backend osmesa -o a.png", 1,
+        "beyond the driver's limit");
+  check(kSmoke + "--tf smoke --azimuth 0 --grid density --size 99999x99999 --backend cpu -o a.png", 1,
+        "buffers of 99999 x 99999 pixels: needs ");
+  check(kSmall + "-o a.png --technique rays --backend osmesa", 1,
+        "rays does not run on OpenGL but on the CPU");
+  check(kSmall + "-o a.png --technique slices --backend cpu", 1,
+        "slices does not run on the CPU but on OpenGL");
+  check(kSmall + "-o a.png --model cone --method ordinates --backend cpu", 1, "ordinates is one of slices");
   check(kSmall + "-o a.png --eye 0 0 0", 2, "--eye needs --look-at");
   check(kSmall + "-o a.png --model glow", 2, "--model");
   check(kSmall + "-o a.png --no-such-option", 2, "--no-such-option");

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Unlit volume rendering, side by side: umbrick against VTK's GPU and fixed-point CPU mappers, time and error.
 
-All draw the same voxels with the same camera and the same transfer function, VTK at half-voxel sampling, umbrick at
-the slice spacings that are asked for. Errors are root mean squares over all pixels of linear premultiplied RGB (RGBA in
+All draw the same voxels with the same camera and the same transfer function, VTK at half-voxel sampling, umbrick by
+the techniques and at the spacings that are asked for; slices on OSMesa, the others on the CPU. Errors are root mean squares over all pixels of linear premultiplied RGB (RGBA in
 the second column) against a double-precision marcher at 16 steps a voxel. The renderers take turns, so that other load
 on the machine meets all of them; the first frame of each turn, which uploads, is not counted.
 VTK's pictures have 8 bits a channel, which adds about 0.001.
@@ -70,16 +70,19 @@ def run_vtk(kind, scene, frames, work):
     return stats["frames_ms"], np.load(f"{output}.npy"), stats["gl"]
 
 
-def run_umbrick(program, spacing, extra, scene, frames, work, transfer):
+def run_umbrick(program, how, extra, scene, frames, work, transfer):
     """-> frame times in ms, picture. The only place that knows umbrick's command line and statistics."""
     camera = scene["camera"]
+    technique, _, spacing = how.rpartition(":")
+    technique = technique or "slices"
     spacing, _, segments = spacing.partition("/")
-    name = f"umbrick-{spacing}-{segments or 1}"
+    name = f"umbrick-{technique}-{spacing}-{segments or 1}"
     picture, stats = work / f"{name}.exr", work / f"{name}.json"
     run([program, "render", work / "volume.vdb", "--tf", transfer, "--eye", *camera["eye"], "--look-at",
          *camera["lookAt"], "--up", *camera["up"], "--fov", camera["fov"],
          "--size", f"{camera['width']}x{camera['height']}", "--model", "emission", "--spacing", spacing,
-         "--segments", segments or 1,
+         "--segments", segments or 1, "--technique", technique,
+         "--backend", "osmesa" if technique == "slices" else "cpu",
          "--frames", frames + 1, "--exr-pixel", "float", *extra, "--stats", stats, "-o", picture])
     with open(stats) as file:
         return json.load(file)["frames_ms"][1:], exr.read_rgba(picture)
@@ -106,7 +109,8 @@ def main():
     parser.add_argument("--transfer", required=True, help="transfer function: JSON with \"points\"")
     parser.add_argument("--work", required=True, type=pathlib.Path, help="folder for what is made on the way")
     parser.add_argument("--umbrick", help="the program; without it only VTK is measured")
-    parser.add_argument("--spacing", default="0.5", help="umbrick: slice spacings, in voxels, and the segments of a slab (0.5); several: 0.5,1,2/4")
+    parser.add_argument("--spacing", default="0.5", help="umbrick: technique (slices), spacing in voxels, and the segments of "
+                        "a slab (1); several: 0.5,2/4,rays:0.5,shear-warp:1")
     parser.add_argument("--extra", default="", help="umbrick: more options, separated by spaces")
     parser.add_argument("--azimuth", type=float, default=30, help="deg (30)")
     parser.add_argument("--elevation", type=float, default=15, help="deg (15)")
@@ -136,7 +140,7 @@ def main():
     contenders = {"VTK GPU mapper": lambda: run_vtk("gpu", scene, arguments.frames, work),
                   "VTK fixed-point mapper": lambda: run_vtk("cpu", scene, arguments.frames, work)}
     for d in arguments.spacing.split(",") if arguments.umbrick else []:
-        contenders[f"umbrick, d = {d}"] = lambda d=d: run_umbrick(
+        contenders[f"umbrick, {d}"] = lambda d=d: run_umbrick(
             arguments.umbrick, d, arguments.extra.split(), scene, arguments.frames, work, arguments.transfer)
     times, pictures, gl_names = {name: [] for name in contenders}, {}, set()
     for _ in range(arguments.turns):

@@ -55,6 +55,9 @@ class GlContext {
 /// @throw GlError  no backend works: one line that says what was tried and why each failed
 std::unique_ptr<GlContext> createGlContext(Backend backend = Backend::automatic);
 
+/// Tells whether EGL finds a GPU, without making a context on it.
+bool hasGpu();
+
 /// Uses a context that somebody else made, of a window or another library: OpenGL 4.5 core, current on this thread. It
 /// is not destroyed with what this returns. Renderers set all state that they rely on and leave it as they need it: who
 /// draws besides sets his own again.

@@ -12,41 +12,42 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
-#include <string_view>
 
 #include "umbrick/gl/context.h"
-#include "umbrick/render/techniques.h"
+#include "umbrick/render/engine.h"
 #include "umbrick/render/volume.h"
 
 namespace umbrick {
 
-/// Loads the scene's volume and renders it.
-/// @param context  current; null: one is made for this picture
+/// Loads the scene's volume and renders it, where chooseEngine() says.
+/// @param context  current: it is rendered there; null: a context is made if one is needed
 /// @throw IoError, InvalidArgument, GlError
-Picture renderScene(const Scene& scene, const RenderOptions& options = {}, const GlContext* context = nullptr,
-                    std::string_view technique = {});
+Picture renderScene(const Scene& scene, const RenderOptions& options = {}, const GlContext* context = nullptr);
 
 /// The parts that are needed to look at a volume, in one object: bricks, their textures and a renderer.
 class VolumeView {
  public:
-  /// Cuts the volume for the scene and makes it resident.
+  /// Cuts the volume for the scene and makes it resident on OpenGL.
   /// @param context,volume  outlive this; the context is current
   /// @throw InvalidArgument, IoError, GlError
-  VolumeView(const GlContext& context, const Volume& volume, const Scene& scene, const RenderOptions& options = {},
-             std::string_view technique = {});
+  VolumeView(const GlContext& context, const Volume& volume, const Scene& scene, const RenderOptions& options = {});
+  /// Cuts the volume for a scene that is rendered on the CPU.
+  /// @throw InvalidArgument, IoError
+  VolumeView(const Volume& volume, const Scene& scene, const RenderOptions& options = {});
 
   const Bricks& bricks() const { return *bricks_; }
-  ResidentVolume& resident() { return resident_; }
+  /// @pre on OpenGL
+  ResidentVolume& resident() { return *resident_; }
   /// Returns the renderer. Its scene is changed by setters, see Renderer.
   Renderer& renderer() { return *renderer_; }
   Picture render(const RenderSample& sample = {}) { return renderer_->render(sample); }
 
  private:
-  VolumeView(const GlContext& context, const Volume& volume, const ResolvedScene& scene, const RenderOptions& options,
-             std::string_view technique);
+  VolumeView(const GlContext& context, const Volume& volume, const ResolvedScene& scene, const RenderOptions& options);
+  VolumeView(const Volume& volume, const ResolvedScene& scene, const RenderOptions& options);
 
   std::unique_ptr<Bricks> bricks_;
-  ResidentVolume resident_;
+  std::unique_ptr<ResidentVolume> resident_;  // none on the CPU
   std::unique_ptr<Renderer> renderer_;
 };
 

@@ -1,4 +1,4 @@
-// Finds the techniques of rendering by their names.
+// The techniques of rendering, and where each runs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
@@ -10,23 +10,34 @@
 
 namespace umbrick {
 
-struct Technique {
-  std::string_view name;     // "slices"
-  std::string_view meaning;  // what help says about it
-  /// Makes a renderer. @param volume  outlives the renderer  @throw InvalidArgument, GlError
-  std::unique_ptr<Renderer> (*make)(ResidentVolume& volume, const ResolvedScene& scene, const RenderOptions& options);
+/// What is known of a technique. Its name is that of kTechniques.
+struct TechniqueTraits {
+  Technique technique;
+  std::string_view meaning;  // "proxy slices across the view, nearest first"
+  /// Makes a renderer on OpenGL; null: it runs on the CPU. @throw InvalidArgument, GlError
+  std::unique_ptr<Renderer> (*makeOnGl)(ResidentVolume& volume, const ResolvedScene& scene,
+                                        const RenderOptions& options);
+  /// Makes a renderer on the CPU; null: it runs on OpenGL. @throw InvalidArgument
+  std::unique_ptr<Renderer> (*makeOnCpu)(const Bricks& volume, const ResolvedScene& scene,
+                                         const RenderOptions& options);
+  /// Tells whether it can render the scene.
+  bool (*supports)(const SceneSettings& scene);
 };
 
-/// Returns all techniques; the first one is used where none is named.
-std::span<const Technique> techniques();
+/// Returns all techniques.
+std::span<const TechniqueTraits> techniques();
+/// @pre not Technique::automatic
+const TechniqueTraits& traitsOf(Technique technique);
 
-/// Makes a renderer that lives as long as its volume is looked at.
-/// @param technique  its name; empty: the first one
-/// @throw InvalidArgument  there is no such technique (the message lists those there are); or as the
-///   renderer's constructor
+/// Makes a renderer that lives as long as its volume is looked at, of the scene's technique; where that is automatic,
+/// of the first one that runs there and can render the scene.
+/// @param volume  outlives the renderer
+/// @throw InvalidArgument  the scene's technique does not run there; or as the renderer's constructor
 /// @throw GlError
 /// @pre the context of `volume` is current
 std::unique_ptr<Renderer> makeRenderer(ResidentVolume& volume, const ResolvedScene& scene,
-                                       const RenderOptions& options = {}, std::string_view technique = {});
+                                       const RenderOptions& options = {});
+std::unique_ptr<Renderer> makeRenderer(const Bricks& volume, const ResolvedScene& scene,
+                                       const RenderOptions& options = {});
 
 }  // namespace umbrick

@@ -60,6 +60,8 @@ class Volume {
 
   /// Cuts the bricks that a scene needs, see requiredBricks(). @throw InvalidArgument, IoError  as brickGrid
   std::unique_ptr<Bricks> cut(const ResolvedScene& scene) const;
+  /// Cuts the bricks that techniques on the CPU need: with an apron of one voxel. @throw InvalidArgument, IoError
+  std::unique_ptr<Bricks> cutForCpu(const ResolvedScene& scene) const;
   /// Cuts the bricks for a picture that is refined: with the apron of coarserScene() where bricks are large
   /// enough for it.
   std::unique_ptr<Bricks> cutForRefinement(const ResolvedScene& scene) const;

@@ -49,6 +49,16 @@ enum class Quadrature {
 inline constexpr Name<Quadrature> kQuadratures[]{{"preintegrated", Quadrature::preintegrated},
                                                  {"midpoint", Quadrature::midpoint}};
 
+/// How a picture is computed: by slices across the view, on OpenGL; by a ray through each pixel, or by shear-warp, whose
+/// rays lie in rows of voxels and whose picture is warped to the pixels, on the CPU. Automatic: see chooseEngine() in
+/// render/engine.h.
+enum class Technique { automatic, slices, rays, shearWarp };
+inline constexpr Name<Technique> kTechniques[]{{"auto", Technique::automatic},
+                                               {"slices", Technique::slices},
+                                               {"rays", Technique::rays},
+                                               {"shear-warp", Technique::shearWarp}};
+inline std::string techniqueName(Technique technique) { return std::string(nameOf(kTechniques, technique)); }
+
 /// Options of the method `dos`.
 struct DosOptions {
   int footprint = 3;  // n: n x n samples over the cone's footprint on the previous slice
@@ -165,6 +175,7 @@ struct SceneSettings {
   Camera camera;
   Model model = Model::emission;
   Method method = Method::lightVolume;
+  Technique technique = Technique::automatic;
   glm::dvec3 ambient{1};                 // L_a, radiance from every direction
   std::optional<glm::dvec3> background;  // L_b; when it is set the picture is opaque (alpha 1)
   std::vector<LightSource> lights;       // for the model `lights`, which needs at least one
@@ -197,6 +208,7 @@ struct Scene : SceneSettings {
 ///   window [low, high], sigmaScale    applied to it
 ///   model      "emission", "cone", "cone-ray", "ambient", "lights"
 ///   method     "dos", "ordinates", "light-volume"
+///   technique  "auto", "slices", "rays", "shear-warp"
 ///   light      ambient [r, g, b], background [r, g, b], sources [{type, frame ("view", "world"), ...}, ...]; by type,
 ///                "cone"         axis, theta, radiance ([r, g, b], or one number)
 ///                "directional"  direction, softAngle (of theta's kind), radiance: the same, and printed as a cone

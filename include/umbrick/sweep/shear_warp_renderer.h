@@ -3,7 +3,6 @@
 #pragma once
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "umbrick/brick/bricks.h"
 #include "umbrick/draw/renderer.h"
@@ -23,9 +22,6 @@ ShearWarpSampling shearWarpSampling(const ResolvedScene& scene, const Bricks& vo
 
 /// Tells whether shear-warp renders a scene: the models emission, cone and lights, the last two with light volumes.
 bool shearWarpSupports(const SceneSettings& scene);
-
-/// Returns the name of the instructions that loops of the CPU's renderers are run with: "AVX3".
-std::string cpuInstructions();
 
 /// Shear-warp: along the main axis of the view, rays cross the slices of voxels in rows, so that voxels are read in the
 /// order of memory. What the rays gather is a picture seen from the main axis, which is warped to the pixels.

@@ -1,4 +1,4 @@
-// Hard cases of shear-warp: media, grids and places.
+// Hard cases of techniques on the CPU: media, grids and places.
 // SPDX-License-Identifier: Apache-2.0
 #include "support/closed_forms.h"
 #include "sweep/picture_of_grid.h"
@@ -19,21 +19,27 @@ bool isFinite(const Image& image) {
 }  // namespace
 
 // Slabs that are thinner than a voxel lie between two slices: the table meets all of them.
-TEST_CASE("Layers thinner than a voxel have their optical depth", "[sweep][shear-warp]") {
+TEST_CASE("Layers thinner than a voxel have their optical depth on the CPU", "[sweep][cpu]") {
+  const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
+  INFO(techniqueName(technique));
   const ScalarGrid grid = fieldGrid({glm::ivec3(-1), glm::ivec3(25)}, [](const glm::dvec3& p) { return p.z; });
   const TransferFunction transfer({{9.3, {kAlbedo, 0}}, {9.3, {kAlbedo, 5}}, {9.5, {kAlbedo, 5}}, {9.5, {kAlbedo, 0}}});
   const Camera camera = orthographicCamera({12, 12, 60}, {12, 12, 0}, 10, 16);
   for (const int perVoxel : {1, 2, 3}) {
     ResolvedScene scene = plainScene(transfer, camera, 0.5);
     scene.clipBox = kInside;
-    const Image picture = shearWarped(grid, scene, {}, ShearWarpSampling{perVoxel, 1}).colour;
+    const Image picture = technique == Technique::rays
+                              ? byRays(grid, scene, {}, perVoxel).colour
+                              : shearWarped(grid, scene, {}, ShearWarpSampling{perVoxel, 1}).colour;
     // A step of the table is 1 / 20 000 of 0.2 units.
     CHECK(picture.at(8, 8)[3] == Approx(-std::expm1(-1.0)).margin(2e-3));
     CHECK(picture.at(8, 8)[0] == Approx(-kAlbedo.r * std::expm1(-1.0)).margin(2e-3));
   }
 }
 
-TEST_CASE("Two slabs seen from both sides have their closed form", "[sweep][shear-warp]") {
+TEST_CASE("Two slabs seen from both sides have their closed form on the CPU", "[sweep][cpu]") {
+  const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
+  INFO(techniqueName(technique));
   const ScalarGrid grid = fieldGrid({glm::ivec3(-1), glm::ivec3(25)}, [](const glm::dvec3& p) { return p.z; });
   const TwoSlabs slabs;
   for (const bool above : {true, false})
@@ -42,7 +48,7 @@ TEST_CASE("Two slabs seen from both sides have their closed form", "[sweep][shea
       const Camera camera = orthographicCamera(glm::dvec3(12, 12, 12) + offset, {12, 12, 12}, 6, 8);
       ResolvedScene scene = plainScene(slabs.transfer, camera, 0.5);
       scene.clipBox = kInside;
-      const Image picture = shearWarped(grid, scene).colour;
+      const Image picture = renderedOnCpu(technique, grid, scene).colour;
       const double stretch = glm::length(offset) / 40;
       const glm::dvec3 light = slabs.light(stretch, above);
       CAPTURE(above, tilt.x);
@@ -51,51 +57,60 @@ TEST_CASE("Two slabs seen from both sides have their closed form", "[sweep][shea
     }
 }
 
-TEST_CASE("Extinction of 1e4 and 1e30 a voxel is opaque and nothing else", "[sweep][shear-warp]") {
+TEST_CASE("Extinction of 1e4 and 1e30 a voxel is opaque on the CPU and nothing else", "[sweep][cpu]") {
+  const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
+  INFO(techniqueName(technique));
   for (const double sigma_t : {1e4, 1e30})
     for (const Camera& camera : smallCameras()) {
       ResolvedScene scene = plainScene(ramp(sigma_t, 0.2, 0.3), camera, 0.5);
-      const Image picture = shearWarped(blobGrid(), scene).colour;
+      const Image picture = renderedOnCpu(technique, blobGrid(), scene).colour;
       CHECK(isFinite(picture));
       CHECK(largestAlpha(picture) == Approx(1).margin(1e-6));
       CHECK(rmsDifference(picture, renderReference(blobGrid(), scene).colour) < 0.1);  // edges, a ray wide
     }
 }
 
-TEST_CASE("Empty pictures are empty, and a single voxel is seen", "[sweep][shear-warp]") {
+TEST_CASE("Empty pictures of the CPU are empty, and a single voxel is seen", "[sweep][cpu]") {
+  const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
+  INFO(techniqueName(technique));
   const ScalarGrid one = makeVoxels({{{5, 5, 5}, 1.0f}});
   Camera camera = orthographicCamera({5, 5, 20}, {5, 5, 5}, 4, 32);
   const ResolvedScene scene = plainScene(ramp(2), camera, 0.25);
-  checkShearWarp(one, scene, 2e-3, 2e-2, 4);
-  CHECK(largestAlpha(shearWarped(one, plainScene(ramp(2, 2, 3), camera, 0.5)).colour) == 0);
+  checkOnCpu(one, scene, 1e-4, 2e-2, 2e-3, 4);
+  CHECK(largestAlpha(renderedOnCpu(technique, one, plainScene(ramp(2, 2, 3), camera, 0.5)).colour) == 0);
   camera.lookAt = {5, 5, 40};
-  CHECK(largestAlpha(shearWarped(one, plainScene(ramp(2), camera, 0.5)).colour) == 0);
+  CHECK(largestAlpha(renderedOnCpu(technique, one, plainScene(ramp(2), camera, 0.5)).colour) == 0);
 }
 
-TEST_CASE("Grids of tiles and far from the origin are shear-warped right", "[sweep][shear-warp]") {
+TEST_CASE("Grids of tiles and far from the origin approach the reference on the CPU", "[sweep][cpu]") {
+  const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
+  INFO(techniqueName(technique));
   SECTION("tiles") {
     const ScalarGrid grid = makeTiles();
     Camera base;
     base.width = base.height = 24;
     const Camera camera = orbitCamera(grid.worldBounds(), 0.6, 0.4, base);
-    checkShearWarp(grid, plainScene(ramp(0.01), camera, 1), 4e-3, 3e-2, 1);
+    checkOnCpu(grid, plainScene(ramp(0.01), camera, 1), 1e-4, 3e-2, 4e-3, 1);
   }
   SECTION("a million voxels from the origin") {
     const glm::ivec3 far(1000000, -1000000, 999999);
     Camera camera = smallCameras()[1];
-    const Image near = shearWarped(blobGrid(), plainScene(ramp(0.6), camera, 0.5)).colour;
+    const Image near = renderedOnCpu(technique, blobGrid(), plainScene(ramp(0.6), camera, 0.5)).colour;
     camera.eye += glm::dvec3(far);
     camera.lookAt += glm::dvec3(far);
     // Places are known to 1e-10 of a voxel, and share of a voxel to a float's rounding.
-    CHECK(maxDifference(shearWarped(blobGrid(far), plainScene(ramp(0.6), camera, 0.5)).colour, near) < 1e-4);
+    CHECK(maxDifference(renderedOnCpu(technique, blobGrid(far), plainScene(ramp(0.6), camera, 0.5)).colour, near) <
+          1e-4);
   }
 }
 
-TEST_CASE("Thin fog in many slices keeps its opacity", "[sweep][shear-warp]") {
+TEST_CASE("Thin fog in many slices keeps its opacity on the CPU", "[sweep][cpu]") {
+  const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
+  INFO(techniqueName(technique));
   const ScalarGrid grid = makeFilled({24, 24, 1200}, {0, 0, 0}, [](const glm::ivec3&) { return 1.0; });
   const Camera camera = orthographicCamera({12, 12, 5000}, {12, 12, 0}, 6, 4);
   ResolvedScene scene = plainScene(homogeneous(kAlbedo, 1e-5), camera, 0.125);
-  const Image picture = shearWarped(grid, scene).colour;  // some 9600 slices
+  const Image picture = renderedOnCpu(technique, grid, scene).colour;  // some 9600 slices
   const Image exact = renderReference(grid, scene).colour;
   CHECK(picture.at(2, 2)[3] == Approx(exact.at(2, 2)[3]).epsilon(1e-4));
 }

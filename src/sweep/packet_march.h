@@ -1,0 +1,100 @@
+// A square of pixels' rays on their way through the slices of voxels.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <vector>
+
+#include "sweep/brick_table.h"
+#include "sweep/medium_table.h"
+#include "sweep/packet_kernels.h"
+#include "umbrick/slice/proxy_slices.h"
+
+namespace umbrick {
+
+/// Index space along the main axis n of a packet: what all packets of one axis share, along (u, v, n).
+struct PacketAxes {
+  int u = 0, v = 1, n = 2;
+  glm::dvec3 eye{0};                   // index coordinates
+  std::array<glm::dvec3, 3> screen{};  // screen point p is seen along screen[0] p.x + screen[1] p.y + screen[2]
+  glm::dmat3 metric{1};                // world length squared: a quadratic form
+  glm::dvec4 depth{0};                 // of (u, v, n, 1), along the view axis, world units
+  std::vector<glm::dvec4> planes;      // the medium lies where dot + w >= 0
+  glm::dvec3 low{0}, high{0};          // of what is visible
+};
+
+/// What all packets of a picture share.
+struct PacketFrame {
+  const BrickVoxels* voxels = nullptr;
+  const BrickTable* bricks = nullptr;
+  const MediumTable* table = nullptr;
+  std::array<PacketAxes, 3> axes;  // by n
+  bool perspective = true;
+  double perVoxel = 1;  // slices
+  float saturation = 0;
+  bool midpoint = false, aux = false;
+  int lights = 0;
+  float lightUnit = 1;
+  std::array<float, 3> power{1, 1, 1};
+};
+
+/// What the rays of a packet have gathered.
+struct PacketPixels {
+  std::array<glm::vec4, kRayGroup> colour;
+  std::array<glm::vec2, kRayGroup> aux;
+};
+
+/// Takes packets through the slices, one after another. Each thread has one.
+class PacketMarch {
+ public:
+  explicit PacketMarch(const PacketFrame& frame);
+
+  /// @param screen  the points of the screen that the rays are seen through
+  /// @return the number of samples that were integrated
+  std::uint64_t march(const std::array<glm::dvec2, kRayGroup>& screen, PacketPixels& pixels);
+
+ private:
+  using Lanes = std::array<float, kRayGroup>;
+  struct Extent {
+    double low = 0, high = 0;
+  };
+  void aim(const std::array<glm::dvec2, kRayGroup>& screen);
+  bool enterBox();
+  void clip();
+  void marchLayers();
+  bool isActive(double from, double to, std::int64_t layer);
+  bool hasBricks(double from, double to, std::int64_t cellN);
+  Extent extent(int across, double from, double to) const;
+  double middleAt(int across, double n) const;
+  double spreadAt(double n) const { return frame_.perspective ? n - axes_->eye.z : 1; }
+  void segment(double from, double to);
+  void sample(double n, int side);
+  void addBricks(std::int64_t n, std::int64_t layer);
+
+  const PacketFrame& frame_;
+  const PacketAxes* axes_ = nullptr;
+  int sign_ = 1;
+  // Slopes of the middle ray (perspective), or its place on the plane through the eye and its slopes (parallel).
+  glm::dvec2 middle_{0}, slope_{0};
+  glm::dvec2 least_{0}, most_{0};  // of what rays differ from the middle one
+  Lanes acrossU_{}, acrossV_{};    // the same by ray
+  std::array<glm::dvec2, kRayGroup> exact_{};
+  Lanes red_{}, green_{}, blue_{}, opacity_{}, seen_{}, depth_{}, length_{}, enter_{}, leave_{};
+  std::array<std::array<Lanes, kMostFields>, 2> fields_{};
+  std::array<double, 2> sampledAt_{};  // along n
+  std::array<bool, 2> isSampled_{};
+  std::uint8_t full_ = 0;
+  double first_ = 0, last_ = 0;  // along n, front and back
+  float firstEnter_ = 0, lastEnter_ = 0, firstLeave_ = 0, lastLeave_ = 0;
+  std::vector<PacketBrick> bricks_;
+  std::int64_t baseU_ = 0, baseV_ = 0;  // the packet's voxel on the slice
+  Extent cellsU_, cellsV_;              // that rays are in, on the slice
+  std::uint64_t samples_ = 0;
+};
+
+}  // namespace umbrick

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "umbrick/sweep/ray_renderer.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <thread>
+
+#include "sweep/packet_march.h"
+#include "sweep/swept_scene.h"
+#include "umbrick/core/error.h"
+#include "umbrick/core/stopwatch.h"
+
+namespace umbrick {
+namespace {
+
+constexpr int kMostSamplesPerVoxel = 8;
+constexpr std::array<std::array<int, 3>, 3> kAxesByMain{{{1, 2, 0}, {0, 2, 1}, {0, 1, 2}}};  // u, v, n
+
+PacketAxes axesAlong(std::size_t n, const SweptScene& scene, const glm::dvec3& low, const glm::dvec3& high) {
+  PacketAxes axes;
+  axes.u = kAxesByMain[n][0];
+  axes.v = kAxesByMain[n][1];
+  axes.n = kAxesByMain[n][2];
+  const auto permuted = [&](const auto& p) { return glm::dvec3(p[axes.u], p[axes.v], p[axes.n]); };
+  const IndexView& view = scene.view();
+  axes.eye = permuted(view.eyeIndex);
+  for (std::size_t i = 0; i < 3; ++i) axes.screen[i] = permuted(view.toIndex[i]);
+  const glm::dmat4& toWorld = scene.volume().indexToWorld;
+  const glm::dmat3 columns(glm::dvec3(toWorld[axes.u]), glm::dvec3(toWorld[axes.v]), glm::dvec3(toWorld[axes.n]));
+  axes.metric = glm::transpose(columns) * columns;
+  const auto depthOf = [&](int axis) { return view.axis[static_cast<std::size_t>(axis)].z; };
+  axes.depth = {depthOf(axes.u), depthOf(axes.v), depthOf(axes.n), view.origin.z};
+  for (const glm::dvec4& plane : scene.planes())
+    axes.planes.emplace_back(plane[axes.u], plane[axes.v], plane[axes.n], plane.w);
+  axes.low = permuted(low);
+  axes.high = permuted(high);
+  return axes;
+}
+
+}  // namespace
+
+bool raysSupport(const SceneSettings& scene) { return sweptSupports(scene); }
+
+int raySamplesPerVoxel(const ResolvedScene& scene, const Bricks& volume) {
+  const double perVoxel = shortestVoxelEdge(volume.indexToWorld) * scene.sampling.segments / scene.sampling.spacing;
+  return static_cast<int>(std::clamp(std::round(perVoxel), 1.0, double(kMostSamplesPerVoxel)));
+}
+
+class RayRenderer::Implementation {
+ public:
+  Implementation(const Bricks& volume, const RenderOptions& options, std::optional<int> perVoxel)
+      : options_(options), perVoxel_(perVoxel), scene_(volume, "rays") {}
+
+  void update(const ResolvedScene& next, const ResolvedScene* before) {
+    const std::uint64_t generation = scene_.voxels().generation();
+    scene_.update(next, before);
+    if (!bricks_ || generation != scene_.voxels().generation()) bricks_.emplace(scene_.voxels());
+    picture_.reset();
+  }
+
+  void draw(const ResolvedScene& scene, const RenderSample& sample) {
+    picture_.reset();
+    Picture picture = emptyPicture(scene, options_.visibilityAndDepth);
+    scene_.prepare(scene, sample, picture.stats);
+    const Stopwatch sweep;
+    march(scene, frameOf(scene), picture);
+    picture.stats.sweepMs = sweep.elapsedMs();
+    picture.stats.bufferBytes = picture.colour.pixels.size() * sizeof(float);
+    picture_ = std::move(picture);
+  }
+
+  Picture read() const {
+    if (!picture_) throw InvalidArgument("render: nothing was drawn since the scene changed");
+    return *picture_;
+  }
+
+ private:
+  PacketFrame frameOf(const ResolvedScene& scene) const {
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (const auto& brick : scene_.voxels().bricks()) {
+      low = glm::min(low, glm::dvec3(brick->origin) - 1.0);
+      high = glm::max(high, glm::dvec3(brick->origin + scene_.volume().layout.interior));
+    }
+    PacketFrame frame;
+    frame.voxels = &scene_.voxels();
+    frame.bricks = &*bricks_;
+    frame.table = &scene_.table();
+    for (std::size_t n = 0; n < 3; ++n) frame.axes[n] = axesAlong(n, scene_, low, high);
+    frame.perspective = scene.camera.projection == Projection::perspective;
+    frame.perVoxel = perVoxel_.value_or(raySamplesPerVoxel(scene, scene_.volume()));
+    frame.saturation = static_cast<float>(scene.sampling.saturation);
+    frame.midpoint = scene.sampling.quadrature == Quadrature::midpoint;
+    frame.aux = options_.visibilityAndDepth;
+    frame.lights = scene_.lights();
+    frame.lightUnit = scene_.lightUnit();
+    frame.power = scene_.power();
+    return frame;
+  }
+
+  void march(const ResolvedScene& scene, const PacketFrame& frame, Picture& picture) const {
+    const int width = scene.camera.width, height = scene.camera.height;
+    const int columns = (width + kPacketEdge - 1) / kPacketEdge, rows = (height + kPacketEdge - 1) / kPacketEdge;
+    const IndexView& view = scene_.view();
+    const bool nothing = scene_.voxels().bricks().empty();
+    tbb::enumerable_thread_specific<PacketMarch> marches([&] { return PacketMarch(frame); });
+    std::atomic<int> done{0};
+    std::atomic<std::uint64_t> samples{0};
+    const auto caller = std::this_thread::get_id();
+    tbb::parallel_for(tbb::blocked_range<int>(0, rows, 1), [&](const auto& range) {
+      PacketMarch& march = marches.local();
+      std::uint64_t taken = 0;
+      for (int row = range.begin(); row != range.end(); ++row)
+        for (int column = 0; column < columns; ++column) {
+          std::array<glm::dvec2, kRayGroup> screen;
+          for (int i = 0; i < kRayGroup; ++i) {
+            const glm::dvec2 pixel(column * kPacketEdge + i % kPacketEdge + 0.5,
+                                   row * kPacketEdge + i / kPacketEdge + 0.5);
+            screen[static_cast<std::size_t>(i)] =
+                view.centre + view.halfExtent * (2.0 * pixel / glm::dvec2(width, height) - 1.0);
+          }
+          PacketPixels pixels{};
+          if (!nothing) taken += march.march(screen, pixels);
+          for (int i = 0; i < kRayGroup; ++i) {
+            const int x = column * kPacketEdge + i % kPacketEdge, y = row * kPacketEdge + i / kPacketEdge;
+            if (x >= width || y >= height) continue;
+            const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+            scene_.storePixel(scene, at, pixels.colour[static_cast<std::size_t>(i)],
+                              pixels.aux[static_cast<std::size_t>(i)], picture);
+          }
+        }
+      samples += taken;
+      const int finished = done += static_cast<int>(range.size());
+      if (options_.progress && std::this_thread::get_id() == caller)
+        options_.progress(static_cast<double>(finished) / rows);
+    });
+    picture.stats.fragments = samples;
+  }
+
+  RenderOptions options_;
+  std::optional<int> perVoxel_;
+  SweptScene scene_;
+  std::optional<BrickTable> bricks_;
+  std::optional<Picture> picture_;  // none: nothing was drawn since the scene changed
+};
+
+RayRenderer::RayRenderer(const Bricks& volume, const ResolvedScene& scene, const RenderOptions& options,
+                         std::optional<int> perVoxel)
+    : implementation_(std::make_unique<Implementation>(volume, options, perVoxel)) {
+  setScene(scene);
+}
+
+RayRenderer::~RayRenderer() = default;
+
+void RayRenderer::update(const ResolvedScene& next) { implementation_->update(next, hasScene() ? &scene() : nullptr); }
+
+void RayRenderer::draw(const RenderSample& sample) { implementation_->draw(scene(), sample); }
+
+Picture RayRenderer::read() { return implementation_->read(); }
+
+}  // namespace umbrick

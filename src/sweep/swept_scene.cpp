@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sweep/swept_scene.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "sweep/index_planes.h"
+#include "umbrick/core/error.h"
+#include "umbrick/core/memory.h"
+#include "umbrick/core/stopwatch.h"
+#include "umbrick/scene/capabilities.h"
+#include "umbrick/scene/lights.h"
+
+namespace umbrick {
+
+bool sweptSupports(const SceneSettings& scene) {
+  return supports(Method::lightVolume, scene.model) &&
+         occlusionMethod(scene).value_or(Method::lightVolume) == Method::lightVolume;
+}
+
+SweptScene::SweptScene(const Bricks& volume, std::string technique)
+    : technique_(std::move(technique)), voxels_(volume), light_(volume) {}
+
+void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) {
+  if (!supports(Method::lightVolume, next.model))
+    throw InvalidArgument("model: " + modelName(next.model) + " is integrated by the reference alone; " + technique_ +
+                          " renders emission, cone and lights");
+  if (!sweptSupports(next))
+    throw InvalidArgument("method: " + methodName(next.method) + " is one of slices; " + technique_ +
+                          " takes light from a light volume");
+  if (next.transfer.is2d() && !volume().hasGradients)
+    throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
+  constexpr std::size_t kMostVoxels = std::size_t{1} << 29;  // of a brick, whose places are 32-bit numbers of bytes
+  if (volume().layout.voxels() > kMostVoxels)
+    throw InvalidArgument("bricks: one brick has " + std::to_string(volume().layout.voxels()) + " voxels, " +
+                          technique_ + " reads up to " + std::to_string(kMostVoxels));
+  const bool transfer = !before || before->transfer != next.transfer;
+  std::optional<MediumTable> table;
+  // What this extinction leaves of light on the way through a thousandth of a voxel is nothing.
+  if (transfer) table.emplace(next.transfer, volume().background, 1e5 / shortestVoxelEdge(volume().indexToWorld));
+  if (transfer || before->bricks.culling != next.bricks.culling) {
+    const MediumTable& now = table ? *table : *table_;
+    const Range background{volume().background, volume().background};
+    backgroundVisible_ = !volume().domain.empty() && !now.isTransparent(background, {0, 0});
+    const Stopwatch watch;
+    voxels_.select(now, next.bricks.culling, backgroundVisible_, next.bricks.budgetMiB << 20);
+    loadMs_ += watch.elapsedMs();
+    loaded_ += voxels_.loaded();
+  }
+  if (table) table_.emplace(std::move(*table));
+}
+
+void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample, RenderStats& stats) {
+  const Stopwatch watch;
+  stats.uploadMs = std::exchange(loadMs_, 0);
+  stats.uploadedBricks = std::exchange(loaded_, 0);
+  view_ = indexView(scene.camera, volume().indexToWorld);
+  view_.seeThrough(sample.pixel);
+  planes_ = indexPlanes(scene, volume(), backgroundVisible_);
+  lights_ = 0;
+  whole_ = glm::vec3(1);
+  if (occlusionMethod(scene) == Method::lightVolume) {
+    light_.update(voxels_, scene,
+                  sample.lights.empty() ? lightDirections(scene, scene.occlusion.ordinates.directions) : sample.lights,
+                  planes_);
+    stats.lightMs = light_.ms();
+    stats.directions = light_.stats().directions;
+    stats.windowUpdates = light_.stats().updates;
+    lights_ = light_.channels();
+    whole_ = glm::vec3(light_.whole());
+  }
+  const float sum = whole_.r + whole_.g + whole_.b;
+  for (int c = 0; c < 3; ++c) power_[static_cast<std::size_t>(c)] = sum > 0 ? whole_[c] / sum : 0;
+  if (scene.camera.projection == Projection::orthographic) planes_.push_back(frontPlane(scene, volume()));
+  stats.geometryMs = watch.elapsedMs() - stats.lightMs;
+  stats.bricks = volume().bricks.size();
+  stats.visibleBricks = stats.brickSlots = voxels_.bricks().size();
+  stats.textureBytes = voxels_.bytes();
+}
+
+void SweptScene::storePixel(const ResolvedScene& scene, std::size_t at, const glm::vec4& colour, const glm::vec2& aux,
+                            Picture& picture) const {
+  float* out = &picture.colour.pixels[4 * at];
+  const float opacity = std::clamp(colour.w, 0.0f, 1.0f), through = 1 - opacity;
+  for (int c = 0; c < 3; ++c) {
+    out[c] = std::max(colour[c], 0.0f) * whole_[c] * static_cast<float>(scene.ambient[c]);
+    if (scene.background) out[c] += through * static_cast<float>((*scene.background)[c]);
+  }
+  out[3] = scene.background ? 1 : opacity;
+  if (picture.depth.pixels.empty()) return;
+  picture.visibility.pixels[at] = aux.x;
+  picture.opacity.pixels[at] = opacity;
+  picture.depth.pixels[at] = opacity > 0 ? aux.y / opacity : std::numeric_limits<float>::infinity();
+}
+
+Picture emptyPicture(const ResolvedScene& scene, bool layers) {
+  const double pixels = static_cast<double>(scene.camera.width) * scene.camera.height;
+  requireMemory("camera.size: buffers of " + std::to_string(scene.camera.width) + " x " +
+                    std::to_string(scene.camera.height) + " pixels",
+                pixels * sizeof(float) * (layers ? 7 : 4) * 2);  // one is held and one is handed out
+  Picture picture;
+  picture.colour = Image(scene.camera.width, scene.camera.height, 4);
+  if (layers)
+    for (Image* image : {&picture.visibility, &picture.depth, &picture.opacity})
+      *image = Image(scene.camera.width, scene.camera.height, 1);
+  return picture;
+}
+
+}  // namespace umbrick

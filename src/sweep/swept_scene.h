@@ -1,0 +1,72 @@
+// What techniques on the CPU share: a scene's visible bricks in memory, its table of the medium, its light.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sweep/brick_light.h"
+#include "sweep/brick_voxels.h"
+#include "sweep/medium_table.h"
+#include "umbrick/draw/renderer.h"
+#include "umbrick/slice/proxy_slices.h"
+
+namespace umbrick {
+
+/// Tells whether techniques on the CPU render a scene: the models emission, cone and lights, the last two with light
+/// volumes.
+bool sweptSupports(const SceneSettings& scene);
+
+/// Keeps what follows from a scene as long as the scene does.
+class SweptScene {
+ public:
+  /// @param technique  what messages call it
+  SweptScene(const Bricks& volume, std::string technique);
+
+  /// Takes another scene. @param before  null: this is the first one
+  /// @throw InvalidArgument  one that techniques on the CPU do not render; the visible bricks exceed its memory budget
+  void update(const ResolvedScene& next, const ResolvedScene* before);
+
+  /// Prepares a picture: light, and where the medium ends. Fills in what `stats` says of them.
+  void prepare(const ResolvedScene& scene, const RenderSample& sample, RenderStats& stats);
+
+  const BrickVoxels& voxels() const { return voxels_; }
+  const MediumTable& table() const { return *table_; }
+  const IndexView& view() const { return view_; }
+  /// Half-spaces that the medium lies in, index coordinates.
+  const std::vector<glm::dvec4>& planes() const { return planes_; }
+  /// Channels of light beside the voxels; 0 where all is lit alike.
+  int lights() const { return lights_; }
+  float lightUnit() const { return light_.unit(); }
+  /// Light that arrives where nothing is in the way, and the share of the power of each channel.
+  const glm::vec3& whole() const { return whole_; }
+  std::array<float, 3> power() const { return power_; }
+  const Bricks& volume() const { return voxels_.volume(); }
+
+  /// Fills in a pixel: colour is premultiplied, of light 1; aux is opacity times light, and times depth.
+  void storePixel(const ResolvedScene& scene, std::size_t at, const glm::vec4& colour, const glm::vec2& aux,
+                  Picture& picture) const;
+
+ private:
+  std::string technique_;
+  BrickVoxels voxels_;
+  BrickLight light_;
+  std::optional<MediumTable> table_;
+  bool backgroundVisible_ = false;
+  double loadMs_ = 0;         // of bricks since the last picture
+  std::uint64_t loaded_ = 0;  // their number
+  IndexView view_;
+  std::vector<glm::dvec4> planes_;
+  int lights_ = 0;
+  glm::vec3 whole_{1};
+  std::array<float, 3> power_{1, 1, 1};
+};
+
+/// An empty picture of the scene's size. @param layers  also those of Picture besides colour
+Picture emptyPicture(const ResolvedScene& scene, bool layers);
+
+}  // namespace umbrick
