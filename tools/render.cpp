@@ -255,7 +255,8 @@ int render(const RenderCommand& command) {
   if (progressive && command.frames > 1) throw UsageError("--frames and --progressive exclude each other");
   if (progressive && !(traitsOf(scene.model).occlusion && traitsOf(scene.method).directions))
     throw UsageError(
-        "--progressive, --max-seconds and --target-error need the model cone or lights and the method ordinates or "
+        "--progressive, --max-seconds and --target-error need the model cone, ambient or lights and the method "
+        "ordinates or "
         "light-volume");
   // Ordinates alone can be refined, so that a target takes them unless the user names a method.
   if (command.targetError && !command.scene->has("method")) scene.method = Method::ordinates;

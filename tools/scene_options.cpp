@@ -244,7 +244,8 @@ void applyQuality(const SceneOptions& options, bool fromScene, Scene& scene) {
   const bool lit = traitsOf(scene.model).directions, byDirections = traitsOf(scene.method).directions;
   if (options.quality && (!lit || (options.has("method") && !byDirections)))
     throw UsageError(
-        "--quality: is for the models cone and lights by the methods ordinates and light-volume; give --model cone");
+        "--quality: is for the models cone, ambient and lights by the methods ordinates and light-volume; give --model "
+        "cone");
   if (options.quality)
     umbrick::applyQuality(parseName(kQualities, *options.quality, "--quality"), scene);
   else if (lit && byDirections && !fromScene)

@@ -62,7 +62,9 @@ void check(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOp
 }
 
 std::optional<LightSet> lightsOf(const ResolvedScene& scene, const ReferenceOptions& options) {
-  if (!traitsOf(scene.model).directions) return std::nullopt;
+  const ModelTraits& model = traitsOf(scene.model);
+  // All of the sphere is alike, and needs no list.
+  if (!model.directions || (model.sphere && options.lights.empty())) return std::nullopt;
   return options.lights.empty() ? LightSet(scene) : LightSet(options.lights);
 }
 
@@ -73,7 +75,7 @@ std::vector<LightDirection> directionsOf(const ResolvedScene& scene, const Refer
   // A light of its own makes each list of directions, and they are put together.
   requireMemory("directions: a list of " + std::to_string(options.directions),
                 2.0 * sizeof(LightDirection) * options.directions);
-  if (traitsOf(scene.model).sphere) return evenLight(sphereDirections(options.directions));
+  if (traitsOf(scene.model).sphere && !lights) return evenLight(sphereDirections(options.directions));
   if (!lights) return {};
   return options.lights.empty() ? lights->directions(options.directions, 0) : options.lights;
 }
@@ -191,7 +193,7 @@ ReferencePicture renderReference(const ScalarGrid& grid, const ResolvedScene& sc
   picture.stats.nonFiniteVoxels = field.nonFiniteVoxels();
   picture.stats.blocks = field.blocks();
   const EyeRays rays(scene.camera, indexToWorld);
-  const bool behindEye = traitsOf(scene.model).behindEye;
+  const bool behindEye = traitsOf(scene.model).behindEye || lightComesFromBehind(scene);
   const ConvexRegion region(scene, mediumBox(scene.transfer, field.domain()), indexToWorld, behindEye);
   const LightSet* const given = lights ? &*lights : nullptr;
   const std::vector<LightDirection> directions = directionsOf(scene, options, given);

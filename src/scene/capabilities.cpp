@@ -15,7 +15,12 @@ constexpr ModelTraits kModelTraits[]{
      .cone = true,
      .aroundRay = true,
      .behindEye = true},
-    {.model = Model::ambient, .meaning = "whole sphere", .occlusion = true, .sphere = true, .behindEye = true},
+    {.model = Model::ambient,
+     .meaning = "whole sphere",
+     .occlusion = true,
+     .sphere = true,
+     .directions = true,
+     .behindEye = true},
     {.model = Model::lights,
      .meaning = "the scene's light.sources",
      .occlusion = true,
@@ -32,7 +37,8 @@ constexpr MethodTraits kMethodTraits[]{
     {.method = Method::lightVolume,
      .meaning = "light at every voxel, computed before the picture is drawn",
      .sources = true,
-     .directions = true},
+     .directions = true,
+     .allAround = true},
 };
 
 }  // namespace
@@ -56,7 +62,13 @@ std::optional<Method> occlusionMethod(const SceneSettings& scene) {
 
 bool supports(Method method, Model model) {
   const ModelTraits& light = traitsOf(model);
-  return !light.occlusion || (light.directions && (!light.sources || traitsOf(method).sources));
+  const MethodTraits& way = traitsOf(method);
+  return !light.occlusion || (light.directions && (!light.sources || way.sources) && (!light.sphere || way.allAround));
+}
+
+bool lightComesFromBehind(const SceneSettings& scene) {
+  const ModelTraits& light = traitsOf(scene.model);
+  return light.sphere || (light.sources && traitsOf(scene.method).allAround);
 }
 
 }  // namespace umbrick

@@ -108,7 +108,7 @@ EnvironmentLight loadEnvironment(const std::filesystem::path& file) {
   return light;
 }
 
-Environment::Environment(const EnvironmentLight& light, const glm::dmat3& toWorld, const glm::dvec3& viewer)
+Environment::Environment(const EnvironmentLight& light, const glm::dmat3& toWorld, const glm::dvec3& viewer, bool whole)
     : image_(light.image),
       width_(image_->width),
       subRows_((kRows + image_->height - 1) / image_->height),
@@ -117,17 +117,19 @@ Environment::Environment(const EnvironmentLight& light, const glm::dmat3& toWorl
       scale_(light.scale / (4 * std::numbers::pi)),
       axes_(toWorld * axesOf(light)),
       viewer_(viewer),
-      viewerInMap_(glm::transpose(axes_) * viewer) {
+      viewerInMap_(glm::transpose(axes_) * viewer),
+      whole_(whole) {
   const std::string flaw = flawOf(*image_);
   if (!flaw.empty()) throw InvalidArgument("environment " + light.file.string() + ": " + flaw);
   rows_ = image_->height * subRows_;
   sumAlongRows();
-  setSize(scale_ * rowsUpTo_.back(), solidAngleInFront());
+  setSize(scale_ * rowsUpTo_.back(), solidAngleOfLight());
 }
 
-// Returns the solid angle of an even light with the same power and the same integral of its square; that of the whole
-// half if there is no light.
-double Environment::solidAngleInFront() const {
+// Returns the solid angle of an even light with the same power and the same integral of its square; that of all that
+// may light if there is no light.
+double Environment::solidAngleOfLight() const {
+  const double most = (whole_ ? 4 : 2) * std::numbers::pi;
   double squares = 0;
   for (int y = 0; y < image_->height; ++y) {
     const double low = sineOf(y * subRows_), high = sineOf((y + 1) * subRows_);
@@ -141,7 +143,7 @@ double Environment::solidAngleInFront() const {
     squares += (high - low) * sum * 2 * std::numbers::pi / width_;
   }
   const double power = rowsUpTo_.back();
-  return squares > 0 && power > 0 ? std::min(power * power / squares, 2 * std::numbers::pi) : 2 * std::numbers::pi;
+  return squares > 0 && power > 0 ? std::min(power * power / squares, most) : most;
 }
 
 // Returns the sine of the latitude of a row's lower edge.
@@ -160,6 +162,7 @@ glm::dvec3 Environment::direction(double s, double x) const {
 // Returns the columns x where cos(latitude) (front cos x + right sin x) + s up > 0, with the viewer's coordinates
 // in the map.
 Environment::Interval Environment::front(double s) const {
+  if (whole_) return {0, static_cast<double>(width_)};
   const double across = std::hypot(viewerInMap_.x, viewerInMap_.y) * std::sqrt(std::max(0.0, (1 - s) * (1 + s)));
   const double below = -s * viewerInMap_.z;
   double half = 0;
@@ -254,20 +257,37 @@ std::vector<Environment::Cell> Environment::gatherCells() const {
   return cells;
 }
 
-std::vector<LightDirection> Environment::directions(int count, double rotation) const {
-  const std::vector<Cell> cells = gatherCells();
-  if (cells.empty() || scale_ == 0) return {{viewer_, glm::dvec3(0)}};
+// Returns where cells lie on a flat map that keeps areas.
+std::vector<glm::dvec2> Environment::placesOf(const std::vector<Cell>& cells, double rotation) const {
+  std::vector<glm::dvec2> places;
+  places.reserve(cells.size());
+  if (whole_) {
+    for (const Cell& cell : cells) {
+      const glm::dvec3 inMap = glm::normalize(glm::transpose(axes_) * cell.moment);
+      const double turn = (std::atan2(inMap.y, inMap.x) + rotation) / (2 * std::numbers::pi);
+      places.emplace_back(2 * std::numbers::pi * (turn - std::floor(turn)), inMap.z);
+    }
+    return places;
+  }
   // Any two axes across the view are good enough, as `rotation` counts from one of them.
   const glm::dvec3 aside = std::abs(viewer_.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 u = glm::normalize(glm::cross(viewer_, aside)), v = glm::cross(viewer_, u);
   const glm::dvec3 first = std::cos(rotation) * u + std::sin(rotation) * v, second = glm::cross(viewer_, first);
+  for (const Cell& cell : cells) {
+    const glm::dvec3 w = glm::normalize(cell.moment);
+    const double radius = std::sqrt(2 / (1 + glm::dot(w, viewer_)));
+    places.emplace_back(radius * glm::dot(w, first), radius * glm::dot(w, second));
+  }
+  return places;
+}
+
+std::vector<LightDirection> Environment::directions(int count, double rotation) const {
+  const std::vector<Cell> cells = gatherCells();
+  if (cells.empty() || scale_ == 0) return {{viewer_, glm::dvec3(0)}};
+  const std::vector<glm::dvec2> places = placesOf(cells, rotation);
   Pieces pieces;
   pieces.reserve(cells.size());
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const glm::dvec3 w = glm::normalize(cells[i].moment);
-    const double radius = std::sqrt(2 / (1 + glm::dot(w, viewer_)));
-    pieces.push_back({{radius * glm::dot(w, first), radius * glm::dot(w, second)}, powerOf(cells[i].light), i});
-  }
+  for (std::size_t i = 0; i < cells.size(); ++i) pieces.push_back({places[i], powerOf(cells[i].light), i});
   std::vector<LightDirection> result;
   medianCut(pieces.begin(), pieces.end(), count, [&](Pieces::iterator begin, Pieces::iterator end) {
     glm::dvec3 light(0), moment(0);

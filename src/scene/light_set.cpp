@@ -43,6 +43,24 @@ class UniformCone : public Light {
   glm::dmat3 toWorld_;
 };
 
+// The same from everywhere. Directions are those of the world, so that they stay as the camera moves.
+class EvenSphere : public Light {
+ public:
+  EvenSphere() : Light(1, 4 * std::numbers::pi) {}
+
+  std::vector<LightDirection> directions(int count, double rotation) const override {
+    std::vector<LightDirection> result;
+    const bool few = count <= 64;  // as of a cone
+    for (const auto& [direction, weight] :
+         few ? spiralDirections({0, 0, 1}, std::numbers::pi, count, rotation) : sphereDirections(count, rotation))
+      result.push_back({direction, glm::dvec3(weight)});
+    return result;
+  }
+  LightDirection sample(double u, double v) const override {
+    return {sampleCone({0, 0, 1}, std::numbers::pi, u, v), glm::dvec3(1)};
+  }
+};
+
 double sumOfPowers(const std::vector<LightDirection>& list) {
   double power = 0;
   for (const LightDirection& light : list) power += powerOf(light.radiance);
@@ -70,19 +88,20 @@ class ListOfDirections : public Light {
   std::vector<double> sums_;  // sum of the powers up to and including each one
 };
 
-std::unique_ptr<Light> makeLight(const ConeLight& cone, const glm::dmat3& toWorld, const glm::dvec3&) {
+std::unique_ptr<Light> makeLight(const ConeLight& cone, const glm::dmat3& toWorld, const glm::dvec3&, bool) {
   return std::make_unique<UniformCone>(cone, toWorld);
 }
 
-std::unique_ptr<Light> makeLight(const ListedLight& light, const glm::dmat3& toWorld, const glm::dvec3&) {
+std::unique_ptr<Light> makeLight(const ListedLight& light, const glm::dmat3& toWorld, const glm::dvec3&, bool) {
   std::vector<LightDirection> list;
   for (const ListedDirection& listed : light.list)
     list.push_back({glm::normalize(toWorld * listed.direction), listed.weight * listed.colour});
   return std::make_unique<ListOfDirections>(std::move(list));
 }
 
-std::unique_ptr<Light> makeLight(const EnvironmentLight& light, const glm::dmat3& toWorld, const glm::dvec3& viewer) {
-  return std::make_unique<Environment>(light, toWorld, viewer);
+std::unique_ptr<Light> makeLight(const EnvironmentLight& light, const glm::dmat3& toWorld, const glm::dvec3& viewer,
+                                 bool whole) {
+  return std::make_unique<Environment>(light, toWorld, viewer, whole);
 }
 
 // Point `index` of the sequence R2: multiples of 1/g and 1/g^2, with g^3 = g + 1. It is computed in fixed point, so
@@ -113,23 +132,26 @@ LightSet::LightSet(const ResolvedScene& scene) {
   const ModelTraits& model = traitsOf(scene.model);
   if (model.directions && model.cone) {
     lights_.push_back(
-        makeLight(ConeLight{{0, 0, 1}, scene.occlusion.aperture, glm::dvec3(1)}, viewToWorld, -frame.forward));
+        makeLight(ConeLight{{0, 0, 1}, scene.occlusion.aperture, glm::dvec3(1)}, viewToWorld, -frame.forward, false));
+  } else if (model.sphere) {
+    lights_.push_back(std::make_unique<EvenSphere>());
   } else if (model.directions) {
+    const bool whole = lightComesFromBehind(scene);
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
       const LightSource& source = scene.lights[i];
       const bool view = source.frame == LightFrame::view;
       auto complaint = findComplaint(source, i);
-      if (!complaint) complaint = findBehindViewer(source, i, view ? glm::dvec3(0, 0, 1) : -frame.forward);
+      if (!complaint && !whole) complaint = findBehindViewer(source, i, view ? glm::dvec3(0, 0, 1) : -frame.forward);
       if (complaint) throw InvalidArgument(complaint->field + ": " + complaint->message);
       const glm::dmat3 toWorld = view ? viewToWorld : glm::dmat3(1);
-      lights_.push_back(
-          std::visit([&](const auto& light) { return makeLight(light, toWorld, -frame.forward); }, source.light));
+      lights_.push_back(std::visit([&](const auto& light) { return makeLight(light, toWorld, -frame.forward, whole); },
+                                   source.light));
     }
     if (lights_.empty())
       throw InvalidArgument("light.sources: is empty, must be one source or more for the model lights");
   } else {
     throw InvalidArgument("lights: the model " + modelName(scene.model) +
-                          " has no list of directions; cone and lights have one");
+                          " has no list of directions; cone, ambient and lights have one");
   }
   for (const auto& light : lights_) power_ += light->power();
 }

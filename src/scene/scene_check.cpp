@@ -66,7 +66,8 @@ void checkLights(Checker& check, const Scene& scene) {
                 "one source or more for the model lights");
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     check.add(findComplaint(scene.lights[i], i));
-    if (scene.lights[i].frame == LightFrame::view) check.add(findBehindViewer(scene.lights[i], i, {0, 0, 1}));
+    if (scene.lights[i].frame == LightFrame::view && !lightComesFromBehind(scene))
+      check.add(findBehindViewer(scene.lights[i], i, {0, 0, 1}));
   }
 }
 

@@ -19,7 +19,8 @@ std::string modelHelp() {
     const bool last = &traits == &modelTraits().back();
     const std::string between = list.empty() ? "" : last ? " or " : ", ";
     list += between + modelName(traits.model) + " (" + std::string(traits.meaning) + ")";
-    if (!supports(Method::ordinates, traits.model)) others += (others.empty() ? "" : " and ") + modelName(traits.model);
+    if (!supports(Method::lightVolume, traits.model))
+      others += (others.empty() ? "" : " and ") + modelName(traits.model);
   }
   return list + "; " + others + " only in the reference";
 }
@@ -85,7 +86,8 @@ const std::vector<SceneField>& table() {
 
       {"model", "model", "Light", models, [](Scene& s) -> FieldPlace { return Choice(s.model, kModels); }},
       {"method", "method", "Light",
-       "of the models cone (dos, ordinates or light-volume) and lights (ordinates or light-volume)",
+       "of the models cone (dos, ordinates or light-volume), lights (ordinates or light-volume) and ambient "
+       "(light-volume)",
        [](Scene& s) -> FieldPlace { return Choice(s.method, kMethods); }},
       {"technique", "technique", "Sampling",
        "how the picture is computed: slices (across the view, on OpenGL), rays (through each pixel, on the CPU), "

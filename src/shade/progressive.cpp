@@ -81,7 +81,7 @@ class Stream {
 void check(const ResolvedScene& scene, const ProgressiveOptions& options) {
   if (!traitsOf(scene.model).directions || !traitsOf(scene.method).directions)
     throw InvalidArgument(
-        "progressive: needs the model cone or lights and the method ordinates or light-volume, found " +
+        "progressive: needs the model cone, ambient or lights and the method ordinates or light-volume, found " +
         modelName(scene.model) + " and " + methodName(scene.method));
   if (options.targetError > 0 && scene.method == Method::lightVolume)
     throw InvalidArgument("progressive: a target error needs the method ordinates, whose windows can be refined");

@@ -242,9 +242,12 @@ class SliceRenderer::Implementation {
 
  private:
   void checkScene(const ResolvedScene& scene) const {
-    if (!supports(Method::ordinates, scene.model))
+    if (!supports(Method::lightVolume, scene.model))
       throw InvalidArgument("model: " + modelName(scene.model) +
-                            " is integrated by the reference alone; slices render emission, cone and lights");
+                            " is integrated by the reference alone; slices render emission, cone, ambient and lights");
+    if (!supports(scene.method, scene.model) && traitsOf(scene.model).sphere)
+      throw InvalidArgument("method: " + methodName(scene.method) + " knows light from the viewer's side; " +
+                            modelName(scene.model) + " needs a light volume");
     if (!supports(scene.method, scene.model))
       throw InvalidArgument("method: " + methodName(scene.method) + " knows one cone around the view axis; " +
                             modelName(scene.model) + " need ordinates or a light volume");

@@ -25,7 +25,7 @@ SweptScene::SweptScene(const Bricks& volume, std::string technique)
 void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) {
   if (!supports(Method::lightVolume, next.model))
     throw InvalidArgument("model: " + modelName(next.model) + " is integrated by the reference alone; " + technique_ +
-                          " renders emission, cone and lights");
+                          " renders emission, cone, ambient and lights");
   if (!sweptSupports(next))
     throw InvalidArgument("method: " + methodName(next.method) + " is one of slices; " + technique_ +
                           " takes light from a light volume");

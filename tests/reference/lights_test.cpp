@@ -271,7 +271,7 @@ TEST_CASE("The reference refuses lights that it cannot take", "[reference]") {
   CHECK(refused(options) == "lights: a direction has length 2.000000, must be 1");
   options.lights = {{{0, 0, 1}, {1, -1, 1}}};
   CHECK_THAT(refused(options), Catch::Contains("a radiance is [1.000000, -1.000000, 1.000000], must be three finite"));
-  scene.model = Model::ambient;
+  scene.model = Model::coneRay;
   options.lights = {{{0, 0, 1}, glm::dvec3(1)}};
-  CHECK(refused(options) == "lights: are given, but the model ambient does not take a list");
+  CHECK(refused(options) == "lights: are given, but the model cone-ray does not take a list");
 }

@@ -20,8 +20,8 @@ TEST_CASE("Every model and every method has the traits that it is asked for", "[
     if (traits.cone || traits.sphere || traits.directions || traits.sources || traits.behindEye)
       CHECK(traits.occlusion);
     if (traits.aroundRay) CHECK(traits.cone);
-    // Light from a set of directions in front of the viewer meets nothing behind the eye.
-    CHECK_FALSE((traits.directions && traits.behindEye));
+    // A set of directions in front of the viewer meets nothing behind the eye, one of the whole sphere does.
+    if (traits.directions) CHECK(traits.behindEye == traits.sphere);
   }
   CHECK(modelTraits().size() == std::size(kModels));
   for (const auto& [name, method] : kMethods) {
@@ -29,6 +29,24 @@ TEST_CASE("Every model and every method has the traits that it is asked for", "[
     CHECK(traitsOf(method).method == method);
     CHECK_FALSE(traitsOf(method).meaning.empty());
     CHECK(meanings.insert(traitsOf(method).meaning).second);
+  }
+}
+
+TEST_CASE("Light from everywhere is for light volumes", "[scene]") {
+  for (const auto& [name, method] : kMethods) {
+    CAPTURE(name);
+    CHECK(supports(method, Model::ambient) == (method == Method::lightVolume));
+    CHECK_FALSE(supports(method, Model::coneRay));
+    SceneSettings scene;
+    scene.method = method;
+    for (const Model model : {Model::emission, Model::cone}) {
+      scene.model = model;
+      CHECK_FALSE(lightComesFromBehind(scene));
+    }
+    scene.model = Model::lights;
+    CHECK(lightComesFromBehind(scene) == (method == Method::lightVolume));
+    scene.model = Model::ambient;
+    CHECK(lightComesFromBehind(scene));
   }
 }
 
@@ -47,9 +65,9 @@ TEST_CASE("Light sources are for methods of directions", "[scene]") {
 
 TEST_CASE("A method supports the models that the slice renderer accepts with it", "[scene]") {
   const std::set<std::pair<Method, Model>> accepted{
-      {Method::dos, Model::emission},     {Method::dos, Model::cone},          {Method::ordinates, Model::emission},
-      {Method::ordinates, Model::cone},   {Method::ordinates, Model::lights},  {Method::lightVolume, Model::emission},
-      {Method::lightVolume, Model::cone}, {Method::lightVolume, Model::lights}};
+      {Method::dos, Model::emission},     {Method::dos, Model::cone},           {Method::ordinates, Model::emission},
+      {Method::ordinates, Model::cone},   {Method::ordinates, Model::lights},   {Method::lightVolume, Model::emission},
+      {Method::lightVolume, Model::cone}, {Method::lightVolume, Model::lights}, {Method::lightVolume, Model::ambient}};
   for (const auto& [methodName, method] : kMethods)
     for (const auto& [modelName, model] : kModels) {
       CAPTURE(methodName, modelName);

@@ -159,6 +159,43 @@ TEST_CASE("The front half of a constant map is the hemisphere, however it is tur
   }
 }
 
+TEST_CASE("A constant map is the whole sphere where light may come from behind", "[scene]") {
+  for (const glm::dvec3& up : {glm::dvec3(0, 1, 0), glm::dvec3(1, 2, 3)}) {
+    LightSource source = environment(5, 3, [](double, double) { return glm::dvec3(2, 1, 0.5); });
+    mapOf(source).up = up;
+    mapOf(source).scale = 3;
+    ResolvedScene scene = sceneWith({source});
+    scene.method = Method::lightVolume;
+    for (const auto& list :
+         {lightDirections(scene, 1000), lightDirections(scene, 1000, 0.4), lightSamples(scene, 0, 2000, 1)}) {
+      CHECK(relative(total(list), 3.0 * glm::dvec3(2, 1, 0.5)) < 1e-3);
+      // No direction is preferred: the mean cosine is 0, and the mean of its square 1/3, along any axis. Of 1000 parts
+      // each is a 16th of a radian across.
+      for (const glm::dvec3& axis : {towardsViewer(scene), glm::dvec3(1, 0, 0), glm::dvec3(0.6, 0, 0.8)}) {
+        CHECK(std::abs(applied(list, [&](const glm::dvec3& w) { return glm::dot(w, axis); }).r) < 6 * 5e-3);
+        CHECK(applied(list, [&](const glm::dvec3& w) { return glm::dot(w, axis) * glm::dot(w, axis); }).r ==
+              Approx(6.0 / 3).epsilon(1e-2));
+      }
+    }
+  }
+}
+
+TEST_CASE("A light behind what is seen keeps its place and its power in a whole map", "[scene]") {
+  // One bright pixel in the middle of the map, which is behind the viewer, and a brighter one a half turn from it.
+  LightSource source = environment(64, 32, [](double x, double y) {
+    const bool middle = std::abs(y - 0.5) < 0.02;
+    return glm::dvec3(middle && std::abs(x - 0.5) < 0.01 ? 1 : middle && x < 0.02 ? 3 : 0);
+  });
+  ResolvedScene scene = sceneWith({source});
+  const auto powerBehind = [&](const std::vector<LightDirection>& list) {
+    return applied(list, [&](const glm::dvec3& w) { return glm::dot(w, towardsViewer(scene)) < -0.9 ? 1.0 : 0.0; }).r;
+  };
+  CHECK(powerBehind(lightDirections(scene, 64)) == 0);
+  scene.method = Method::lightVolume;
+  const std::vector<LightDirection> list = lightDirections(scene, 64);
+  CHECK(powerBehind(list) > 0.55 * total(list).r);
+}
+
 // The sum over parts is the same for any number of them, and it is that of the map.
 TEST_CASE("The median cut keeps all of the light", "[scene]") {
   LightSource source = environment(96, 48, varied, LightFrame::world);

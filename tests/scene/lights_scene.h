@@ -18,6 +18,7 @@ inline ResolvedScene sceneWith(const std::vector<LightSource>& lights) {
   scene.camera.up = {0.2, 1, 0.1};
   ResolvedScene resolved = resolveScene(scene, {}, glm::dmat4(1));
   resolved.model = Model::lights;
+  resolved.method = Method::ordinates;  // which takes light from the viewer's side
   resolved.lights = lights;
   return resolved;
 }

@@ -231,12 +231,38 @@ TEST_CASE("Lights behind the viewer's plane are refused with their angles", "[sc
   CHECK_THAT(message(world), Contains("must be above 0 as the camera stands"));
 }
 
+TEST_CASE("Lights behind what is seen are for light volumes", "[scene]") {
+  ResolvedScene scene = sceneWith({cone({0.2, 0, -1}, 40, glm::dvec3(1))});
+  CHECK_THROWS_WITH(validateScene(scene), Contains("must be below 90"));
+  scene.method = Method::lightVolume;
+  CHECK_NOTHROW(validateScene(scene));
+  for (const LightDirection& light : lightDirections(scene, 16))
+    CHECK(glm::dot(light.direction, towardsViewer(scene)) < 0);
+}
+
+TEST_CASE("The whole sphere lights evenly, in lists and in samples", "[scene]") {
+  ResolvedScene scene = sceneWith({});
+  scene.model = Model::ambient;
+  scene.method = Method::lightVolume;
+  for (const auto& list : {lightDirections(scene, 16), lightDirections(scene, 64, 0.7), lightDirections(scene, 200),
+                           lightSamples(scene, 0, 400, 3)}) {
+    CHECK(list.size() >= 16);
+    CHECK(total(list).r == Approx(1).epsilon(1e-9));
+    // 16 directions of equal weight are off by less than a sixteenth.
+    for (const glm::dvec3& axis : {glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0), glm::dvec3(0.6, -0.8, 0)}) {
+      CHECK(std::abs(applied(list, [&](const glm::dvec3& w) { return glm::dot(w, axis); }).r) < 0.05);
+      CHECK(applied(list, [&](const glm::dvec3& w) { return glm::dot(w, axis) * glm::dot(w, axis); }).r ==
+            Approx(1.0 / 3).margin(0.05));
+    }
+  }
+}
+
 TEST_CASE("What has no list of directions is refused", "[scene]") {
   ResolvedScene scene = sceneWith({cone({0, 0, 1}, 10, glm::dvec3(1))});
   CHECK(complaint<InvalidArgument>([&] { lightDirections(scene, 0); }) == "directions: expected at least 1, found 0");
   CHECK(complaint<InvalidArgument>([&] { lightSamples(scene, 0, -3, 1); }) ==
         "directions: expected at least 1, found -3");
-  for (const Model model : {Model::emission, Model::coneRay, Model::ambient}) {
+  for (const Model model : {Model::emission, Model::coneRay}) {
     scene.model = model;
     CHECK_THAT(complaint<InvalidArgument>([&] { lightDirections(scene, 4); }), Contains(modelName(model)));
   }

@@ -30,8 +30,12 @@ TEST_CASE("Scenes that cannot be rendered are refused with the reason", "[shade]
   bad.camera.width = context->maxTextureEdge2d() + 1;
   CHECK_THAT(complaintOf(bad), Contains("size") && Contains(std::to_string(context->maxTextureEdge2d())));
   bad = scene;
+  bad.model = Model::coneRay;
+  CHECK_THAT(complaintOf(bad), Contains("cone-ray") && Contains("reference"));
+  bad = scene;
   bad.model = Model::ambient;
-  CHECK_THAT(complaintOf(bad), Contains("ambient") && Contains("reference"));
+  bad.method = Method::ordinates;
+  CHECK_THAT(complaintOf(bad), Contains("ordinates knows light from the viewer's side; ambient needs a light volume"));
   bad = scene;
   bad.bricks.format = "unorm12";
   CHECK_THAT(complaintOf(bad), Contains("unorm12") && Contains("unorm16"));

@@ -443,7 +443,7 @@ TEST_CASE("Options of samples that make no sense are refused", "[shade][gl]") {
   dos.method = Method::dos;
   ambient.model = Model::ambient;
   const std::string needs =
-      "progressive: needs the model cone or lights and the method ordinates or light-volume, found ";
+      "progressive: needs the model cone, ambient or lights and the method ordinates or light-volume, found ";
   CHECK(refused(emission, {}) == needs + "emission and ordinates");
   CHECK(refused(dos, {}) == needs + "cone and dos");
   CHECK(refused(ambient, {}) == needs + "ambient and ordinates");

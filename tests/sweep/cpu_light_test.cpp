@@ -51,6 +51,50 @@ TEST_CASE("Coloured lights of the world give the picture of the reference", "[sw
   CHECK(rmsDifference(renderedOnCpu(technique, grid, scene).colour, exactColour(grid, scene)) < 6e-3);
 }
 
+TEST_CASE("Light of the whole sphere and from behind gives the picture of the reference",
+          "[sweep][cpu][light-volume]") {
+  const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
+  INFO(techniqueName(technique));
+  const ScalarGrid grid = blobGrid();
+  for (const Camera& camera : smallCameras(40)) {
+    ResolvedScene scene = litScene(ramp(0.7), camera);
+    scene.model = Model::ambient;
+    scene.occlusion.ordinates.directions = 24;
+    const Image picture = renderedOnCpu(technique, grid, scene).colour;
+    CHECK(rmsDifference(picture, exactColour(grid, scene)) < 6e-3);
+    // All of the sphere, not these directions alone: 24 are a quarter of a radian from their neighbours.
+    CHECK(rmsDifference(picture, renderReference(grid, scene).colour) < 8e-3);
+    scene.model = Model::lights;
+    scene.lights = {{LightFrame::view, ConeLight{glm::dvec3(0.3, 0.2, -1), 0.4, glm::dvec3(1, 0.7, 0.4)}},
+                    {LightFrame::view, ConeLight{glm::dvec3(1, 0, 0), 0.2, glm::dvec3(0.2, 0.3, 0.6)}}};
+    CHECK(rmsDifference(renderedOnCpu(technique, grid, scene).colour, exactColour(grid, scene)) < 6e-3);
+  }
+}
+
+// A point in the middle of a ball of constant extinction is lit through its radius from all sides.
+TEST_CASE("The middle of a ball is lit through its radius", "[sweep][cpu][light-volume]") {
+  const ScalarGrid grid = makeFilled(glm::ivec3(33), {0, 0, 0}, [](const glm::ivec3& i) {
+    return std::clamp(10.5 - glm::length(glm::dvec3(i) - glm::dvec3(16)), 0.0, 1.0);
+  });
+  ResolvedScene scene = litScene(ramp(0.15), orthographicCamera({16, 16, 60}, {16, 16, 16}, 2, 8));
+  scene.model = Model::ambient;
+  scene.occlusion.ordinates.directions = 64;
+  // A sheet in the middle is all that is left of the ball, but for the light that reaches it.
+  const Image whole = byRays(grid, scene).colour;
+  scene.clipPlanes = {{0, 0, 1, -15.9}, {0, 0, -1, 16.1}};
+  const Image sheet = byRays(grid, scene).colour;
+  // Of the sheet alone, light comes from everywhere: V is 1 but for the sheet itself, whose depth is 0.03.
+  const double depth = 0.2 * 0.15, alpha = -std::expm1(-depth);
+  CHECK(sheet.at(4, 4)[3] == Approx(alpha).epsilon(1e-3));
+  CHECK(sheet.at(4, 4)[0] > 0.85 * kAlbedo.r * alpha);
+  CHECK(whole.at(4, 4)[3] == Approx(-std::expm1(-0.15 * 20)).epsilon(2e-2));
+  // The mean over the way of what is scattered to the eye lies between what the rim and the middle get: V of the middle
+  // is exp(-1.5), V of the rim about a half and more.
+  const double seen = whole.at(4, 4)[0] / (kAlbedo.r * whole.at(4, 4)[3]);
+  CHECK(seen > std::exp(-1.5));
+  CHECK(seen < 0.75);
+}
+
 TEST_CASE("Light of a cut begins at the cut", "[sweep][cpu][light-volume]") {
   const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
   INFO(techniqueName(technique));

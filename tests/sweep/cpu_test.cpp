@@ -219,9 +219,9 @@ TEST_CASE("What techniques on the CPU cannot render is refused in one line", "[s
   const std::string name = techniqueName(technique);
   CHECK_THROWS_WITH(renderedOnCpu(technique, grid, scene),
                     "method: ordinates is one of slices; " + name + " takes light from a light volume");
-  scene.model = Model::ambient;
-  CHECK_THROWS_WITH(renderedOnCpu(technique, grid, scene), "model: ambient is integrated by the reference alone; " +
-                                                               name + " renders emission, cone and lights");
+  scene.model = Model::coneRay;
+  CHECK_THROWS_WITH(renderedOnCpu(technique, grid, scene), "model: cone-ray is integrated by the reference alone; " +
+                                                               name + " renders emission, cone, ambient and lights");
   scene.model = Model::emission;
   scene.bricks.budgetMiB = 0;
   CHECK_THROWS_WITH(renderedOnCpu(technique, grid, scene), Catch::Contains("bricks.budgetMiB: the voxels of "));

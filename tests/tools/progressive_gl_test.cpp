@@ -108,7 +108,7 @@ TEST_CASE("Samples of a scene without directions are refused in one line and lea
     CHECK(result.out.empty());
     CHECK(filesIn(at.folder) == before);
   };
-  const std::string needs = "need the model cone or lights and the method ordinates or light-volume";
+  const std::string needs = "need the model cone, ambient or lights and the method ordinates or light-volume";
   check("--model emission --progressive 4", 2, needs);
   check("--model cone --method dos --progressive 4", 2, needs);
   check("--model cone --method dos --target-error 0.1", 2, needs);

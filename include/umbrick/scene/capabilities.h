@@ -17,7 +17,7 @@ struct ModelTraits {
   bool cone = false;         // light comes from a cone of half-angle theta
   bool aroundRay = false;    // that cone is around the ray to the eye, not around the view axis
   bool sphere = false;       // light comes from the whole sphere
-  bool directions = false;   // light is a set of directions in front of the viewer, see lightDirections
+  bool directions = false;   // light is a set of directions, see lightDirections
   bool sources = false;      // light comes from the scene's light sources
   bool behindEye = false;    // what lies behind the eye occludes, too
 };
@@ -30,6 +30,7 @@ struct MethodTraits {
   std::string_view meaning;
   bool sources = false;     // any sources in front of the viewer; else one cone around the view axis
   bool directions = false;  // light is a set of directions, so that pictures of other sets can be averaged
+  bool allAround = false;   // light may come from everywhere, not from the viewer's side alone
 };
 const MethodTraits& traitsOf(Method method);
 
@@ -38,5 +39,10 @@ std::optional<Method> occlusionMethod(const SceneSettings& scene);
 
 /// Tells whether the method can compute the light of the model.
 bool supports(Method method, Model model);
+
+/// Tells whether light may come from behind what the viewer sees. Then what lies behind the eye occludes, too, and
+/// environments light as a whole; else lights have to be in front of the viewer, and the front half of environments
+/// counts.
+bool lightComesFromBehind(const SceneSettings& scene);
 
 }  // namespace umbrick

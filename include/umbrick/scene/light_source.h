@@ -40,9 +40,10 @@ struct ListedLight {
   bool operator==(const ListedLight&) const = default;
 };
 
-/// A light that is the half of an environment map in front of the viewer's plane. A point scatters L_a * scale / (4 pi)
-/// * the integral over that half of the map's radiance times T, as an isotropic phase function does. The rest of the
-/// map is left out, so a map of constant radiance 1 is as bright as a cone of radiance 1/2.
+/// A light that is an environment map: all of it where light may come from behind (lightComesFromBehind() of
+/// capabilities.h), else the half in front of the viewer's plane, so that a map of constant radiance 1 is as bright as
+/// a cone of radiance 1/2. A point scatters L_a * scale / (4 pi) * the integral of the map's radiance times T, as an
+/// isotropic phase function does.
 ///
 /// The map is a latitude-longitude one as OpenEXR defines it, seen from its centre: its upper row is at `up`, the
 /// middle of the picture at `front`, and columns to the right of that at front x up. By default the middle of the map
