@@ -102,8 +102,7 @@ int study(const StudyCommand& command) {
   checkFolder(command);
   const StudySettings settings = makeSettings(command);
   refuseBackdrop(*command.scene);
-  Scene unopened = makeScene(*command.scene);
-  unopened.technique = Technique::slices;            // what is studied
+  const Scene unopened = makeScene(*command.scene);
   planStudy(settings, unopened.occlusion.aperture);  // refuses wrong settings before a volume is loaded
   StopRequest stop;
   ProgressBar bar("loading " + command.scene->input.filename().string());

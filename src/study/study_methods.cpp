@@ -40,6 +40,21 @@ void applyLightVolume(int directions, ResolvedScene& scene) {
   scene.occlusion.ordinates.directions = directions;
 }
 
+// Techniques on the CPU take a small part of the time of slices in software.
+double cpuWork(int) { return 0.2; }
+double litCpuWork(int directions) { return 0.3 + 0.03 * directions; }
+
+template <Technique Way>
+void applyOnCpu(int, ResolvedScene& scene) {
+  scene.technique = Way;
+}
+
+template <Technique Way>
+void applyLitOnCpu(int directions, ResolvedScene& scene) {
+  scene.technique = Way;
+  applyLightVolume(directions, scene);
+}
+
 }  // namespace
 
 const std::vector<StudyMethod>& studyMethods() {
@@ -107,6 +122,44 @@ const std::vector<StudyMethod>& studyMethods() {
        .detail = kDirections,
        .apply = applyLightVolume,
        .work = lightVolumeWork,
+       .slices = kFew,
+       .quickSlices = kFewQuick,
+       .usual = false,
+       .fineSegments = true},
+      {.name = "rays",
+       .title = "rays on the CPU",
+       .model = Model::emission,
+       .detail = {},
+       .apply = applyOnCpu<Technique::rays>,
+       .work = cpuWork,
+       .slices = kMany,
+       .quickSlices = kManyQuick,
+       .usual = false},
+      {.name = "shear-warp",
+       .title = "shear-warp on the CPU",
+       .model = Model::emission,
+       .detail = {},
+       .apply = applyOnCpu<Technique::shearWarp>,
+       .work = cpuWork,
+       .slices = kMany,
+       .quickSlices = kManyQuick,
+       .usual = false},
+      {.name = "rays-light-volume",
+       .title = "light volume by rays on the CPU",
+       .model = Model::cone,
+       .detail = kDirections,
+       .apply = applyLitOnCpu<Technique::rays>,
+       .work = litCpuWork,
+       .slices = kFew,
+       .quickSlices = kFewQuick,
+       .usual = false,
+       .fineSegments = true},
+      {.name = "shear-warp-light-volume",
+       .title = "light volume by shear-warp on the CPU",
+       .model = Model::cone,
+       .detail = kDirections,
+       .apply = applyLitOnCpu<Technique::shearWarp>,
+       .work = litCpuWork,
        .slices = kFew,
        .quickSlices = kFewQuick,
        .usual = false,

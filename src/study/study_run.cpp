@@ -247,13 +247,30 @@ void StudyRun::measureModelError(const StudyReference& cone) {
 
 // --- cases ---
 
+StudyRun::CaseRenderer StudyRun::rendererFor(const ResolvedScene& scene, const RenderOptions& options) {
+  CaseRenderer made;
+  if (traitsOf(scene.technique).makeOnCpu) {
+    std::unique_ptr<Bricks>& bricks = bricks_[{scene.bricks.interior, 0}];
+    if (!bricks) {
+      BrickOptions cut;
+      if (scene.bricks.interior > 0) cut.interior = scene.bricks.interior;
+      cut.gradients = scene.transfer.is2d();
+      bricks = cutGrid(grid_, cut, scene.bricks.bricked);
+    }
+    made.renderer = makeRenderer(*bricks, scene, options);
+  } else {
+    made.volume = residentFor(scene);
+    made.renderer = makeRenderer(*made.volume, scene, options);
+  }
+  return made;
+}
+
 RenderStats StudyRun::countedPicture(const ResolvedScene& scene) {
   RenderOptions options;
   options.timePasses = true;
-  const auto volume = residentFor(scene);
-  SliceRenderer renderer(*volume, scene, options);
-  renderer.render();  // uploads bricks and compiles shaders
-  return renderer.render().stats;
+  const CaseRenderer made = rendererFor(scene, options);
+  made.renderer->render();  // uploads bricks and compiles shaders
+  return made.renderer->render().stats;
 }
 
 void StudyRun::measureCase(const StudyCase& what) {
@@ -269,9 +286,8 @@ void StudyRun::measureCase(const StudyCase& what) {
   timing.pairs = record_.plan.settings.repeats;
   PairedTimes times;
   {
-    const auto volume = residentFor(scene);
-    SliceRenderer renderer(*volume, scene, quietly());
-    times = timePairs([&] { baseline.renderer.render(); }, [&] { picture = renderer.render(); }, timing);
+    const CaseRenderer made = rendererFor(scene, quietly());
+    times = timePairs([&] { baseline.renderer.render(); }, [&] { picture = made.renderer->render(); }, timing);
   }
   result.timeRatio = spreadOf(ratios(times.caseMs, times.baselineMs));
   result.caseMs = spreadOf(times.caseMs).median;

@@ -9,6 +9,7 @@
 #include "study/study_folder.h"
 #include "umbrick/atlas/resident_volume.h"
 #include "umbrick/brick/brick_grid.h"
+#include "umbrick/render/techniques.h"
 #include "umbrick/shade/slice_renderer.h"
 #include "umbrick/study/study.h"
 
@@ -38,6 +39,12 @@ class StudyRun {
 
  private:
   struct Baseline;
+  /// What draws a case, on OpenGL or on the CPU.
+  struct CaseRenderer {
+    std::shared_ptr<ResidentVolume> volume;  // none on the CPU
+    std::unique_ptr<Renderer> renderer;
+  };
+  CaseRenderer rendererFor(const ResolvedScene& scene, const RenderOptions& options);
   const Bricks& bricksFor(const ResolvedScene& scene);
   std::shared_ptr<ResidentVolume> residentFor(const ResolvedScene& scene);
   Baseline& baselineOf(int size);
@@ -58,11 +65,12 @@ class StudyRun {
   StudyRecord& record_;
   const StudyFolder& folder_;
   const StudyOptions& options_;
-  std::map<std::pair<int, int>, std::unique_ptr<Bricks>> bricks_;  // by interior and apron
-  ResidentVolumes resident_;                                       // made of those bricks
-  std::unique_ptr<Baseline> baseline_;                             // baseline of the last size
-  std::map<std::string, Image> references_;                        // by id
-  double work_ = 0, done_ = 0;                                     // estimated seconds of steps, for their ratio
+  // By interior and apron; those of techniques on the CPU have their own, by an apron of 0.
+  std::map<std::pair<int, int>, std::unique_ptr<Bricks>> bricks_;
+  ResidentVolumes resident_;                 // made of those bricks
+  std::unique_ptr<Baseline> baseline_;       // baseline of the last size
+  std::map<std::string, Image> references_;  // by id
+  double work_ = 0, done_ = 0;               // estimated seconds of steps, for their ratio
 };
 
 }  // namespace umbrick

@@ -14,6 +14,7 @@ std::string sizeOption(const ResolvedScene& scene) {
 // Returns what a method sets in the scene of the study, as options.
 std::string methodOptions(const ResolvedScene& scene, const ResolvedScene& ofCase) {
   std::string text;
+  if (ofCase.technique != scene.technique) text += " --technique " + techniqueName(ofCase.technique);
   if (ofCase.sampling.saturation != scene.sampling.saturation)
     text += " --saturation " + jsonNumber(ofCase.sampling.saturation);
   if (!traitsOf(ofCase.model).occlusion) return text;
@@ -35,9 +36,9 @@ std::string renderCommand(const StudyCase& what, const ResolvedScene& scene, con
   if (traitsOf(method.model).occlusion)
     text += " --theta " + jsonDegrees(what.theta) + " --occlusion-bits " + std::to_string(what.bits.occlusion);
   if (what.scale > 0) text += " --occlusion-scale " + jsonNumber(what.scale);
-  text += " --eye-bits " + std::to_string(what.bits.eye) + " --spacing " + jsonNumber(result.sampling.spacing) +
-          " --spacing-unit world --segments " + std::to_string(result.sampling.segments) + sizeOption(result) +
-          " --exr-pixel float -o " + what.id() + ".exr";
+  if (result.technique == scene.technique) text += " --eye-bits " + std::to_string(what.bits.eye);
+  text += " --spacing " + jsonNumber(result.sampling.spacing) + " --spacing-unit world --segments " +
+          std::to_string(result.sampling.segments) + sizeOption(result) + " --exr-pixel float -o " + what.id() + ".exr";
   return text;
 }
 

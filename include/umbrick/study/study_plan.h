@@ -44,6 +44,9 @@ inline constexpr int kAutomaticSegments = 0;
 ///   dos-2          the same, Algorithm 2
 ///   dos-two-pass   Algorithm 3 in two passes per slice
 ///   ordinates      a set of directions, each with a transmittance of its own, in slabs of several segments
+///   light-volume   the same directions, taken through the voxels before the picture is drawn
+///   rays, shear-warp                              emission by techniques on the CPU; the number of slices stands for
+///   rays-light-volume, shear-warp-light-volume    how densely they sample, and the last two have light volumes
 const std::vector<StudyMethod>& studyMethods();
 /// Returns the method of a name. @throw InvalidArgument  there is no such method; the message lists those there are
 const StudyMethod& studyMethod(std::string_view name);
