@@ -70,33 +70,29 @@ void PacketMarch::aim(const std::array<glm::dvec2, kRayGroup>& screen) {
     length_[i] = static_cast<float>(std::sqrt(std::max(glm::dot(perSlice, axes_->metric * perSlice), 0.0)));
   }
   middle_ = exact_[kMiddleRay];
-  least_ = glm::dvec2(kInfinity);
-  most_ = -least_;
+  glm::dvec2 least(kInfinity), most(-kInfinity);  // of what rays differ from the middle one
   for (std::size_t i = 0; i < kRayGroup; ++i) {
     const glm::dvec2 across = exact_[i] - middle_;
-    least_ = glm::min(least_, across);
-    most_ = glm::max(most_, across);
+    least = glm::min(least, across);
+    most = glm::max(most, across);
     acrossU_[i] = static_cast<float>(across.x);
     acrossV_[i] = static_cast<float>(across.y);
   }
-}
-
-double PacketMarch::middleAt(int across, double n) const {
-  const double distance = n - axes_->eye.z;
-  return frame_.perspective ? axes_->eye[across] + middle_[across] * distance
-                            : middle_[across] + slope_[across] * distance;
-}
-
-// Returns where all rays are between two slices, along u or v.
-PacketMarch::Extent PacketMarch::extent(int across, double from, double to) const {
-  Extent all{kInfinity, -kInfinity};
-  for (const double n : {from, to}) {
-    const double middle = middleAt(across, n), spread = spreadAt(n);
-    const double a = middle + least_[across] * spread, b = middle + most_[across] * spread;
-    all.low = std::min({all.low, a, b});
-    all.high = std::max({all.high, a, b});
+  for (int across = 0; across < 2; ++across) {
+    const auto at = static_cast<std::size_t>(across);
+    const double eye = axes_->eye[across], eyeN = axes_->eye.z, middle = middle_[across];
+    if (frame_.perspective) {
+      // In front of the eye n - eyeN has the sign of the way.
+      const double low = middle + (sign_ > 0 ? least : most)[across],
+                   high = middle + (sign_ > 0 ? most : least)[across];
+      places_[at] = {eye - middle * eyeN, middle};
+      bounds_[at] = {eye - low * eyeN, low, eye - high * eyeN, high};
+    } else {
+      const double start = middle - slope_[across] * eyeN;
+      places_[at] = {start, slope_[across]};
+      bounds_[at] = {start + least[across], slope_[across], start + most[across], slope_[across]};
+    }
   }
-  return all;
 }
 
 // Finds the part of the way in which some ray may be among what is visible. @return false: there is none
@@ -108,26 +104,22 @@ bool PacketMarch::enterBox() {
   if ((far - near) * sign_ <= 0) return false;
   // Across, bounds of the rays are linear in n.
   double enter = near, leave = far;
-  for (const int across : {0, 1}) {
-    const auto bound = [&](double offset, double limit, double side) {
-      // Keeps the n where side (place(n) + offset spread(n) - limit) >= 0.
-      const double atNear = side * (middleAt(across, near) + offset * spreadAt(near) - limit);
-      const double atFar = side * (middleAt(across, far) + offset * spreadAt(far) - limit);
+  for (std::size_t across = 0; across < 2; ++across) {
+    // Keeps the n where a bound is on the box's side of its face.
+    const auto keep = [&](double atNear, double atFar) {
       if (atNear < 0 && atFar < 0) {
         enter = far;
         leave = near;
-      } else if (atNear < 0) {
+      } else if (atNear < 0 || atFar < 0) {
         const double n = near + (far - near) * (atNear / (atNear - atFar));
-        if ((n - enter) * sign_ > 0) enter = n;
-      } else if (atFar < 0) {
-        const double n = near + (far - near) * (atNear / (atNear - atFar));
-        if ((leave - n) * sign_ > 0) leave = n;
+        if (atNear < 0 && (n - enter) * sign_ > 0) enter = n;
+        if (atFar < 0 && (leave - n) * sign_ > 0) leave = n;
       }
     };
-    // In front of the eye the spread has the sign of the way.
-    const bool turned = frame_.perspective && sign_ < 0;
-    bound(turned ? least_[across] : most_[across], low[across], 1);
-    bound(turned ? most_[across] : least_[across], high[across], -1);
+    const glm::dvec4& b = bounds_[across];
+    const double lowest = low[static_cast<int>(across)], highest = high[static_cast<int>(across)];
+    keep(b.z + b.w * near - lowest, b.z + b.w * far - lowest);
+    keep(highest - (b.x + b.y * near), highest - (b.x + b.y * far));
   }
   if ((leave - enter) * sign_ <= 0) return false;
   // Slices lie at shares of a voxel; the first one is at the eye where that is inside.
@@ -335,7 +327,6 @@ void PacketMarch::sample(double n, int side) {
   slice.lights = frame_.lights;
   slice.lightUnit = frame_.lightUnit;
   slice.lightStride = static_cast<std::ptrdiff_t>(layout.voxels());
-  // A float's rounding may bring a ray into the cell beside its own.
   cellsU_ = extent(0, n, n);
   cellsV_ = extent(1, n, n);
   bricks_.clear();
@@ -343,47 +334,51 @@ void PacketMarch::sample(double n, int side) {
   const BrickTable& cells = *frame_.bricks;
   const std::int64_t own = cells.cellOf(n0, axes_->n), first = cells.firstOf(own, axes_->n);
   // Neighbours along n see the slice among their ghosts.
-  if (slice.n == 0 && n0 == first) addBricks(n0, own - 1);
-  if (n0 == first + layout.interior[axes_->n] - 1) addBricks(n0, own + 1);
-  addBricks(n0, own);
+  if (slice.n == 0 && n0 == first) addBricks(n0, own - 1, listed_[0]);
+  if (n0 == first + layout.interior[axes_->n] - 1) addBricks(n0, own + 1, listed_[1]);
+  addBricks(n0, own, listed_[2]);
   std::array<float*, kMostFields> out{};
   for (std::size_t field = 0; field < kMostFields; ++field) out[field] = fields[field].data();
   samplePacket(slice, bricks_, acrossU_.data(), acrossV_.data(), out.data());
 }
 
 // Lists the bricks of a layer that rays are in, those that are held last, so that their voxels count.
-void PacketMarch::addBricks(std::int64_t n, std::int64_t layer) {
+void PacketMarch::addBricks(std::int64_t n, std::int64_t layer, Listed& listed) {
   const BrickTable& table = *frame_.bricks;
   const BrickLayout& layout = frame_.voxels->volume().layout;
   const glm::ivec3 edge = layout.edge();
   const std::ptrdiff_t strides[3]{1, edge.x, static_cast<std::ptrdiff_t>(edge.x) * edge.y};
-  std::array<std::int64_t, 3> cell;
-  cell[static_cast<std::size_t>(axes_->n)] = layer;
-  const std::int64_t u0 = table.cellOf(wholeBelow(cellsU_.low - 1e-4), axes_->u),
-                     u1 = table.cellOf(wholeBelow(cellsU_.high + 1e-4) + 1, axes_->u),
-                     v0 = table.cellOf(wholeBelow(cellsV_.low - 1e-4), axes_->v),
-                     v1 = table.cellOf(wholeBelow(cellsV_.high + 1e-4) + 1, axes_->v);
-  const std::size_t begin = bricks_.size();
-  for (std::int64_t j = v0; j <= v1; ++j)
-    for (std::int64_t i = u0; i <= u1; ++i) {
-      cell[static_cast<std::size_t>(axes_->u)] = i;
-      cell[static_cast<std::size_t>(axes_->v)] = j;
-      const BrickTable::Entry* const entry = table.find(cell);
-      if (!entry) continue;
-      PacketBrick brick;
-      const std::int64_t firstU = entry->origin[axes_->u] - baseU_, firstV = entry->origin[axes_->v] - baseV_;
-      brick.endU = static_cast<std::int32_t>(firstU + layout.interior[axes_->u]);
-      brick.endV = static_cast<std::int32_t>(firstV + layout.interior[axes_->v]);
-      if (!entry->brick) {
-        brick.firstU = static_cast<std::int32_t>(firstU);
-        brick.firstV = static_cast<std::int32_t>(firstV);
-        brick.value = static_cast<float>(frame_.table->stepsOf(entry->value));
-        bricks_.insert(bricks_.begin() + static_cast<std::ptrdiff_t>(begin), brick);
-        continue;
+  const auto cellAt = [&](double place, std::int64_t more, int axis) {
+    return table.cellOf(wholeBelow(place) + more, axis);
+  };
+  // A float's rounding may bring a ray into the cell beside its own.
+  const std::array<std::int64_t, 5> cells{
+      cellAt(cellsU_.low - 1e-4, 0, axes_->u), cellAt(cellsU_.high + 1e-4, 1, axes_->u),
+      cellAt(cellsV_.low - 1e-4, 0, axes_->v), cellAt(cellsV_.high + 1e-4, 1, axes_->v), layer};
+  if (listed.axis != axes_->n || listed.cells != cells) {
+    listed.axis = axes_->n;
+    listed.cells = cells;
+    listed.entries.clear();
+    std::array<std::int64_t, 3> cell;
+    cell[static_cast<std::size_t>(axes_->n)] = layer;
+    for (std::int64_t j = cells[2]; j <= cells[3]; ++j)
+      for (std::int64_t i = cells[0]; i <= cells[1]; ++i) {
+        cell[static_cast<std::size_t>(axes_->u)] = i;
+        cell[static_cast<std::size_t>(axes_->v)] = j;
+        const BrickTable::Entry* const entry = table.find(cell);
+        if (entry) listed.entries.insert(entry->brick ? listed.entries.end() : listed.entries.begin(), entry);
       }
-      // With the cells that begin at the ghosts before the brick.
-      brick.firstU = static_cast<std::int32_t>(firstU - 1);
-      brick.firstV = static_cast<std::int32_t>(firstV - 1);
+  }
+  for (const BrickTable::Entry* const entry : listed.entries) {
+    PacketBrick brick;
+    const auto firstU = static_cast<std::int32_t>(entry->origin[axes_->u] - baseU_);
+    const auto firstV = static_cast<std::int32_t>(entry->origin[axes_->v] - baseV_);
+    brick.endU = firstU + layout.interior[axes_->u];
+    brick.endV = firstV + layout.interior[axes_->v];
+    // With the cells that begin at the ghosts before the brick.
+    brick.firstU = firstU - (entry->brick != nullptr);
+    brick.firstV = firstV - (entry->brick != nullptr);
+    if (entry->brick) {
       const VoxelBrick& held = *entry->brick;
       brick.voxels = held.voxels.get();
       brick.gradients = held.gradients.get();
@@ -391,8 +386,11 @@ void PacketMarch::addBricks(std::int64_t n, std::int64_t layer) {
       brick.value = static_cast<float>(frame_.table->stepsOf(held.value.min));
       brick.first = (layout.apron - 1) * (strides[axes_->u] + strides[axes_->v]) +
                     (n - entry->origin[axes_->n] + layout.apron) * strides[axes_->n];
-      bricks_.push_back(brick);
+    } else {
+      brick.value = static_cast<float>(frame_.table->stepsOf(entry->value));
     }
+    bricks_.push_back(brick);
+  }
 }
 
 }  // namespace umbrick

@@ -1,6 +1,7 @@
 // A square of pixels' rays on their way through the slices of voxels.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
@@ -60,6 +61,12 @@ class PacketMarch {
 
  private:
   using Lanes = std::array<float, kRayGroup>;
+  // The bricks of a part of a layer, as they were listed last: those that are not held first.
+  struct Listed {
+    std::array<std::int64_t, 5> cells{};  // of u, v and n
+    int axis = -1;
+    std::vector<const BrickTable::Entry*> entries;
+  };
   struct Extent {
     double low = 0, high = 0;
   };
@@ -69,20 +76,27 @@ class PacketMarch {
   void marchLayers();
   bool isActive(double from, double to, std::int64_t layer);
   bool hasBricks(double from, double to, std::int64_t cellN);
-  Extent extent(int across, double from, double to) const;
-  double middleAt(int across, double n) const;
+  Extent extent(int across, double from, double to) const {
+    const glm::dvec4& b = bounds_[static_cast<std::size_t>(across)];
+    return {std::min(b.x + b.y * from, b.x + b.y * to), std::max(b.z + b.w * from, b.z + b.w * to)};
+  }
+  double middleAt(int across, double n) const {
+    return places_[static_cast<std::size_t>(across)].x + places_[static_cast<std::size_t>(across)].y * n;
+  }
   double spreadAt(double n) const { return frame_.perspective ? n - axes_->eye.z : 1; }
   void segment(double from, double to);
   void sample(double n, int side);
-  void addBricks(std::int64_t n, std::int64_t layer);
+  void addBricks(std::int64_t n, std::int64_t layer, Listed& listed);
 
   const PacketFrame& frame_;
   const PacketAxes* axes_ = nullptr;
   int sign_ = 1;
   // Slopes of the middle ray (perspective), or its place on the plane through the eye and its slopes (parallel).
   glm::dvec2 middle_{0}, slope_{0};
-  glm::dvec2 least_{0}, most_{0};  // of what rays differ from the middle one
-  Lanes acrossU_{}, acrossV_{};    // the same by ray
+  std::array<glm::dvec2, 2> places_{};  // of the middle ray along u and v: x + y n
+  // Of all rays in front of the eye, along u and v: between x + y n and z + w n.
+  std::array<glm::dvec4, 2> bounds_{};
+  Lanes acrossU_{}, acrossV_{};  // the same by ray
   std::array<glm::dvec2, kRayGroup> exact_{};
   Lanes red_{}, green_{}, blue_{}, opacity_{}, seen_{}, depth_{}, length_{}, enter_{}, leave_{};
   std::array<std::array<Lanes, kMostFields>, 2> fields_{};
@@ -92,6 +106,7 @@ class PacketMarch {
   double first_ = 0, last_ = 0;  // along n, front and back
   float firstEnter_ = 0, lastEnter_ = 0, firstLeave_ = 0, lastLeave_ = 0;
   std::vector<PacketBrick> bricks_;
+  std::array<Listed, 3> listed_;
   std::int64_t baseU_ = 0, baseV_ = 0;  // the packet's voxel on the slice
   Extent cellsU_, cellsV_;              // that rays are in, on the slice
   std::uint64_t samples_ = 0;

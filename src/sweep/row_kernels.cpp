@@ -149,43 +149,60 @@ struct MeanMedium {
   Floats sigma_t, red, green, blue;
 };
 
+// A value of the table, a whole step, and the sums up to it.
+struct TableEnd {
+  Floats step;
+  Ints sum[4];
+};
+
 // Means between two values that are whole steps.
 class LinearMedium {
  public:
   explicit LinearMedium(const MediumTable& table)
       : points_(table.points()), sums_(table.sums()), steps_(table.steps()), unit_(table.sumUnit()) {}
 
-  struct Part {
-    Ints low, high;  // entries
-    hn::Mask<Lanes> single;
-    Floats perStep;       // 1 / steps between them, times the unit of the sums
-    Floats below, above;  // shares that lie outside of the table
-  };
+  HWY_INLINE Ints entry(Lanes d, Floats step) const {
+    const Floats within = hn::Min(hn::Max(step, hn::Zero(d)), hn::Set(d, static_cast<float>(steps_)));
+    return hn::ShiftLeft<2>(hn::ConvertTo(Numbers(), within));
+  }
 
-  HWY_INLINE Part part(Lanes d, Floats from, Floats to) const {
-    const Numbers di;
-    const Floats last = hn::Set(d, static_cast<float>(steps_)), zero = hn::Zero(d);
-    const Floats low = hn::Min(from, to), high = hn::Max(from, to), span = hn::Sub(high, low);
-    const Floats lowIn = hn::Min(hn::Max(low, zero), last), highIn = hn::Min(hn::Max(high, zero), last);
-    const Floats share = hn::Div(hn::Set(d, 1.0f), hn::Max(span, hn::Set(d, 1.0f)));
+  // The sum of extinction alone; colours follow where they are needed.
+  HWY_INLINE TableEnd end(Lanes d, Floats step) const {
+    TableEnd end;
+    end.step = step;
+    end.sum[0] = hn::GatherIndex(Numbers(), sums_, entry(d, step));
+    end.sum[1] = end.sum[2] = end.sum[3] = hn::Zero(Numbers());
+    return end;
+  }
+  HWY_INLINE void addColours(Lanes d, TableEnd& end) const {
+    const Ints at = entry(d, end.step);
+    for (int c = 1; c < 4; ++c) end.sum[c] = hn::GatherIndex(Numbers(), sums_ + c, at);
+  }
+
+  // What is the same for all channels of a part.
+  struct Part {
+    hn::Mask<Lanes> single;  // both ends are one step
+    Floats perStep;          // 1 / steps between them, times the unit of the sums, with the sign of the way
+    Floats below, above;     // shares that lie outside of the table
+  };
+  HWY_INLINE Part part(Lanes d, const TableEnd& from, const TableEnd& to) const {
+    const Floats last = hn::Set(d, static_cast<float>(steps_)), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const Floats span = hn::Sub(to.step, from.step);
     Part part;
-    part.low = hn::ConvertTo(di, lowIn);
-    part.high = hn::ConvertTo(di, highIn);
-    part.single = hn::Lt(span, hn::Set(d, 0.5f));
+    part.single = hn::Lt(hn::Abs(span), hn::Set(d, 0.5f));
+    const Floats share = hn::Div(one, hn::IfThenElse(part.single, one, span));
     part.perStep = hn::Mul(share, hn::Set(d, unit_));
-    part.below = hn::Mul(share, hn::Sub(hn::Min(high, zero), hn::Min(low, zero)));
-    part.above = hn::Mul(share, hn::Sub(hn::Max(high, last), hn::Max(low, last)));
+    part.below = hn::Mul(share, hn::Sub(hn::Min(to.step, zero), hn::Min(from.step, zero)));
+    part.above = hn::Mul(share, hn::Sub(hn::Max(to.step, last), hn::Max(from.step, last)));
     return part;
   }
 
-  HWY_INLINE Floats mean(Lanes d, const Part& part, int c) const {
-    const Numbers di;
-    const Ints low = hn::ShiftLeft<2>(part.low), high = hn::ShiftLeft<2>(part.high);
-    const Ints sum = hn::Sub(hn::GatherIndex(di, sums_ + c, high), hn::GatherIndex(di, sums_ + c, low));
-    Floats mean = hn::Mul(hn::ConvertTo(d, sum), part.perStep);
+  HWY_INLINE Floats mean(Lanes d, const Part& part, const TableEnd& from, const TableEnd& to, int c) const {
+    Floats mean = hn::Mul(hn::ConvertTo(d, hn::Sub(to.sum[c], from.sum[c])), part.perStep);
     mean = hn::MulAdd(part.below, hn::Set(d, points_[c]), mean);
     mean = hn::MulAdd(part.above, hn::Set(d, points_[4 * steps_ + c]), mean);
-    if (!hn::AllFalse(d, part.single)) mean = hn::IfThenElse(part.single, hn::GatherIndex(d, points_ + c, low), mean);
+    if (!hn::AllFalse(d, part.single))
+      mean = hn::IfThenElse(part.single, hn::GatherIndex(d, points_ + c, entry(d, from.step)), mean);
     return mean;
   }
 
@@ -319,29 +336,44 @@ void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const 
       }
       from = hn::Round(from);
       to = hn::Round(to);
-      const auto all = linear.part(d, from, to);
-      const Floats sigma_t = linear.mean(d, all, 0), tau = hn::Mul(sigma_t, length);
+      TableEnd begins = linear.end(d, from), ends = linear.end(d, to);
+      const auto all = linear.part(d, begins, ends);
+      const Floats sigma_t = linear.mean(d, all, begins, ends, 0), tau = hn::Mul(sigma_t, length);
       if (hn::AllFalse(d, hn::Gt(tau, zero))) continue;
       Accumulator sum(rays, segment, at);
-      // Where a segment is thick, its front hides its back: it is taken in parts, between which that is exact.
-      const auto thick = hn::And(hn::Gt(tau, hn::Set(d, 0.2f)), hn::Gt(hn::Abs(hn::Sub(to, from)), one));
+      linear.addColours(d, begins);
+      linear.addColours(d, ends);
+      // Where a segment is thick, its front hides its back: it is taken in two or four parts, between which that is
+      // exact. Each ray has its own parts, so that none depends on its neighbours: 1, 1/2 or 1/4 of the segment.
+      const auto ranges = hn::Gt(hn::Abs(hn::Sub(to, from)), one);
+      const auto thick = hn::And(hn::Gt(tau, hn::Set(d, 0.2f)), ranges);
       if (hn::AllFalse(d, thick)) {
-        const MeanMedium medium{sigma_t, linear.mean(d, all, 1), linear.mean(d, all, 2), linear.mean(d, all, 3)};
+        const MeanMedium medium{sigma_t, linear.mean(d, all, begins, ends, 1), linear.mean(d, all, begins, ends, 2),
+                                linear.mean(d, all, begins, ends, 3)};
         sum.add(medium, tau, length, arrivingAt(d, segment, front, back, at, middle));
       } else {
-        // Rays that are not thick get all in the first part, so that none depends on its neighbours.
-        constexpr int kParts = 4;
-        Floats before = from;
-        for (int i = 0; i < kParts; ++i) {
-          const Floats endShare = hn::IfThenElse(thick, hn::Set(d, (i + 1.0f) / kParts), one);
-          const Floats next = hn::Round(between(from, to, endShare));
-          const Floats part = hn::Mul(hn::IfThenElse(thick, hn::Set(d, 1.0f / kParts), i == 0 ? one : zero), length);
+        const auto thicker = hn::And(hn::Gt(tau, hn::Set(d, 1.0f)), ranges);
+        const Floats size = hn::IfThenElse(thicker, hn::Set(d, 0.25f), hn::IfThenElse(thick, half, one));
+        const int parts = hn::AllFalse(d, thicker) ? 2 : 4;
+        Floats done = zero;
+        TableEnd before = begins;
+        for (int i = 0; i < parts; ++i) {
+          // Rays that are through get parts of no length.
+          const Floats until = hn::Min(hn::Add(done, size), one), share = hn::Sub(until, done);
+          const auto last = hn::Ge(until, one);
+          TableEnd next = ends;
+          if (!hn::AllTrue(d, last)) {
+            next = linear.end(d, hn::IfThenElse(last, to, hn::Round(between(from, to, until))));
+            linear.addColours(d, next);
+          }
           const auto piece = linear.part(d, before, next);
-          const MeanMedium medium{linear.mean(d, piece, 0), linear.mean(d, piece, 1), linear.mean(d, piece, 2),
-                                  linear.mean(d, piece, 3)};
-          const Floats place = between(begin, end, hn::IfThenElse(thick, hn::Set(d, (i + 0.5f) / kParts), half));
+          const MeanMedium medium{linear.mean(d, piece, before, next, 0), linear.mean(d, piece, before, next, 1),
+                                  linear.mean(d, piece, before, next, 2), linear.mean(d, piece, before, next, 3)};
+          const Floats part = hn::Mul(share, length);
+          const Floats place = between(begin, end, hn::Mul(half, hn::Add(done, until)));
           sum.add(medium, hn::Mul(medium.sigma_t, part), part, arrivingAt(d, segment, front, back, at, place));
           before = next;
+          done = until;
         }
       }
       sum.store();
