@@ -260,6 +260,9 @@ int render(const RenderCommand& command) {
         "light-volume");
   // Ordinates alone can be refined, so that a target takes them unless the user names a method.
   if (command.targetError && !command.scene->has("method")) scene.method = Method::ordinates;
+  // A draft is one of slices, but where these cannot be.
+  if (command.backend == "cpu" && command.scene->quality && !command.scene->has("method"))
+    scene.method = Method::lightVolume;
   if (command.targetError && scene.method == Method::lightVolume)
     throw UsageError("--target-error: needs --method ordinates, whose windows can be refined");
   RenderWatch watch;

@@ -6,13 +6,6 @@
 #include <tuple>
 
 namespace umbrick {
-namespace {
-
-// A row this near to voxels lies on them.
-constexpr double kOnVoxels = 1e-9;
-
-}  // namespace
-
 BrickRows::BrickRows(const BrickVoxels& voxels, const RayLattice& axes)
     : voxels_(voxels), u_(axes.u), v_(axes.v), n_(axes.n) {
   const Bricks& volume = voxels.volume();

@@ -13,6 +13,9 @@
 
 namespace umbrick {
 
+/// A row or a slice this near to voxels lies on them.
+inline constexpr double kOnVoxels = 1e-9;
+
 /// How a voxel is stored.
 enum class VoxelCode { u8, u16, f32 };
 

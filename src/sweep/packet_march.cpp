@@ -10,8 +10,6 @@ namespace umbrick {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// A slice this near to voxels lies on them.
-constexpr double kOnVoxels = 1e-9;
 constexpr int kMiddleRay = 5;  // one of the four in the middle of a packet
 
 std::int64_t wholeBelow(double at) { return static_cast<std::int64_t>(std::floor(at)); }

@@ -64,6 +64,23 @@ TEST_CASE("A picture can be made again from the scene in its EXR header", "[tool
   CHECK(stats["bytes"]["peak_memory"] > 0);
 }
 
+TEST_CASE("Every quality is drawn on the CPU, and what is of slices alone is said to be", "[tools]") {
+  const TemporaryFolder folder;
+  for (const std::string quality : {"draft", "normal", "high"}) {
+    const ProgramResult result = runProgram(
+        folder, "render " + kSmall + "--model cone --backend cpu --quality " + quality + " --stats s.json -o a.png");
+    CAPTURE(quality, result.err);
+    CHECK(result.status == 0);
+    const auto stats = nlohmann::json::parse(readBytes(folder.path() / "s.json"));
+    CHECK(stats["technique"] == "rays");
+    CHECK(stats["light"]["directions"] > 0);
+    CHECK(stats["scene"]["technique"] == "rays");
+  }
+  const ProgramResult told = runProgram(folder, "render " + kSmall + "--eye-bits 16 --technique shear-warp -o a.png");
+  CHECK(told.status == 0);
+  CHECK_THAT(told.err, Contains("--eye-bits has no effect on the CPU"));
+}
+
 TEST_CASE("Renders that fail say so in one line and leave nothing behind", "[tools]") {
   if (!testContext()) return;
   const TemporaryFolder folder;
