@@ -11,7 +11,8 @@ namespace umbrick::tools {
 CLI::Option* addForceOption(CLI::App& command, bool& force);
 
 /// Looks at an output before anything is computed; an empty one is none. "-" becomes /dev/stdout, and what is printed
-/// besides goes to stderr from then on. Says on stderr what becomes of other names of a file that is replaced.
+/// besides goes to stderr from then on. The names of stderr become that of messageDescriptor(). Says on stderr what
+/// becomes of other names of a file that is replaced.
 /// @throw IoError  it cannot be written, or is not to be replaced without `force`
 void prepareOutput(std::filesystem::path& output, bool force);
 
