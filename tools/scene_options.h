@@ -52,8 +52,12 @@ void addStrictOption(CLI::App& command, bool& strict);
 std::vector<std::string> spellOutBackground(std::vector<std::string> arguments);
 /// Adds --backend, for sub-commands that draw with OpenGL.
 void addBackendOption(CLI::App& command, std::string& backend);
+/// Closes a context, unless the program leaves anyway (leaveIfStopped).
+struct ContextCloser {
+  void operator()(GlContext* context) const;
+};
 /// Makes the context of that name.
-std::unique_ptr<GlContext> createContext(const std::string& backend);
+std::unique_ptr<GlContext, ContextCloser> createContext(const std::string& backend);
 
 /// What a picture shows where neither options nor a scene file say it.
 struct SceneDefaults {
