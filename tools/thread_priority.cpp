@@ -3,8 +3,8 @@
 // Mesa has a thread for its cache of shaders, which lowers its own priority as far as it goes. When the program ends,
 // the thread that runs last gives the memory of all back to the system: where other programs keep all cores busy, that
 // is this one, and it took 10 to 60 seconds for 300 MiB. Nobody may raise a priority again, so it is not lowered. As
-// with operator new in refused_memory.cpp, the program has a function in place of the C library's, which libraries
-// find, too. SPDX-License-Identifier: Apache-2.0
+// with operator new in refused_memory.cpp, the program has a function in place of the C library's.
+// SPDX-License-Identifier: Apache-2.0
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
