@@ -9,6 +9,7 @@
 #include "foreign_messages.h"
 #include "umbrick/core/output.h"
 #include "umbrick/core/pending_file.h"
+#include "umbrick/core/printable.h"
 
 namespace umbrick::tools {
 namespace {
@@ -42,6 +43,10 @@ void prepareOutput(fs::path& path, bool force) {
 }
 
 bool isStream(const fs::path& path) { return path == "-" || outputAt(path).isStream(); }
+
+std::string shownName(const fs::path& output) {
+  return isatty(STDOUT_FILENO) == 1 ? printable(output.string()) : output.string();
+}
 
 std::string pictureFormat(const fs::path& output, const std::string& format) {
   const fs::path extension = output.extension();

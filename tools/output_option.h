@@ -19,6 +19,10 @@ void prepareOutput(std::filesystem::path& output, bool force);
 /// Tells whether an output is written through rather than replaced, so that its name says nothing of its format.
 bool isStream(const std::filesystem::path& output);
 
+/// Returns the name of an output that was written, to be printed to stdout: as it is for a program that reads it, and
+/// as printable() has it on a terminal.
+std::string shownName(const std::filesystem::path& output);
+
 /// Returns "exr" or "png", by the extension, or else as `format` says.
 /// @param format  what --format gives, for streams "png" where that is empty  @throw UsageError
 std::string pictureFormat(const std::filesystem::path& output, const std::string& format);

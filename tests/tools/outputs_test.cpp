@@ -225,6 +225,18 @@ TEST_CASE("A stdout that is full or closed is an error of one line", "[tools]") 
   CHECK(lines(picture.err) == 1);
 }
 
+TEST_CASE("The name of an output is printed as it is, and on a terminal as what no terminal obeys", "[tools]") {
+  const Workplace at;
+  const std::string name = "a\x1b[31m.png";
+  CHECK(at.run(kReference + "-o '" + name + "'").out == name + "\n");
+  // script gives its command a terminal.
+  const ProgramResult shown = runShell(at.folder, "command -v script >&2 || exit 0; script -qec \"$umbrick " +
+                                                      kReference + "-o '" + name + "'\" /dev/null");
+  if (shown.err.empty()) return;  // there is no such program
+  CHECK(shown.status == 0);
+  CHECK_THAT(shown.out, Contains("a\\x1b[31m.png") && !Contains("\x1b[31m"));
+}
+
 TEST_CASE("A reader that has gone ends the program quietly", "[tools]") {
   const Workplace at;
   REQUIRE(mkfifo(at.at("p").c_str(), 0600) == 0);
