@@ -88,11 +88,8 @@ int endByClosedPipe() {
   return 1;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  openStandardDescriptors();
-  const SignalWatch signals;
+// Runs the program, and says what went wrong and what libraries printed.
+int runAndTell(int argc, char** argv) {
   StandardOutput out;
   ForeignMessages foreign;
   const auto complain = [&](const std::string& message, int exitStatus) {
@@ -116,5 +113,15 @@ int main(int argc, char** argv) {
   } catch (const umbrick::IoError& error) {
     return complain(error.what(), std::max(status, 1));
   }
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  openStandardDescriptors();
+  const SignalWatch signals;
+  const int status = runAndTell(argc, argv);
+  leaveIfStopped(status);
   return status;
 }

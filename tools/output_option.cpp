@@ -6,8 +6,10 @@
 #include <iostream>
 
 #include "command.h"
+#include "foreign_messages.h"
 #include "umbrick/core/output.h"
 #include "umbrick/core/pending_file.h"
+#include "umbrick/core/printable.h"
 
 namespace umbrick::tools {
 namespace {
@@ -32,6 +34,8 @@ void prepareOutput(fs::path& path, bool force) {
   const Output output = outputAt(path);
   // Nothing is to stand between the data.
   if (output.descriptor == STDOUT_FILENO) std::cout.rdbuf(std::cerr.rdbuf());
+  // That number is where the messages of libraries are caught; the user means the stderr of the shell.
+  if (output.descriptor == STDERR_FILENO) path = "/dev/fd/" + std::to_string(messageDescriptor());
   if (const auto why = whyProtected(output); why && !force)
     throw IoError(path.string() + ": cannot write: " + *why + "; --force replaces it");
   tellOtherNames(output);
@@ -39,6 +43,10 @@ void prepareOutput(fs::path& path, bool force) {
 }
 
 bool isStream(const fs::path& path) { return path == "-" || outputAt(path).isStream(); }
+
+std::string shownName(const fs::path& output) {
+  return isatty(STDOUT_FILENO) == 1 ? printable(output.string()) : output.string();
+}
 
 std::string pictureFormat(const fs::path& output, const std::string& format) {
   const fs::path extension = output.extension();

@@ -132,7 +132,7 @@ void prepareLook(PictureOutput& output, Backdrop backdrop, const ResolvedScene& 
 
 void printOutputs(const PictureOutput& output) {
   for (const std::filesystem::path& path : output.files)
-    if (!isStream(path)) std::cout << path.string() << '\n';
+    if (!isStream(path)) std::cout << shownName(path) << '\n';
 }
 
 void writeOutputs(const PictureOutput& output, const std::vector<ImageLayer>& layers,

@@ -61,17 +61,17 @@ struct LoadedScene {
   std::unique_ptr<Bricks> bricks = {};
 };
 
-LoadedScene loadScene(const OpenedScene& opened, const Engine& engine, bool refined) {
+LoadedScene loadScene(const OpenedScene& opened, Technique technique, bool refined) {
   const Volume& volume = *opened.volume;
   LoadedScene loaded{.scene = volume.resolve(opened.scene),
                      .loadMs = volume.loadMs(),
                      .volume = opened.volume,
                      .units = unitsOf(volume.grid())};
-  loaded.scene.technique = engine.technique;
+  loaded.scene.technique = technique;
   const Stopwatch brick;
-  loaded.bricks = !engine.context ? volume.cutForCpu(loaded.scene)
-                  : refined       ? volume.cutForRefinement(loaded.scene)
-                                  : volume.cut(loaded.scene);
+  loaded.bricks = traitsOf(technique).makeOnCpu ? volume.cutForCpu(loaded.scene)
+                  : refined                     ? volume.cutForRefinement(loaded.scene)
+                                                : volume.cut(loaded.scene);
   loaded.brickMs = brick.elapsedMs();
   warnOfNonFinite(opened.scene, loaded.bricks->nonFiniteVoxels);
   return loaded;
@@ -269,14 +269,14 @@ int render(const RenderCommand& command) {
   const std::string nothing = "interrupted; nothing was written";
   watch.bar.begin("loading " + scene.volume.file.filename().string());
   const OpenedScene opened = openScene(*command.scene, scene, showShare(watch.bar, watch.stop, nothing));
-  const Engine engine = chooseEngine(opened.scene, parseName(kEngineKinds, command.backend, "--backend"), progressive);
-  if (!engine.context) tellUnused(command);
-  LoadedScene loaded = loadScene(opened, engine, progressive);
+  Engine engine = chooseEngine(opened.scene, parseName(kEngineKinds, command.backend, "--backend"), progressive);
+  const std::unique_ptr<GlContext, ContextCloser> context(engine.context.release());  // null: on the CPU
+  if (!context) tellUnused(command);
+  LoadedScene loaded = loadScene(opened, engine.technique, progressive);
   prepareLook(*command.output, command.scene->backdrop, loaded.scene, loaded.units);
   std::unique_ptr<ResidentVolume> volume;
-  if (engine.context)
-    volume =
-        std::make_unique<ResidentVolume>(*engine.context, *loaded.bricks, atlasOptions(loaded.scene, *loaded.bricks));
+  if (context)
+    volume = std::make_unique<ResidentVolume>(*context, *loaded.bricks, atlasOptions(loaded.scene, *loaded.bricks));
   RenderOptions options;
   options.visibilityAndDepth = output.layers;
   options.countFragments = !output.stats.empty();

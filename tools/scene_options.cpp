@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "command.h"
+#include "stop_request.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/printable.h"
 #include "umbrick/render/engine.h"
@@ -415,8 +416,13 @@ void addEngineOption(CLI::App& command, std::string& engine) {
       ->capture_default_str();
 }
 
-std::unique_ptr<GlContext> createContext(const std::string& backend) {
-  return createGlContext(parseName(kBackends, backend, "--backend"));
+void ContextCloser::operator()(GlContext* context) const {
+  if (!stopRequested()) delete context;
+}
+
+std::unique_ptr<GlContext, ContextCloser> createContext(const std::string& backend) {
+  return std::unique_ptr<GlContext, ContextCloser>(
+      createGlContext(parseName(kBackends, backend, "--backend")).release());
 }
 
 Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults) {

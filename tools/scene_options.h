@@ -54,8 +54,12 @@ std::vector<std::string> spellOutBackground(std::vector<std::string> arguments);
 void addBackendOption(CLI::App& command, std::string& backend);
 /// Adds --backend, for sub-commands that draw on the CPU, too.
 void addEngineOption(CLI::App& command, std::string& engine);
+/// Closes a context, unless the program leaves anyway (leaveIfStopped).
+struct ContextCloser {
+  void operator()(GlContext* context) const;
+};
 /// Makes the context of that name.
-std::unique_ptr<GlContext> createContext(const std::string& backend);
+std::unique_ptr<GlContext, ContextCloser> createContext(const std::string& backend);
 
 /// What a picture shows where neither options nor a scene file say it.
 struct SceneDefaults {

@@ -12,7 +12,7 @@ void openStandardDescriptors() {
   for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(number, F_GETFD) >= 0 || errno != EBADF) continue;
     // It gets the lowest number that is free, which is this one. Nobody can write to what is open to be read.
-    const int opened = open("/dev/null", number == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+    const int opened = open("/dev/null", O_RDONLY);
     if (opened >= 0 && opened != number) close(opened);
   }
 }

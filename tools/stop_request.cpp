@@ -117,4 +117,12 @@ bool StopRequest::requested() const {
   return true;
 }
 
+bool stopRequested() { return lastSignal != 0; }
+
+void leaveIfStopped(int status) {
+  if (!stopRequested()) return;
+  programLeaves = true;
+  _exit(status);
+}
+
 }  // namespace umbrick::tools

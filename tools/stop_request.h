@@ -33,4 +33,11 @@ class StopRequest {
   bool requested() const;
 };
 
+/// Whether a signal has asked for the end of the program. A job asks its StopRequest instead.
+bool stopRequested();
+
+/// Ends the program with this status if a signal has asked for that, once all that is to be written is. OpenGL, threads
+/// and memory are left to the system: to tear them down takes long on a busy machine.
+void leaveIfStopped(int status);
+
 }  // namespace umbrick::tools

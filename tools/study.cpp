@@ -133,7 +133,7 @@ int study(const StudyCommand& command) {
   }();
   warnOfNonFinite(scene, outcome.nonFiniteVoxels);
   for (const std::filesystem::path& path : {folder.page(), outcome.table, outcome.record})
-    std::cout << path.string() << '\n';
+    std::cout << shownName(path) << '\n';
   if (outcome.study.complete()) return 0;
   std::cerr << "umbrick: stopped after " << outcome.study.cases.size() << " of " << outcome.study.plan.cases.size()
             << " cases; the same command goes on\n";

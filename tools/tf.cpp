@@ -32,7 +32,7 @@ int list(TfOptions options) {
               << '\n';
   if (options.sheet.empty()) return 0;
   writePng(options.sheet, drawTransferSheet(transferPresets()));
-  if (!isStream(options.sheet)) std::cout << options.sheet.string() << '\n';
+  if (!isStream(options.sheet)) std::cout << shownName(options.sheet) << '\n';
   return 0;
 }
 
@@ -50,7 +50,7 @@ int suggest(TfOptions options) {
     return 0;
   }
   writeTextFile(options.output, text);
-  if (!isStream(options.output)) std::cout << options.output.string() << '\n';
+  if (!isStream(options.output)) std::cout << shownName(options.output) << '\n';
   return 0;
 }
 

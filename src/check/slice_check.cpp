@@ -211,7 +211,7 @@ std::string printPixel(const glm::ivec2& pixel) {
 }  // namespace
 
 void SliceChecker::check(const ResolvedScene& scene, const std::string& view, bool complete,
-                         const SliceResults& results) {
+                         const SliceResults& results, const std::function<void(double share)>& progress) {
   const Bricks& bricks = resident_.volume();
   ResolvedScene drawn = scene;
   drawn.transfer = constantMedium(complete ? 1e-9 : 0, scene.transfer.is2d());
@@ -233,6 +233,7 @@ void SliceChecker::check(const ResolvedScene& scene, const std::string& view, bo
   const std::int64_t probes = std::min<std::int64_t>(slices_, count);
   const int stride = std::max(1, drawn.camera.width * drawn.camera.height / 8192) | 1;
   for (std::int64_t i = 0; i < probes; ++i) {
+    progress(static_cast<double>(i) / static_cast<double>(probes));
     // The first slice is probed, the last one, and others between them.
     const std::int64_t slice = probes > 1 ? i * (count - 1) / (probes - 1) : 0;
     const Image probe = renderer_->probe(slice);

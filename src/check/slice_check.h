@@ -1,6 +1,7 @@
 // Checks invariants of single slices, by what each pixel samples.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -27,7 +28,9 @@ class SliceChecker {
 
   /// @param scene     its medium, clipping and near distance do not matter
   /// @param complete  whether every cell of the domain is drawn, not only those that hold something
-  void check(const ResolvedScene& scene, const std::string& view, bool complete, const SliceResults& results);
+  /// @param progress  is told the share that is done, before each slice, and may throw
+  void check(const ResolvedScene& scene, const std::string& view, bool complete, const SliceResults& results,
+             const std::function<void(double share)>& progress);
 
  private:
   ResidentVolume& resident_;

@@ -8,6 +8,7 @@
 
 #include "core/input_file.h"
 #include "ingest/array_lists.h"
+#include "ingest/hdf5_file.h"
 #include "ingest/hdf5_handle.h"
 #include "ingest/hdf5_meaning.h"
 #include "ingest/header_text.h"
@@ -289,7 +290,7 @@ class Hdf5Source : public VoxelSource {
 
 std::vector<ArrayRow> listHdf5Arrays(const fs::path& path) {
   const Quiet quiet;
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const Handle file = openHdf5File(path);
   std::vector<ArrayRow> rows;
   const auto add = [](hid_t in, const char* name, const H5O_info_t* info, void* user) -> herr_t {
     if (info->type != H5O_TYPE_DATASET) return 0;
@@ -316,7 +317,7 @@ std::unique_ptr<VoxelSource> openHdf5(const fs::path& path, bool besideOnly) {
   Place place = split(path);
   VolumeInfo info;
   info.fileBytes = ordinaryFileSize(place.file);
-  Handle file(H5Fopen(place.file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  Handle file = openHdf5File(place.file);
   if (!file.good())
     throw IoError(place.file.string() + ": expected an HDF5 file, found" +
                   (beginsAs(place.file, "CDF") ? " netCDF 3, which is not read; nccopy -k nc4 makes HDF5 of it"

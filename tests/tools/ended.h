@@ -38,6 +38,12 @@ inline int waitFor(pid_t program) {
   return status;
 }
 
+/// Waits as long as a job needs to be amid its work.
+inline std::function<bool()> after(double seconds) {
+  const auto begin = std::chrono::steady_clock::now();
+  return [=] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds; };
+}
+
 struct Ended {
   ProgramResult result;
   double seconds = 0;  // from the signal to the end

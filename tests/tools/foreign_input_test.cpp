@@ -57,6 +57,68 @@ TEST_CASE("Pipes and devices are no scene, transfer function, environment or hea
   CHECK(piped.status == 1);
 }
 
+TEST_CASE("Each input of each command refuses links to what is no ordinary file", "[tools][foreign]") {
+  const BallWorkplace at;
+  const fs::path& folder = at.folder.path();
+  REQUIRE(at.run("reference ball.vdb --tf ball.json " + kReference + "-o good.exr -o good.png").status == 0);
+  REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
+  const std::string shown = "ball.vdb --azimuth 0 --elevation 0 --up z ", study = "study " + shown + "--quick --tf ";
+  const std::vector<std::string> commands{"convert x.nrrd -o a.vdb",
+                                          "convert x.nvdb -o a.vdb",
+                                          "convert x.tif -o a.vdb",
+                                          "convert x.h5 -o a.vdb",
+                                          "convert x.mhd -o a.vdb",
+                                          "convert header.nhdr -o a.vdb",
+                                          "convert header.mhd -o a.vdb",
+                                          "convert ball.vdb --mask x.nrrd -o a.vdb",
+                                          "convert ball.vdb --mask x.vdb -o a.vdb",
+                                          "info x.nii",
+                                          "info x.vdb",
+                                          "tf auto x.vti -o a.json",
+                                          "compare x.exr good.exr",
+                                          "compare good.exr x.exr",
+                                          "compare good.png x.png",
+                                          "reference x.json -o a.exr",
+                                          "render x.json -o a.exr",
+                                          "render " + shown + "--tf x.json -o a.exr",
+                                          "render lit.json -o a.exr",
+                                          "check x.nrrd",
+                                          "check x.json",
+                                          "check " + shown + "--tf x.json",
+                                          study + "smoke --compare x.json -o a",
+                                          study + "smoke -o report",
+                                          study + "x.json -o a"};
+  writeBytes(folder / "header.nhdr", nhdr("x.raw"));
+  writeBytes(folder / "header.mhd",
+             "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\n"
+             "ElementDataFile = x.raw\n");
+  writeBytes(folder / "lit.json", R"({"volume": {"file": "ball.vdb"}, "transfer": "smoke", "model": "lights",
+      "light": {"sources": [{"type": "environment", "file": "x.exr"}]}})");
+  fs::create_directory(folder / "report");
+  std::vector<fs::path> links{"report/study.json"};
+  for (const char* extension : {"nrrd", "nvdb", "vdb", "tif", "h5", "mhd", "nii", "vti", "exr", "png", "json", "raw"})
+    links.push_back(std::string("x.") + extension);
+  for (const fs::path& target : {fs::path("/dev/zero"), fs::path("/dev/full"), folder / "pipe",
+                                 fs::path("/proc/self/environ"), fs::path("/proc/self/status")}) {
+    for (const fs::path& link : links) {
+      fs::remove(folder / link);
+      fs::create_symlink(target, folder / link);
+    }
+    const std::size_t files = filesIn(at.folder);
+    for (const std::string& command : commands) {
+      // What would be read without end is ended, with the status 124.
+      const ProgramResult result = runShell(at.folder, "timeout 100 $umbrick " + command);
+      CAPTURE(target, command, result.err);
+      CHECK(result.status == 1);
+      CHECK(result.out.empty());
+      CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+      CHECK_THAT(result.err, Contains("cannot read: is ") || Contains("found a pipe or device") ||
+                                 Contains("found other first bytes") || Contains("is read-only; --force"));
+      CHECK(filesIn(at.folder) == files);
+    }
+  }
+}
+
 TEST_CASE("A name that is no UTF-8 is escaped in what is written about it", "[tools][foreign]") {
   const BallWorkplace at;
   const std::string name = "b\xe9ll\x1b[2J";

@@ -1,5 +1,6 @@
 // Outputs that are no plain new files, of the commands that need OpenGL.
 // SPDX-License-Identifier: Apache-2.0
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
@@ -57,13 +58,66 @@ TEST_CASE("A full device is an error of render, check and study", "[tools]") {
   expectRefusal(at.folder, kStudy + "-o report", 1, "study.json: cannot write: is read-only; --force replaces it");
 }
 
-TEST_CASE("A check stops at a signal, and prints what it has measured", "[tools]") {
+TEST_CASE("Each signal stops a check, which prints what it has measured", "[tools]") {
   if (!testContext()) return;
   const BallWorkplace at;
-  const auto begin = std::chrono::steady_clock::now();
-  const auto later = [&] { return std::chrono::steady_clock::now() - begin > std::chrono::seconds(2); };
-  const Ended check = endProgram(at.folder, "check ball.vdb --tf ball.json --size 512x512 --edges 8 16 32 --slices 100",
-                                 SIGTERM, later);
-  CHECK(check.seconds < kMostSeconds);  // with what it prints of the laws that are measured, and the end of OpenGL
-  CHECK(check.result.status != 0);
+  const std::size_t before = filesIn(at.folder);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    const Ended check = endProgram(
+        at.folder, "check ball.vdb --tf ball.json --size 512x512 --edges 8 16 32 --slices 100", number, after(2));
+    CAPTURE(number, check.result.err);
+    CHECK(check.seconds < kMostSeconds);
+    const bool stopped = check.result.status == 1;
+    CHECK((stopped || check.result.status == 128 + number));  // the latter where a picture takes too long
+    if (stopped) CHECK_THAT(check.result.err, Contains(" invariants are measured, the rest is not\n"));
+    CHECK_THAT(check.result.err, Contains("umbrick: interrupted"));
+    CHECK(filesIn(at.folder) == before);
+  }
+}
+
+TEST_CASE("Each signal stops a study, which goes on where it was stopped", "[tools]") {
+  if (!testContext()) return;
+  const BallWorkplace at;
+  const std::string command = "study ball.vdb --tf ball.json --azimuth 0 --up z --size 256x256 -o report";
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    const Ended study = endProgram(at.folder, command, number, after(3));
+    CAPTURE(number, study.result.err);
+    CHECK(study.seconds < kMostSeconds);
+    CHECK((study.result.status == 1 || study.result.status == 128 + number));
+    CHECK_THAT(study.result.err, Contains("interrupted") || Contains("the same command goes on"));
+    // What is there is whole, and nothing is a temporary file.
+    const fs::path report = at.folder.path() / "report";
+    if (fs::exists(report / "study.json")) CHECK(at.json("report/study.json").contains("cases"));
+    for (const auto& entry : fs::recursive_directory_iterator(report))
+      CHECK_FALSE(entry.path().filename().string().starts_with("."));
+  }
+}
+
+// The last thread of a process gives its memory back. At a low priority that takes a minute on a busy machine, and Mesa
+// lowers that of a thread of its own.
+TEST_CASE("No thread of the program has a lower priority than the program", "[tools]") {
+  if (!testContext()) return;
+  const BallWorkplace at;
+  const pid_t program =
+      startProgram(at.folder, "check ball.vdb --tf ball.json --size 512x512 --edges 8 16 32 --slices 100");
+  const fs::path tasks = "/proc/" + std::to_string(program) + "/task";
+  const auto threadsOfMesa = [&] {
+    std::size_t found = 0;
+    std::error_code gone;
+    for (const auto& task : fs::directory_iterator(tasks, gone))
+      found += readBytes(task.path() / "comm").find('$') != std::string::npos;
+    return found;
+  };
+  for (const auto late = after(20); threadsOfMesa() == 0 && !late();)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  CHECK(waitpid(program, nullptr, WNOHANG) == 0);
+  // A thread lowers its priority as it begins.
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  for (const auto& task : fs::directory_iterator(tasks)) {
+    const auto thread = static_cast<id_t>(std::stol(task.path().filename().string()));
+    CHECK(getpriority(PRIO_PROCESS, thread) == getpriority(PRIO_PROCESS, 0));
+  }
+  ::kill(program, SIGKILL);
+  waitFor(program);
+  takeResult(at.folder, 0);
 }

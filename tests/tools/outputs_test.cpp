@@ -69,6 +69,29 @@ TEST_CASE("With - a picture goes to stdout, and what is printed besides to stder
   CHECK((readBytes(at.at("all")) == "first\n" + png + "last\n"));
 }
 
+// What libraries print is caught behind the descriptor of stderr, which the user does not see.
+TEST_CASE("An output that is named as stderr arrives there", "[tools]") {
+  const Workplace at;
+  const std::string png = readBytes(at.at("one.png"));
+  for (const std::string name : {"/dev/stderr", "/dev/fd/2", "/proc/self/fd/2"}) {
+    CAPTURE(name);
+    const ProgramResult picture = at.run(kReference + "-o " + name);
+    CHECK(picture.status == 0);
+    CHECK(picture.out.empty());
+    CHECK((picture.err == png));
+  }
+  fs::create_symlink("/dev/stderr", at.at("link.png"));
+  CHECK((at.run(kReference + "-o link.png").err == png));
+  const ProgramResult stats = at.run(kReference + "-o two.png --stats /dev/stderr");
+  CHECK(stats.status == 0);
+  CHECK(stats.out == "two.png\n");
+  CHECK_THAT(stats.err, StartsWith("{\n") && EndsWith("}\n"));
+  CHECK(at.run(kReference + "-o /dev/stderr --stats /dev/fd/2").status == 2);
+  // Of a stderr that is closed or full nobody can be told but by the exit status.
+  CHECK(runShell(at.folder, "$umbrick " + kReference + "-o /dev/stderr 2>&-").status == 1);
+  CHECK(runShell(at.folder, "$umbrick " + kReference + "-o /dev/stderr 2> /dev/full").status == 1);
+}
+
 TEST_CASE("With - a conversion goes to stdout, verified before", "[tools]") {
   const Workplace at;
   for (const std::string format : {"nvdb", "nrrd"}) {
@@ -200,6 +223,18 @@ TEST_CASE("A stdout that is full or closed is an error of one line", "[tools]") 
   const ProgramResult picture = runShell(at.folder, "$umbrick " + kReference + "-o - >&-");
   CHECK(picture.status == 1);
   CHECK(lines(picture.err) == 1);
+}
+
+TEST_CASE("The name of an output is printed as it is, and on a terminal as what no terminal obeys", "[tools]") {
+  const Workplace at;
+  const std::string name = "a\x1b[31m.png";
+  CHECK(at.run(kReference + "-o '" + name + "'").out == name + "\n");
+  // script gives its command a terminal.
+  const ProgramResult shown = runShell(at.folder, "command -v script >&2 || exit 0; script -qec \"$umbrick " +
+                                                      kReference + "-o '" + name + "'\" /dev/null");
+  if (shown.err.empty()) return;  // there is no such program
+  CHECK(shown.status == 0);
+  CHECK_THAT(shown.out, Contains("a\\x1b[31m.png") && !Contains("\x1b[31m"));
 }
 
 TEST_CASE("A reader that has gone ends the program quietly", "[tools]") {

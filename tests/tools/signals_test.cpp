@@ -16,12 +16,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Waits as long as such a job needs to be amid its work.
-std::function<bool()> after(double seconds) {
-  const auto begin = std::chrono::steady_clock::now();
-  return [=] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds; };
-}
-
 // Writes a transfer function of so many points, each of another medium than its neighbours.
 void writeRough(const fs::path& path, int points) {
   std::mt19937 random(7);
@@ -67,6 +61,27 @@ TEST_CASE("Each signal ends a job of many steps within a second, and leaves noth
       CHECK(ended.seconds < kMostSeconds);
       CHECK(ended.result.status == 1);
       CHECK_THAT(ended.result.err, Contains("interrupted before it was written"));
+      CHECK(filesIn(at.folder) == before);
+    }
+}
+
+TEST_CASE("Each signal ends a look at a large volume or picture within a second", "[tools][slow]") {
+  const BallWorkplace at;
+  Image large(3000, 3000, 4);
+  for (std::size_t i = 0; i < large.pixels.size(); ++i) large.pixels[i] = static_cast<float>(i % 251) / 251;
+  writeExr(at.folder.path() / "large.exr", {{"", large}});
+  const std::size_t before = filesIn(at.folder);
+  const std::string endless = " /dev/zero --dims 4000 4000 4000 --type u8 ";
+  const std::vector<std::string> commands{"tf auto" + endless + "-o a.json",
+                                          "compare large.exr large.exr --flip-map a.png --difference a.exr"};
+  for (const int number : {SIGINT, SIGTERM, SIGHUP})
+    for (const std::string& command : commands) {
+      CAPTURE(command, number);
+      const Ended ended = endProgram(at.folder, command, number, after(0.4));
+      CHECK(ended.seconds < kMostSeconds);
+      CHECK(ended.result.status == 128 + number);  // these have no parts to keep
+      CHECK(ended.result.err == "umbrick: interrupted\n");
+      CHECK(ended.result.out.empty());
       CHECK(filesIn(at.folder) == before);
     }
 }
