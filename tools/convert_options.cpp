@@ -65,7 +65,7 @@ void addFileOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& comman
   app.add_option(
       "--frames", command->frames,
       "of a sequence, where input and output have a number in their names (frame_%04d.nrrd, out_%04d.vdb), or "
-      "the input is one file of several volumes (4D NIfTI, NRRD, MetaImage, .npy), counted from 0: A, A-B or "
+      "the input is one file of several volumes (4D NIfTI, NRRD, MetaImage, HDF5, .npy), counted from 0: A, A-B or "
       "A-B:step [all there are]");
   app.add_option("--frame", command->frame, "of one file of several volumes: only this one, counted from 0");
   app.add_option("-o,--output", command->output,

@@ -103,10 +103,13 @@ std::vector<Format> formats() {
        [](const fs::path& path, const OpenOptions& options) { return openLegacyVtk(path, options.parts); }},
       {{"HDF5",
         {".h5", ".hdf5", ".he5", ".nc", ".nc4"},
-        "a dataset of three axes, also of netCDF-4: file.h5:/path, or the only one; scale, offset, missing values"},
+        "a dataset of three axes, also of netCDF-4: file.h5:/path, or the only one; frames, components; scale, offset, "
+        "missing values"},
        [](Bytes b) { return b.starts_with("\x89HDF\r\n\x1a\n"); },
        false,
-       [](const fs::path& path, const OpenOptions& options) { return openHdf5(path, options.besideOnly); }},
+       [](const fs::path& path, const OpenOptions& options) {
+         return openHdf5(path, options.parts, options.besideOnly);
+       }},
       {{"NumPy",
         {".npy", ".npy.gz", ".npy.xz", ".npy.zst", ".npy.bz2"},
         "arrays of two or three axes in C or Fortran order"},

@@ -83,7 +83,9 @@ inline std::map<std::string, NamedTarget> targets() {
           if (const auto segments = openDicomSegments(path)) return readSegments(*segments);
           readAll(*openDicom(path));
         }}},
-      {"hdf5", {".h5", [](const std::filesystem::path& path, std::string_view) { readAll(*openHdf5(path)); }}},
+      {"hdf5", {".h5", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
+                  return openHdf5(path, parts);
+                })}},
       {"metaimage", {".mha", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
                        return openMetaImage(path, false, parts);
                      })}},
