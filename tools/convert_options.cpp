@@ -156,9 +156,10 @@ void addReadingOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& com
   app.add_flag("--override", command->options.source.open.overridePlace,
                "--spacing and --origin also take the place of what the file states, in the unit of its world");
   app.add_flag("--beside-only", command->options.source.open.besideOnly, kBesideOnly);
-  app.add_flag("--strict", command->options.source.open.strict,
-               "refuse NRRD and MetaImage files whose plain voxels are longer than the header says, which else is only "
-               "noted");
+  app.add_flag(
+      "--strict", command->options.source.open.strict,
+      "refuse files whose plain voxels are longer than the header (NRRD, MetaImage, NIfTI, .npy) or --dims and "
+      "--type say, which else is only noted");
 }
 
 // Which values stay.

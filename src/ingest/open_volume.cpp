@@ -71,7 +71,7 @@ std::vector<Format> formats() {
        },
        true,
        [](const fs::path& path, const OpenOptions& options) {
-         return openNifti(path, options.parts, options.besideOnly);
+         return openNifti(path, options.parts, options.besideOnly, options.strict);
        }},
       {{"DICOM",
         {".dcm", ".ima"},
@@ -115,7 +115,7 @@ std::vector<Format> formats() {
         "arrays of two or three axes in C or Fortran order"},
        [](Bytes b) { return b.starts_with("\x93NUMPY"); },
        false,
-       [](const fs::path& path, const OpenOptions& options) { return openNpy(path, options.parts); }},
+       [](const fs::path& path, const OpenOptions& options) { return openNpy(path, options.parts, options.strict); }},
   };
 }
 
@@ -233,7 +233,7 @@ std::unique_ptr<VoxelSource> openPlaced(const fs::path& path, const OpenOptions&
   const auto inUnit = [&](std::unique_ptr<VoxelSource> source) {
     return options.lengthUnit.empty() ? std::move(source) : inLengthUnit(std::move(source), options.lengthUnit);
   };
-  if (options.raw) return inUnit(openRaw(path, *options.raw, options.parts));
+  if (options.raw) return inUnit(openRaw(path, *options.raw, options.parts, options.strict));
   requireOrdinary(path);
   if (options.besideOnly) requireNoWayOut(path);
   const auto format = formatOf(path);

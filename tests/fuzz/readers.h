@@ -92,7 +92,9 @@ inline std::map<std::string, NamedTarget> targets() {
       {"nifti", {".nii", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
                    return openNifti(path, parts);
                  })}},
-      {"npy", {".npy", volumeTarget(openNpy)}},
+      {"npy", {".npy", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
+                 return openNpy(path, parts);
+               })}},
       {"nrrd", {".nrrd", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
                   return openNrrd(path, false, parts);
                 })}},
