@@ -41,7 +41,8 @@ struct Format {
 constexpr std::size_t kMagicBytes = 352;
 
 DicomOptions dicomOptions(const OpenOptions& options) {
-  return {options.series, options.where, options.spacing, options.origin, options.overridePlace, options.evenSlices};
+  return {options.series,        options.where,      options.spacing, options.origin,
+          options.overridePlace, options.evenSlices, options.parts};
 }
 
 std::vector<Format> formats() {
@@ -75,13 +76,14 @@ std::vector<Format> formats() {
        }},
       {{"DICOM",
         {".dcm", ".ima"},
-        "a file or a folder of them: grey series, single- and multi-frame, raw and compressed"},
+        "a file or a folder of them: grey and coloured series, single- and multi-frame, raw and compressed"},
        [](Bytes b) { return b.size() >= 132 && b.substr(128, 4) == "DICM"; },
        true,
        [](const fs::path& path, const OpenOptions& options) { return openDicom(path, dicomOptions(options)); }},
       {{"images",
         {".tif", ".tiff", ".png"},
-        "grey TIFF of one or many pages and PNG: a file, slice_%04d.tif, 'slice*.png' or a folder; OME-XML, ImageJ"},
+        "grey and coloured TIFF of one or many pages and PNG: a file, slice_%04d.tif, 'slice*.png' or a folder; "
+        "OME-XML, ImageJ"},
        [](Bytes b) {
          return b.starts_with(Bytes("II*\0", 4)) || b.starts_with(Bytes("MM\0*", 4)) ||
                 b.starts_with(Bytes("II+\0", 4)) || b.starts_with(Bytes("MM\0+", 4)) || b.starts_with("\x89PNG");
