@@ -93,7 +93,8 @@ void addTargetOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& comm
              "--to", command->target,
              "make a .vdb ready for blender, houdini, unreal or omniverse: its unit of length, the axis that is "
              "up there, a grid called density, and but for houdini values from 0 (the background, by default "
-             "the border's) to 1 as half floats, with the inverse in the metadata; each change is said [none]")
+             "the border's) to 1 as half floats, with the inverse in the metadata; vectors turn along, in lengths of "
+             "that unit, and are called velocity or vel, colours color or Cd; each change is said [none]")
           ->check(CLI::IsMember(listNames(kTargets)));
   app.add_option(
          "--up", command->up,

@@ -29,7 +29,6 @@ class Refusal {
     when(build.step > 0, "build.step");
     when(build.maxError.has_value(), "build.maxError");
     when(job_.options.isosurface.has_value(), "options.isosurface");
-    when(job_.options.output.target.has_value(), "output.target");
   }
 
  private:

@@ -47,13 +47,19 @@ void judgeBackground(const openvdb::FloatGrid& grid, ConvertedGrid& report) {
   if (static_cast<double>(active) > kNearlyAll * static_cast<double>(all)) report.border = usualBorder(grid);
 }
 
+// Whether a job makes a grid of floats out of the values of its volume: neither vectors nor labels.
+bool makesValues(const VolumeJob& job) {
+  if (job.options.labels) return false;
+  return job.opened ? job.opened->info().valuesPerVoxel == 1 : !job.options.source.open.parts.allComponents;
+}
+
 // The background is the border's where that is asked for, where limits would keep the usual one or a surface would
 // lie below it, or where it will be the 0 of a target.
 void settleBackground(VolumeJob& job) {
   BuildOptions& build = job.options.build;
   const bool asked = job.options.source.backgroundFromBorder, given = build.background.has_value();
   if (!asked && given) refuseKept(job.input, build, *build.background, "as was asked for");
-  const bool forTarget = !given && mapsValues(job.options) && !isPipe(job.input);
+  const bool forTarget = !given && mapsValues(job.options) && makesValues(job) && !isPipe(job.input);
   const bool closed = !job.options.isosurface || job.options.isosurface->value > 0;
   const bool usualFits = given || (!keepsBackground(build, 0) && !forTarget && closed);
   if (!asked && usualFits) return;
@@ -74,18 +80,31 @@ JobGrid* valuesOf(VolumeJob& job) {
   return job.options.labels || !first.grid->isType<openvdb::FloatGrid>() ? nullptr : &first;
 }
 
-// Makes the grids ready for a target, which vectors and labels are not asked for.
+// Makes the grids of all jobs ready for a target.
 void prepareForTarget(std::span<VolumeJob> jobs, ConvertReport& report) {
   const OutputOptions& output = jobs.front().options.output;
   if (!output.target) return;
-  std::vector<openvdb::FloatGrid*> grids;
-  for (VolumeJob& job : jobs) {
-    auto& values = static_cast<openvdb::FloatGrid&>(*job.grids.front().grid);
-    job.map = prepareFor(job.options, /*foreign=*/false, values, job.grids.front().report);
-    grids.push_back(&values);
-  }
-  if (const std::string line = nameFor(*output.target, grids); !line.empty()) report.notes.push_back(line);
-  for (VolumeJob& job : jobs) job.grids.front().report.label = job.grids.front().grid->getName();
+  std::vector<openvdb::FloatGrid*> values;
+  std::vector<NamedVectors> vectors;
+  openvdb::GridCPtrVec all;
+  for (VolumeJob& job : jobs)
+    for (JobGrid& made : job.grids) {
+      all.push_back(made.grid);
+      if (job.options.labels) {
+        prepareLabel(job.options, static_cast<openvdb::FloatGrid&>(*made.grid), made.report);
+      } else if (const auto grid = openvdb::gridPtrCast<openvdb::Vec3SGrid>(made.grid)) {
+        job.vectorMap = prepareVectors(job.options, job.meaning, *grid, made.report);
+        // A name that was given stays.
+        if (job.options.names.empty()) vectors.push_back({grid.get(), job.meaning, job.vectorMap->velocity});
+      } else {
+        values.push_back(static_cast<openvdb::FloatGrid*>(made.grid.get()));
+        job.map = prepareFor(job.options, /*foreign=*/false, *values.back(), made.report);
+      }
+    }
+  if (const std::string line = nameFor(*output.target, values); !line.empty()) report.notes.push_back(line);
+  for (std::string& line : nameVectors(*output.target, vectors, all)) report.notes.push_back(std::move(line));
+  for (VolumeJob& job : jobs)
+    for (JobGrid& made : job.grids) made.report.label = made.grid->getName();
 }
 
 std::unique_ptr<VoxelSource> openAgain(const VolumeJob& job, ReadNotes& notes) {
@@ -111,7 +130,8 @@ void verify(VolumeJob& job, std::size_t place, const fs::path& written, const fs
     seen = job.segments ? verifySegmentGrids(*job.segments, labels, back, build.progress)
                         : verifyLabelGrids(*source, labels, back, build.progress);
   } else if (const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(job.grids.front().grid)) {
-    seen = {verifyVectorGrid(*source, *readVectorsBack(written, *vectors, place), build)};
+    const auto back = readVectorsBack(written, *vectors, place);
+    seen = {verifyVectorGrid(*source, *unmapped(back, job.vectorMap), build)};
   } else {
     const auto back = readBack(written, static_cast<const openvdb::FloatGrid&>(*job.grids.front().grid), place);
     seen = {verifyGrid(*source, *unmapped(back, job.map), build, job.grids.front().report.build.quantising.max)};
@@ -123,15 +143,18 @@ void verify(VolumeJob& job, std::size_t place, const fs::path& written, const fs
 }
 
 // Says what becomes of the numbers of a vector or colour.
-void noteVectors(const VolumeInfo& info, std::vector<std::string>& notes) {
+// @param forTarget  a target will say what becomes of vectors
+void noteVectors(const VolumeInfo& info, bool forTarget, std::vector<std::string>& notes) {
   if (const double scale = colourScale(info); scale != 1) {
     std::ostringstream text;
     text << "colours are divided by " << scale << " to lie from 0 to 1, and keep the tone curve of the file";
     notes.push_back(text.str());
   }
-  if (info.meaning == VoxelMeaning::vector)
-    notes.push_back(info.vectorToWorld == glm::dmat3(1) ? "vectors are kept as the file states them"
-                                                        : "vectors are turned into the axes of the world");
+  if (info.meaning != VoxelMeaning::vector) return;
+  if (info.vectorToWorld != glm::dmat3(1))
+    notes.push_back("vectors are turned into the axes of the world");
+  else if (!forTarget)
+    notes.push_back("vectors are kept as the file states them");
 }
 
 ConvertedGrid reportOf(const VolumeJob& job, const VolumeInfo& info) {
@@ -161,7 +184,8 @@ void takeLabels(const VolumeInfo& info, LabelGrids labels, VolumeJob& job) {
 void buildVectors(VoxelSource& source, VolumeJob& job, const BuildOptions& build) {
   BuiltVectors built = buildVectorGrid(source, build);
   ConvertedGrid report = reportOf(job, source.info());
-  noteVectors(source.info(), report.notes);
+  job.meaning = source.info().meaning;
+  noteVectors(source.info(), job.options.output.target.has_value(), report.notes);
   report.build = std::move(built.report);
   job.grids.push_back({built.grid, std::move(report)});
 }
@@ -187,7 +211,7 @@ std::vector<VolumeJob> volumeJobs(const std::vector<fs::path>& inputs, const Con
 std::unique_ptr<VoxelSource> openJob(VolumeJob& job) {
   if (job.options.verify) expectFile(job.input, "options.verify");
   settleBackground(job);
-  if (BuildOptions& build = job.options.build; mapsValues(job.options))
+  if (BuildOptions& build = job.options.build; mapsValues(job.options) && makesValues(job))
     leaveOutBelow(build.background.value_or(0), build);
   return openFiltered(job.input, job.options.source, job.options.build.background.value_or(0), *job.notes,
                       std::move(job.opened));

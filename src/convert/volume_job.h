@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "convert/target_grid.h"
+#include "convert/target_vectors.h"
 #include "convert/volume_source.h"
 #include "umbrick/convert/convert_options.h"
 #include "umbrick/convert/convert_report.h"
@@ -31,7 +32,9 @@ struct VolumeJob {
   ConvertOptions options;  // with the name of its grid, and its background once that is found
   std::string unit;
   std::unique_ptr<ReadNotes> notes = std::make_unique<ReadNotes>();  // sources hold on to its place
-  std::optional<ValueMap> map;          // of the values of the grid, where a target asks for one
+  std::optional<ValueMap> map;                  // of the values of the grid, where a target asks for one
+  std::optional<VectorMap> vectorMap;           // the same of a grid of vec3
+  VoxelMeaning meaning = VoxelMeaning::scalar;  // of the numbers of a grid of vec3
   std::string settled;                  // how its background was found where nobody asked for it; becomes a note
   bool usualName = false;               // nobody has given the grid a name
   std::unique_ptr<VoxelSource> opened;  // the input, where it had to be opened before
