@@ -46,6 +46,9 @@ struct VolumeJob {
   ConvertedGrid report;  // what is known before a grid is built
 };
 
+/// The options of a pass over the voxels of a job, which tells how far it is.
+BuildOptions passOf(const VolumeJob& job, ConvertStage stage, const VolumeInfo& info);
+
 /// One for each input.
 /// @param options  settled  @throw OptionsError  names or units that do not fit
 std::vector<VolumeJob> volumeJobs(const std::vector<std::filesystem::path>& inputs, const ConvertOptions& options);
@@ -62,6 +65,13 @@ void buildVolume(VoxelSource& source, VolumeJob& job);
 
 /// Opens the input of a job and builds its grids. @return the world of the input
 World openAndBuild(VolumeJob& job);
+
+/// Whether jobs are the components of one volume, each a grid of floats, which can be built in one pass over it. A mask
+/// is read for each of them.
+bool shareVolume(const std::vector<VolumeJob>& jobs);
+
+/// Does what openAndBuild does for the components of one volume. @pre shareVolume(jobs)
+World openAndBuildTogether(std::vector<VolumeJob>& jobs);
 
 /// Writes the grids, and verifies the file before it takes its name where that is asked for. The reports of the jobs
 /// are moved from.
