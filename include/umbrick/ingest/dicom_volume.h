@@ -41,6 +41,11 @@ struct UnevenSlices : IoError {
   using IoError::IoError;
 };
 
+/// A segmentation, whose frames overlap or leave slices out: openDicomSegments reads it.
+struct SegmentsFound : IoError {
+  using IoError::IoError;
+};
+
 struct DicomOptions {
   /// The UID of a series or its place in the list, from 1; empty for the only one. Of a series that is picked, damaged
   /// files and slices unlike most of the others, such as a localizer, are left out.

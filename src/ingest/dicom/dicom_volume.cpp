@@ -250,6 +250,33 @@ void dropRefused(std::vector<DicomFile>& files, bool picked, std::vector<std::st
   std::erase_if(files, refused);
 }
 
+[[noreturn]] void refuseSegments(const DicomFile& file, const std::string& why) {
+  const std::size_t count = file.segments.size();
+  throw SegmentsFound(file.path.string() + ": a DICOM segmentation of " + std::to_string(count) +
+                      (count == 1 ? " segment" : " segments") + ", whose frames are no volume: " + why);
+}
+
+// Frames of a segment are a volume where they follow each other. Those of several are none together.
+void checkSegments(const std::vector<DicomFile>& files) {
+  for (const DicomFile& file : files)
+    for (const DicomFrame& frame : file.frames)
+      if (frame.segment != files.front().frames.front().segment)
+        refuseSegments(file, "expected one segment, found frames of " +
+                                 std::to_string(files.front().frames.front().segment) + " and " +
+                                 std::to_string(frame.segment));
+}
+
+DicomStack stacked(const std::string& name, std::vector<DicomFile> files, const DicomOptions& options,
+                   std::vector<std::string>& notes) {
+  const DicomFile first = files.front();
+  try {
+    return {name, std::move(files), options, notes};
+  } catch (const IoError& error) {
+    if (first.segments.empty()) throw;
+    refuseSegments(first, error.what());
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<VoxelSource> openDicomFolder(const fs::path& path, DicomFolder folder, const DicomOptions& options) {
@@ -258,8 +285,9 @@ std::unique_ptr<VoxelSource> openDicomFolder(const fs::path& path, DicomFolder f
   std::vector<DicomFile> files = pickSeries(path, std::move(folder), options.series, info.notes);
   dropRefused(files, !options.series.empty() || !options.where.empty(), info.notes);
   keepWhere(info.name, files, options.where);
+  checkSegments(files);
   joinNotes(files, info.notes);
-  DicomStack stack(info.name, std::move(files), options, info.notes);
+  DicomStack stack = stacked(info.name, std::move(files), options, info.notes);
   for (const DicomFile& file : stack.files()) info.fileBytes += checkedFileSize(file.path);
   const DicomFile& first = stack.files().front();
   info.dims = {first.columns, first.rows, std::ssize(stack.blends())};
