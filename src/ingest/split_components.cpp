@@ -19,13 +19,12 @@ class SharedSlices {
   double read(std::size_t component, std::int64_t count, std::span<float> out) {
     const std::int64_t begin = next_[component], end = begin + count, held = first_ + std::ssize(slices_);
     if (end > held) fetch(end - held);
-    const auto several = static_cast<std::size_t>(info().valuesPerVoxel);
     const auto voxels = static_cast<std::size_t>(info().dims.x * info().dims.y);
     double error = 0;
     for (std::int64_t z = begin; z < end; ++z) {
       const Slice& slice = slices_[static_cast<std::size_t>(z - first_)];
-      float* to = out.data() + static_cast<std::size_t>(z - begin) * voxels;
-      for (std::size_t i = 0; i < voxels; ++i) to[i] = slice.values[i * several + component];
+      std::copy_n(slice.values.begin() + static_cast<std::ptrdiff_t>(component * voxels), voxels,
+                  out.begin() + (z - begin) * static_cast<std::ptrdiff_t>(voxels));
       error = std::max(error, slice.error);
     }
     next_[component] = end;
@@ -40,7 +39,7 @@ class SharedSlices {
 
  private:
   struct Slice {
-    std::vector<float> values;
+    std::vector<float> values;  // all voxels of one component, then those of the next
     double error = 0;
   };
 
@@ -50,11 +49,20 @@ class SharedSlices {
       source_->skipSlices(unread);
       fetched_ += unread;
     }
-    const auto size = static_cast<std::size_t>(info().dims.x * info().dims.y * info().valuesPerVoxel);
-    slab_.resize(size * static_cast<std::size_t>(count));
+    const auto voxels = static_cast<std::size_t>(info().dims.x * info().dims.y);
+    const auto several = static_cast<std::size_t>(info().valuesPerVoxel);
+    slab_.resize(voxels * several * static_cast<std::size_t>(count));
     const double error = source_->readSlab(count, slab_);
-    for (auto from = slab_.begin(); from != slab_.end(); from += static_cast<std::ptrdiff_t>(size))
-      slices_.push_back({{from, from + static_cast<std::ptrdiff_t>(size)}, error});
+    for (std::int64_t z = 0; z < count; ++z) {
+      Slice& slice = slices_.emplace_back(Slice{std::vector<float>(voxels * several), error});
+      const float* from = slab_.data() + static_cast<std::size_t>(z) * voxels * several;
+      // Some voxels at a time, whose numbers stay in the cache from one component to the next.
+      constexpr std::size_t kAtOnce = 64;
+      for (std::size_t begin = 0; begin < voxels; begin += kAtOnce)
+        for (std::size_t k = 0; k < several; ++k)
+          for (std::size_t i = begin; i < std::min(begin + kAtOnce, voxels); ++i)
+            slice.values[k * voxels + i] = from[i * several + k];
+    }
     fetched_ += count;
   }
 
