@@ -81,7 +81,9 @@ inline std::map<std::string, NamedTarget> targets() {
        {".dcm",
         [](const std::filesystem::path& path, std::string_view) {
           if (const auto segments = openDicomSegments(path)) return readSegments(*segments);
-          readAll(*openDicom(path));
+          DicomOptions options;
+          options.parts = allParts(0);
+          readAll(*openDicom(path, options));
         }}},
       {"hdf5", {".h5", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
                   return openHdf5(path, parts);

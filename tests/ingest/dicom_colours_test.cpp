@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 using namespace umbrick;
 using namespace umbrick::dicom_files;
 using Catch::Contains;
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -177,4 +179,28 @@ TEST_CASE("Colours that are not read are refused by their names", "[ingest]") {
   files.write("a.dcm", coloured(5, "RGB", 3).put(0x7fe0, 0x10, "OW", pixels));
   CHECK_THROWS_AS(files.open(), OddSlices);
   CHECK_THROWS_WITH(files.open(), Contains("PhotometricInterpretation: expected MONOCHROME2 as in"));
+}
+
+TEST_CASE("Coloured DICOM with flipped or missing bytes ends in colours or an Error", "[ingest]") {
+  const DicomFolder files;
+  const fs::path path = files.folder.path() / "a.dcm";
+  OpenOptions options;
+  options.parts.allComponents = true;
+  std::mt19937 random(11);
+  for (const char* seed : {"seed-rgb", "seed-palette", "seed-rgb-rle"}) {
+    const std::string good = readBytes(std::string(UMBRICK_FUZZ_CORPUS "/dicom/") + seed);
+    for (int trial = 0; trial < 400; ++trial) {
+      std::string bytes = good;
+      for (int i = 0; i <= trial % 3; ++i) bytes[random() % bytes.size()] = static_cast<char>(random());
+      if (trial % 5 == 0) bytes.resize(random() % bytes.size());
+      writeBytes(path, bytes);
+      try {
+        const auto source = openVolume(path, options);
+        const VolumeInfo& info = source->info();
+        std::vector<float> slice(static_cast<std::size_t>(info.dims.x * info.dims.y * info.valuesPerVoxel));
+        source->readSlab(1, slice);
+      } catch (const Error&) {
+      }
+    }
+  }
 }

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 TEST_CASE("Frames and colours of a netCDF file are told and picked as those of other formats", "[tools]") {
   const TemporaryFolder folder;
-  fs::copy_file(UMBRICK_FUZZ_CORPUS "/hdf5/frames", folder.path() / "f.nc");  // 2 frames of 1 x 2 x 2 colours
+  fs::copy_file(UMBRICK_FUZZ_CORPUS "/hdf5/seed-frames", folder.path() / "f.nc");  // 2 frames of 1 x 2 x 2 colours
   const ProgramResult info = runProgram(folder, "info f.nc");
   CHECK(info.status == 0);
   CHECK_THAT(info.out, Contains("frames         2") && Contains("components     3, colour") &&
