@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "ingest/hdf5_file.h"
+#include "ingest/write_hdf5.h"
 #include "support/read_volume.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/list_arrays.h"
