@@ -65,7 +65,7 @@ void addFileOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& comman
   app.add_option(
       "--frames", command->frames,
       "of a sequence, where input and output have a number in their names (frame_%04d.nrrd, out_%04d.vdb), or "
-      "the input is one file of several volumes (4D NIfTI, NRRD, MetaImage, .npy), counted from 0: A, A-B or "
+      "the input is one file of several volumes (4D NIfTI, NRRD, MetaImage, HDF5, .npy), counted from 0: A, A-B or "
       "A-B:step [all there are]");
   app.add_option("--frame", command->frame, "of one file of several volumes: only this one, counted from 0");
   app.add_option("-o,--output", command->output,
@@ -93,7 +93,8 @@ void addTargetOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& comm
              "--to", command->target,
              "make a .vdb ready for blender, houdini, unreal or omniverse: its unit of length, the axis that is "
              "up there, a grid called density, and but for houdini values from 0 (the background, by default "
-             "the border's) to 1 as half floats, with the inverse in the metadata; each change is said [none]")
+             "the border's) to 1 as half floats, with the inverse in the metadata; vectors turn along, in lengths of "
+             "that unit, and are called velocity or vel, colours color or Cd; each change is said [none]")
           ->check(CLI::IsMember(listNames(kTargets)));
   app.add_option(
          "--up", command->up,
@@ -156,9 +157,10 @@ void addReadingOptions(CLI::App& app, const std::shared_ptr<ConvertCommand>& com
   app.add_flag("--override", command->options.source.open.overridePlace,
                "--spacing and --origin also take the place of what the file states, in the unit of its world");
   app.add_flag("--beside-only", command->options.source.open.besideOnly, kBesideOnly);
-  app.add_flag("--strict", command->options.source.open.strict,
-               "refuse NRRD and MetaImage files whose plain voxels are longer than the header says, which else is only "
-               "noted");
+  app.add_flag(
+      "--strict", command->options.source.open.strict,
+      "refuse files whose plain voxels are longer than the header (NRRD, MetaImage, NIfTI, .npy) or --dims and "
+      "--type say, which else is only noted");
 }
 
 // Which values stay.

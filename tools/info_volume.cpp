@@ -14,6 +14,7 @@
 #include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/ingest/list_arrays.h"
 #include "umbrick/ingest/open_volume.h"
+#include "umbrick/ingest/segment_source.h"
 #include "umbrick/ingest/volume_parts.h"
 #include "umbrick/ingest/volume_values.h"
 #include "umbrick/render/open_reference.h"
@@ -28,7 +29,7 @@ struct Described {
   std::vector<DicomSeries> series;
   std::vector<ArrayRow> arrays;
   std::optional<VolumeInfo> volume;  // nothing where there are several and none is picked
-  bool several = false;              // the volume has several frames or components, none of which is picked
+  bool several = false;              // it has several frames, components or segments, none of which is picked
   std::optional<VolumeValues> values;
 };
 
@@ -40,6 +41,11 @@ std::optional<VolumeInfo> openOrList(const fs::path& file, const OpenOptions& op
 } catch (const SeveralParts& several) {
   found.several = true;
   return several.info;
+} catch (const SegmentsFound&) {
+  const auto segments = openDicomSegments(file, open.lengthUnit);
+  if (!segments) throw;
+  found.several = true;
+  return segments->info();
 } catch (const IoError&) {
   // Arrays of which none is the only one.
   const auto volumes =
@@ -91,6 +97,7 @@ nlohmann::json toJson(const VolumeLabel& label) {
 std::string pickText(const VolumeInfo& info) {
   std::string text;
   if (info.frames > 1) text = "--frame 0 to " + std::to_string(info.frames - 1);
+  if (info.frames == 1 && info.components == 1) return "convert --labels, or some of them by value or name";
   if (info.components > 1)
     text += (text.empty() ? "" : ", ") + std::string("--component 0 to ") + std::to_string(info.components - 1) +
             " or magnitude";

@@ -15,7 +15,7 @@ namespace umbrick::tools {
 namespace {
 
 // The fields of ConvertOptions that the library's messages name, longer ones before those that they begin with.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 25> kWords{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 27> kWords{{
     {"options.grids", "--grid"},
     {"options.isosurface", "--isosurface"},
     {"options.names", "--name"},
@@ -41,10 +41,13 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 25> kWords{{
     {"source.backgroundFromBorder", "--background auto"},
     {"source.resample", "--resample"},
     {"source.open.lengthUnit", "--length-unit"},
+    {"source.open.origin", "--origin"},
+    {"source.open.spacing", "--spacing"},
 }};
 
 // What an option can do about an error of a reader.
 std::string hintOf(const std::exception& error) {
+  if (dynamic_cast<const SegmentsFound*>(&error)) return "; convert --labels makes them";
   if (dynamic_cast<const SeveralPhases*>(&error)) return "; --where Tag=value picks";
   if (dynamic_cast<const OddSlices*>(&error)) return "; it is left out where --series names the series";
   if (dynamic_cast<const UnplacedSlices*>(&error)) return "; give --spacing";

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/convert/convert.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "convert/grid_job.h"
 #include "convert/part_jobs.h"
 #include "convert/settle_options.h"
@@ -20,10 +23,12 @@ ConvertReport convertVolumes(const std::vector<fs::path>& inputs, const fs::path
   for (VolumeJob& volume : volumeJobs(inputs, settled(options))) {
     // Each is brought to the world of those before it.
     if (!volume.options.source.world && !jobs.empty()) volume.options.source.world = world;
-    for (VolumeJob& job : partJobs(std::move(volume), output)) {
-      world = completed(world, openAndBuild(job));
-      jobs.push_back(std::move(job));
-    }
+    std::vector<VolumeJob> parts = partJobs(std::move(volume), output);
+    if (shareVolume(parts))
+      world = completed(world, openAndBuildTogether(parts));
+    else
+      for (VolumeJob& job : parts) world = completed(world, openAndBuild(job));
+    std::move(parts.begin(), parts.end(), std::back_inserter(jobs));
   }
   return writeVolumes(jobs, output);
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/part_jobs.h"
 
+#include <exception>
 #include <utility>
 
+#include "convert/segment_filters.h"
 #include "convert/write_output.h"
 #include "umbrick/convert/options_error.h"
 
@@ -29,7 +31,6 @@ class Refusal {
     when(build.step > 0, "build.step");
     when(build.maxError.has_value(), "build.maxError");
     when(job_.options.isosurface.has_value(), "options.isosurface");
-    when(job_.options.output.target.has_value(), "output.target");
   }
 
  private:
@@ -98,6 +99,16 @@ std::vector<PartPlan> planSeveral(const VolumeJob& job, const SeveralParts& seve
   return {vectorPlan(job, info)};
 }
 
+// What a library refuses of the filters is what the caller asked for.
+std::unique_ptr<SegmentSource> filtered(std::unique_ptr<SegmentSource> segments, const SourceOptions& source,
+                                        ReadNotes& notes) try {
+  return filteredSegments(std::move(segments), source, notes);
+} catch (const OptionsError&) {
+  throw;
+} catch (const InvalidArgument& error) {
+  std::throw_with_nested(OptionsError(error.what()));
+}
+
 void expectFileTwice(const VolumeJob& job) {
   if (job.options.verify) expectFile(job.input, "options.verify");
   if (job.options.source.backgroundFromBorder) expectFile(job.input, "source.backgroundFromBorder");
@@ -114,11 +125,11 @@ std::vector<PartPlan> planParts(VolumeJob& job, const fs::path& output) {
     const SourceOptions& source = job.options.source;
     job.segments = source.open.raw ? nullptr : openDicomSegments(job.input, source.open.lengthUnit);
     if (job.segments) {
-      checkLabelOptions(job, job.segments->info().labels.size() > 1 ? 2 : 1);
-      const Refusal refuse(job, "segments of a DICOM segmentation");
-      refuse.when(!source.mask.empty(), "source.mask");
-      refuse.when(source.crop.has_value(), "source.crop");
-      refuse.when(!source.open.space.empty() || source.world, "source.open.space, or another input before it,");
+      checkLabelOptions(job, /*layers=*/1);
+      const Refusal refuse(job, "segments of a DICOM segmentation, whose frames state their places");
+      refuse.when(source.open.spacing.has_value(), "source.open.spacing");
+      refuse.when(source.open.origin.has_value(), "source.open.origin");
+      job.segments = filtered(std::move(job.segments), source, *job.notes);
       return {whole};
     }
   }
@@ -155,6 +166,7 @@ std::vector<VolumeJob> partJobs(VolumeJob job, const fs::path& output) {
     part.report = job.report;
     part.opened = std::move(job.opened);  // which is there for a single plan alone, as are segments
     part.segments = std::move(job.segments);
+    if (part.segments) part.notes = std::move(job.notes);
     usePlan(plan, part);
     jobs.push_back(std::move(part));
   }

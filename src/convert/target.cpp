@@ -13,7 +13,8 @@ const TargetTraits& traitsOf(Target target) {
                                          .longest = 2048,
                                          .mostBytes = 2 * kGiB,
                                          .dense = true};
-  static constexpr TargetTraits kHoudini{.name = "Houdini", .metresPerUnit = 1, .unit = "m", .up = Axis::y};
+  static constexpr TargetTraits kHoudini{
+      .name = "Houdini", .metresPerUnit = 1, .unit = "m", .up = Axis::y, .velocity = "vel", .colour = "Cd"};
   static constexpr TargetTraits kUnreal{.name = "Unreal Engine",
                                         .metresPerUnit = 0.01,
                                         .unit = "cm",

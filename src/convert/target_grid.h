@@ -31,6 +31,9 @@ void leaveOutBelow(float background, BuildOptions& build);
 std::optional<ValueMap> prepareFor(const ConvertOptions& options, bool foreign, openvdb::FloatGrid& grid,
                                    ConvertedGrid& report);
 
+/// Does the same for the grid of a label, whose shares from 0 to 1 become half floats and keep their name.
+void prepareLabel(const ConvertOptions& options, openvdb::FloatGrid& grid, ConvertedGrid& report);
+
 /// Gives the one grid of a file, or the first of several, the name under which the target looks for a density, unless a
 /// grid has it.
 /// @return a line that says so, or nothing

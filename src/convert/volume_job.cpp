@@ -1,32 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert/volume_job.h"
 
-#include <set>
+#include <algorithm>
 #include <sstream>
 #include <utility>
 
 #include "convert/background.h"
-#include "convert/check_verified.h"
 #include "convert/grid_names.h"
 #include "convert/pass.h"
 #include "convert/replace_by_isosurface.h"
-#include "convert/write_output.h"
 #include "umbrick/convert/options_error.h"
+#include "umbrick/grid/build_grids.h"
 #include "umbrick/grid/float_grid.h"
 #include "umbrick/grid/label_grids.h"
+#include "umbrick/grid/resample.h"
 #include "umbrick/grid/vector_grid.h"
-#include "umbrick/vdb/read_back.h"
+#include "umbrick/ingest/split_components.h"
 
 namespace umbrick {
 namespace {
 namespace fs = std::filesystem;
-
-// The options of a pass over the voxels, which tells how far it is.
-BuildOptions passOf(const VolumeJob& job, ConvertStage stage, const VolumeInfo& info) {
-  BuildOptions build = job.options.build;
-  build.progress = beginPass(job.options.progress, stage, job.input, unpackedBytes(info));
-  return build;
-}
 
 // Keeps what resampling did in the metadata of the grid.
 void describeResampling(openvdb::FloatGrid& grid, const ResampleReport& report) {
@@ -38,13 +31,10 @@ void describeResampling(openvdb::FloatGrid& grid, const ResampleReport& report) 
   grid.insertMeta("resample_integral_after", openvdb::DoubleMetadata(report.integralAfter));
 }
 
-// Looks at how much of a volume stays, so that a background that leaves out nothing is noticed.
-void judgeBackground(const openvdb::FloatGrid& grid, ConvertedGrid& report) {
-  constexpr double kNearlyAll = 0.95;
-  const std::uint64_t active = report.build.activeVoxels, all = report.build.voxels;
-  if (2 * active <= all) return;
-  if (const auto usual = usualValue(grid); usual && 2 * usual->voxels > all) report.usual = usual;
-  if (static_cast<double>(active) > kNearlyAll * static_cast<double>(all)) report.border = usualBorder(grid);
+// Whether a job makes a grid of floats out of the values of its volume: neither vectors nor labels.
+bool makesValues(const VolumeJob& job) {
+  if (job.options.labels) return false;
+  return job.opened ? job.opened->info().valuesPerVoxel == 1 : !job.options.source.open.parts.allComponents;
 }
 
 // The background is the border's where that is asked for, where limits would keep the usual one or a surface would
@@ -53,7 +43,7 @@ void settleBackground(VolumeJob& job) {
   BuildOptions& build = job.options.build;
   const bool asked = job.options.source.backgroundFromBorder, given = build.background.has_value();
   if (!asked && given) refuseKept(job.input, build, *build.background, "as was asked for");
-  const bool forTarget = !given && mapsValues(job.options) && !isPipe(job.input);
+  const bool forTarget = !given && mapsValues(job.options) && makesValues(job) && !isPipe(job.input);
   const bool closed = !job.options.isosurface || job.options.isosurface->value > 0;
   const bool usualFits = given || (!keepsBackground(build, 0) && !forTarget && closed);
   if (!asked && usualFits) return;
@@ -68,70 +58,27 @@ void settleBackground(VolumeJob& job) {
         "the surface";
 }
 
-// The grid of a job that holds the values of its volume: neither vectors nor labels.
-JobGrid* valuesOf(VolumeJob& job) {
-  JobGrid& first = job.grids.front();
-  return job.options.labels || !first.grid->isType<openvdb::FloatGrid>() ? nullptr : &first;
-}
-
-// Makes the grids ready for a target, which vectors and labels are not asked for.
-void prepareForTarget(std::span<VolumeJob> jobs, ConvertReport& report) {
-  const OutputOptions& output = jobs.front().options.output;
-  if (!output.target) return;
-  std::vector<openvdb::FloatGrid*> grids;
-  for (VolumeJob& job : jobs) {
-    auto& values = static_cast<openvdb::FloatGrid&>(*job.grids.front().grid);
-    job.map = prepareFor(job.options, /*foreign=*/false, values, job.grids.front().report);
-    grids.push_back(&values);
-  }
-  if (const std::string line = nameFor(*output.target, grids); !line.empty()) report.notes.push_back(line);
-  for (VolumeJob& job : jobs) job.grids.front().report.label = job.grids.front().grid->getName();
-}
-
-std::unique_ptr<VoxelSource> openAgain(const VolumeJob& job, ReadNotes& notes) {
-  SourceOptions source = job.options.source;
-  source.open.parts.kept = job.again;
-  return openFiltered(job.input, source, job.options.build.background.value_or(0), notes);
-}
-
-// Reads the grids of the job back from the file and compares them with the volume.
-// @param place  of the first one in the file
-void verify(VolumeJob& job, std::size_t place, const fs::path& written, const fs::path& output) {
-  ReadNotes again;
-  const auto source = job.segments ? nullptr : openAgain(job, again);
-  const BuildOptions build = passOf(job, ConvertStage::verifying, job.segments ? job.segments->info() : source->info());
-  std::vector<VerifyReport> seen;
-  if (job.options.labels) {
-    std::vector<VolumeLabel> labels;
-    std::vector<openvdb::FloatGrid::ConstPtr> back;
-    for (std::size_t i = 0; i < job.grids.size(); ++i) {
-      labels.push_back(*job.grids[i].report.volumeLabel);
-      back.push_back(readBack(written, static_cast<const openvdb::FloatGrid&>(*job.grids[i].grid), place + i));
-    }
-    seen = job.segments ? verifySegmentGrids(*job.segments, labels, back, build.progress)
-                        : verifyLabelGrids(*source, labels, back, build.progress);
-  } else if (const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(job.grids.front().grid)) {
-    seen = {verifyVectorGrid(*source, *readVectorsBack(written, *vectors, place), build)};
-  } else {
-    const auto back = readBack(written, static_cast<const openvdb::FloatGrid&>(*job.grids.front().grid), place);
-    seen = {verifyGrid(*source, *unmapped(back, job.map), build, job.grids.front().report.build.quantising.max)};
-  }
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    job.grids[i].report.verified = seen[i];
-    checkVerified(output, job.grids[i].report.label, seen[i], job.grids[i].report.build);
-  }
+// What a job has to know before its volume is read.
+void settleJob(VolumeJob& job) {
+  if (job.options.verify) expectFile(job.input, "options.verify");
+  settleBackground(job);
+  if (BuildOptions& build = job.options.build; mapsValues(job.options) && makesValues(job))
+    leaveOutBelow(build.background.value_or(0), build);
 }
 
 // Says what becomes of the numbers of a vector or colour.
-void noteVectors(const VolumeInfo& info, std::vector<std::string>& notes) {
+// @param forTarget  a target will say what becomes of vectors
+void noteVectors(const VolumeInfo& info, bool forTarget, std::vector<std::string>& notes) {
   if (const double scale = colourScale(info); scale != 1) {
     std::ostringstream text;
     text << "colours are divided by " << scale << " to lie from 0 to 1, and keep the tone curve of the file";
     notes.push_back(text.str());
   }
-  if (info.meaning == VoxelMeaning::vector)
-    notes.push_back(info.vectorToWorld == glm::dmat3(1) ? "vectors are kept as the file states them"
-                                                        : "vectors are turned into the axes of the world");
+  if (info.meaning != VoxelMeaning::vector) return;
+  if (info.vectorToWorld != glm::dmat3(1))
+    notes.push_back("vectors are turned into the axes of the world");
+  else if (!forTarget)
+    notes.push_back("vectors are kept as the file states them");
 }
 
 ConvertedGrid reportOf(const VolumeJob& job, const VolumeInfo& info) {
@@ -158,15 +105,38 @@ void takeLabels(const VolumeInfo& info, LabelGrids labels, VolumeJob& job) {
   }
 }
 
+void takeValues(const VolumeInfo& info, BuiltGrid built, VolumeJob& job) {
+  ConvertedGrid report = reportOf(job, info);
+  if (job.options.isosurface) report.isosurface = replaceByIsosurface(job.input, *job.options.isosurface, built);
+  if (job.options.source.resample) describeResampling(*built.grid, *(report.resampled = *job.notes->resampled));
+  report.build = std::move(built.report);
+  job.grids.push_back({built.grid, std::move(report)});
+}
+
+// What all grids of a job are given.
+void describeGrids(VolumeJob& job) {
+  for (JobGrid& grid : job.grids) {
+    if (!job.unit.empty()) grid.grid->insertMeta("value_unit", openvdb::StringMetadata(job.unit));
+    if (!job.options.source.mask.empty()) grid.report.masked = job.notes->leftOut;
+  }
+}
+
 void buildVectors(VoxelSource& source, VolumeJob& job, const BuildOptions& build) {
   BuiltVectors built = buildVectorGrid(source, build);
   ConvertedGrid report = reportOf(job, source.info());
-  noteVectors(source.info(), report.notes);
+  job.meaning = source.info().meaning;
+  noteVectors(source.info(), job.options.output.target.has_value(), report.notes);
   report.build = std::move(built.report);
   job.grids.push_back({built.grid, std::move(report)});
 }
 
 }  // namespace
+
+BuildOptions passOf(const VolumeJob& job, ConvertStage stage, const VolumeInfo& info) {
+  BuildOptions build = job.options.build;
+  build.progress = beginPass(job.options.progress, stage, job.input, unpackedBytes(info));
+  return build;
+}
 
 std::vector<VolumeJob> volumeJobs(const std::vector<fs::path>& inputs, const ConvertOptions& options) {
   if (!options.grids.empty() && !inputs.empty())
@@ -185,10 +155,7 @@ std::vector<VolumeJob> volumeJobs(const std::vector<fs::path>& inputs, const Con
 }
 
 std::unique_ptr<VoxelSource> openJob(VolumeJob& job) {
-  if (job.options.verify) expectFile(job.input, "options.verify");
-  settleBackground(job);
-  if (BuildOptions& build = job.options.build; mapsValues(job.options))
-    leaveOutBelow(build.background.value_or(0), build);
+  settleJob(job);
   return openFiltered(job.input, job.options.source, job.options.build.background.value_or(0), *job.notes,
                       std::move(job.opened));
 }
@@ -204,7 +171,6 @@ void openEach(std::vector<VolumeJob>& jobs, const std::function<void(VoxelSource
 }
 
 void buildVolume(VoxelSource& source, VolumeJob& job) {
-  const SourceOptions& of = job.options.source;
   const BuildOptions build = passOf(job, ConvertStage::converting, source.info());
   job.bytesIn = source.info().fileBytes;
   if (job.options.labels) {
@@ -212,17 +178,9 @@ void buildVolume(VoxelSource& source, VolumeJob& job) {
   } else if (source.info().valuesPerVoxel > 1) {
     buildVectors(source, job, build);
   } else {
-    BuiltGrid built = buildGrid(source, build);
-    ConvertedGrid report = reportOf(job, source.info());
-    if (job.options.isosurface) report.isosurface = replaceByIsosurface(job.input, *job.options.isosurface, built);
-    if (of.resample) describeResampling(*built.grid, *(report.resampled = *job.notes->resampled));
-    report.build = std::move(built.report);
-    job.grids.push_back({built.grid, std::move(report)});
+    takeValues(source.info(), buildGrid(source, build), job);
   }
-  for (JobGrid& grid : job.grids) {
-    if (!job.unit.empty()) grid.grid->insertMeta("value_unit", openvdb::StringMetadata(job.unit));
-    if (!of.mask.empty()) grid.report.masked = job.notes->leftOut;
-  }
+  describeGrids(job);
 }
 
 World openAndBuild(VolumeJob& job) {
@@ -235,50 +193,47 @@ World openAndBuild(VolumeJob& job) {
   const BuildOptions build = passOf(job, ConvertStage::converting, info);
   job.bytesIn = info.fileBytes;
   takeLabels(info, buildSegmentGrids(*job.segments, *job.options.labels, build.progress), job);
-  for (JobGrid& grid : job.grids)
-    if (!job.unit.empty()) grid.grid->insertMeta("value_unit", openvdb::StringMetadata(job.unit));
+  describeGrids(job);
   return worldOf(info);
 }
 
-ConvertReport writeVolumes(std::span<VolumeJob> jobs, const fs::path& output) {
-  ConvertReport report;
-  for (VolumeJob& job : jobs)
-    if (JobGrid* grid = valuesOf(job); grid && !job.options.isosurface)
-      judgeBackground(static_cast<const openvdb::FloatGrid&>(*grid->grid), grid->report);
-  prepareForTarget(jobs, report);
-  openvdb::GridCPtrVec grids;
-  for (const VolumeJob& job : jobs)
-    for (const JobGrid& grid : job.grids) grids.push_back(grid.grid);
-  const NanoCheck check = [&](const fs::path& written, const std::vector<QuantiseError>& quantised) {
-    std::size_t place = 0;
-    for (VolumeJob& job : jobs) {
-      for (std::size_t i = 0; i < job.grids.size() && !quantised.empty(); ++i)
-        addQuantising(job.grids[i].report.build, quantised[place + i], /*activeOnly=*/false);
-      if (job.options.verify) verify(job, place, written, output);
-      place += job.grids.size();
-    }
-  };
-  const VolumeJob& first = jobs.front();
-  const ConvertedGrid& told = first.grids.front().report;
-  // Distances and labels are no values of the volume.
-  const auto type = told.isosurface || told.volumeLabel ? VoxelType::f32 : told.volumeType;
-  report.output = output;
-  report.bytesOut = writeOutput(output, first.options.output, grids, {}, type, check, report.notes);
-  // A volume that became several grids is counted once, and says once what is to be known of it.
-  const VolumeJob* before = nullptr;
-  std::set<std::string> said;
+bool shareVolume(const std::vector<VolumeJob>& jobs) {
+  return jobs.size() > 1 && jobs.front().options.source.mask.empty() &&
+         std::all_of(jobs.begin(), jobs.end(), [&](const VolumeJob& job) {
+           return job.input == jobs.front().input && !job.opened && !job.segments &&
+                  job.options.source.open.parts.component.has_value();
+         });
+}
+
+World openAndBuildTogether(std::vector<VolumeJob>& jobs) {
+  for (VolumeJob& job : jobs) settleJob(job);
+  // All components are read, and cut, at once.
+  VolumeJob& first = jobs.front();
+  SourceOptions whole = first.options.source;
+  whole.resample.reset();
+  whole.open.parts.component.reset();
+  whole.open.parts.allComponents = true;
+  std::vector<std::unique_ptr<VoxelSource>> all = splitComponents(openFiltered(first.input, whole, 0, *first.notes));
+  std::vector<std::unique_ptr<VoxelSource>> sources;
+  std::vector<VoxelSource*> each;
+  std::vector<BuildOptions> builds;
   for (VolumeJob& job : jobs) {
-    if (!before || before->input != job.input) {
-      report.bytesIn += job.bytesIn;
-      said.clear();
-    }
-    for (JobGrid& grid : job.grids) {
-      std::erase_if(grid.report.notes, [&](const std::string& note) { return !said.insert(note).second; });
-      report.grids.push_back(std::move(grid.report));
-    }
-    before = &job;
+    const auto component = static_cast<std::size_t>(*job.options.source.open.parts.component);
+    auto source = std::move(all.at(component));
+    if (job.options.source.resample)
+      source = resampleSource(std::move(source), *job.options.source.resample, job.notes->resampled);
+    builds.push_back(&job == &first ? passOf(job, ConvertStage::converting, source->info()) : job.options.build);
+    each.push_back(source.get());
+    sources.push_back(std::move(source));
   }
-  return report;
+  all.clear();
+  std::vector<BuiltGrid> built = buildGrids(each, builds);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    jobs[i].bytesIn = each[i]->info().fileBytes;
+    takeValues(each[i]->info(), std::move(built[i]), jobs[i]);
+    describeGrids(jobs[i]);
+  }
+  return worldOf(each.front()->info());
 }
 
 }  // namespace umbrick

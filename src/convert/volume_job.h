@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "convert/target_grid.h"
+#include "convert/target_vectors.h"
 #include "convert/volume_source.h"
 #include "umbrick/convert/convert_options.h"
 #include "umbrick/convert/convert_report.h"
@@ -31,7 +32,9 @@ struct VolumeJob {
   ConvertOptions options;  // with the name of its grid, and its background once that is found
   std::string unit;
   std::unique_ptr<ReadNotes> notes = std::make_unique<ReadNotes>();  // sources hold on to its place
-  std::optional<ValueMap> map;          // of the values of the grid, where a target asks for one
+  std::optional<ValueMap> map;                  // of the values of the grid, where a target asks for one
+  std::optional<VectorMap> vectorMap;           // the same of a grid of vec3
+  VoxelMeaning meaning = VoxelMeaning::scalar;  // of the numbers of a grid of vec3
   std::string settled;                  // how its background was found where nobody asked for it; becomes a note
   bool usualName = false;               // nobody has given the grid a name
   std::unique_ptr<VoxelSource> opened;  // the input, where it had to be opened before
@@ -42,6 +45,9 @@ struct VolumeJob {
   std::int64_t bytesIn = 0;
   ConvertedGrid report;  // what is known before a grid is built
 };
+
+/// The options of a pass over the voxels of a job, which tells how far it is.
+BuildOptions passOf(const VolumeJob& job, ConvertStage stage, const VolumeInfo& info);
 
 /// One for each input.
 /// @param options  settled  @throw OptionsError  names or units that do not fit
@@ -59,6 +65,13 @@ void buildVolume(VoxelSource& source, VolumeJob& job);
 
 /// Opens the input of a job and builds its grids. @return the world of the input
 World openAndBuild(VolumeJob& job);
+
+/// Whether jobs are the components of one volume, each a grid of floats, which can be built in one pass over it. A mask
+/// is read for each of them.
+bool shareVolume(const std::vector<VolumeJob>& jobs);
+
+/// Does what openAndBuild does for the components of one volume. @pre shareVolume(jobs)
+World openAndBuildTogether(std::vector<VolumeJob>& jobs);
 
 /// Writes the grids, and verifies the file before it takes its name where that is asked for. The reports of the jobs
 /// are moved from.

@@ -11,14 +11,14 @@ namespace {
 using openvdb::FloatGrid;
 using openvdb::StringMetadata;
 
-std::string stated(const FloatGrid& grid, const char* key) {
+std::string stated(const openvdb::GridBase& grid, const char* key) {
   const auto text = grid.getMetadata<StringMetadata>(key);
   return text ? text->value() : std::string();
 }
 
 }  // namespace
 
-World worldOf(const FloatGrid& grid) {
+World worldOf(const openvdb::GridBase& grid) {
   return {stated(grid, "space"), stated(grid, "length_unit"), "that of grid \"" + grid.getName() + '"'};
 }
 

@@ -6,93 +6,20 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
-#include <sstream>
 #include <string>
 
-#include "ingest/hdf5_handle.h"
+#include "ingest/hdf5_attributes.h"
 #include "ingest/header_text.h"
 #include "ingest/length_unit.h"
 #include "ingest/place.h"
 #include "ingest/streams/dense_source.h"
+#include "umbrick/core/short_number.h"
 
 namespace umbrick {
 namespace {
 
-constexpr hssize_t kMostNumbers = 64;
-constexpr std::size_t kMostText = 4096;
-
 // The default of netCDF for floats that were never written.
 constexpr float kNetcdfFill = 9.9692099683868690e+36f;
-
-std::string text(double number) {
-  std::ostringstream out;
-  out.precision(9);
-  out << number;
-  return out.str();
-}
-
-class Attributes {
- public:
-  Attributes(hid_t dataset, const std::string& name) : dataset_(dataset), name_(name) {}
-
-  bool has(const char* key) const { return H5Aexists(dataset_, key) > 0; }
-
-  // All numbers of an attribute; none where it is not there. @param count  that there must be; 0: any
-  std::vector<double> numbers(const char* key, std::size_t count) const {
-    if (!has(key)) return {};
-    const Hdf5Handle attribute(H5Aopen(dataset_, key, H5P_DEFAULT), H5Aclose);
-    const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose), space(H5Aget_space(attribute.get()), H5Sclose);
-    const H5T_class_t kind = H5Tget_class(type.get());
-    const hssize_t found = H5Sget_simple_extent_npoints(space.get());
-    std::vector<double> out(static_cast<std::size_t>(std::clamp<hssize_t>(found, 0, kMostNumbers)));
-    const std::string expected = count == 1 ? "a number" : count > 0 ? std::to_string(count) + " numbers" : "numbers";
-    if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || found < 1 || found > kMostNumbers ||
-        H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, out.data()) < 0)
-      failField(name_, key, expected, kind == H5T_STRING ? "text" : "something else");
-    if (count > 0 && out.size() != count) failField(name_, key, expected, std::to_string(out.size()));
-    return out;
-  }
-
-  // Whether there is a number for each axis that counts, or for each of the dataset.
-  bool isForAxes(const char* key, std::size_t axes, std::size_t rank) const {
-    if (!has(key)) return false;
-    const Hdf5Handle attribute(H5Aopen(dataset_, key, H5P_DEFAULT), H5Aclose);
-    const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose), space(H5Aget_space(attribute.get()), H5Sclose);
-    const H5T_class_t kind = H5Tget_class(type.get());
-    const hssize_t found = H5Sget_simple_extent_npoints(space.get());
-    return (kind == H5T_INTEGER || kind == H5T_FLOAT) &&
-           (found == static_cast<hssize_t>(axes) || found == static_cast<hssize_t>(rank));
-  }
-
-  std::optional<double> number(const char* key) const {
-    const std::vector<double> found = numbers(key, 1);
-    if (found.empty()) return std::nullopt;
-    if (!std::isfinite(found[0])) failField(name_, key, "a finite number", text(found[0]));
-    return found[0];
-  }
-
-  // A text of fixed or of its own length; empty where there is none, or several.
-  std::string string(const char* key) const {
-    if (!has(key)) return {};
-    const Hdf5Handle attribute(H5Aopen(dataset_, key, H5P_DEFAULT), H5Aclose);
-    const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose), space(H5Aget_space(attribute.get()), H5Sclose);
-    if (H5Tget_class(type.get()) != H5T_STRING || H5Sget_simple_extent_npoints(space.get()) != 1) return {};
-    if (H5Tis_variable_str(type.get()) > 0) {
-      char* found = nullptr;
-      if (H5Aread(attribute.get(), type.get(), &found) < 0 || !found) return {};
-      const std::string out(found, strnlen(found, kMostText));
-      H5free_memory(found);
-      return out;
-    }
-    std::string out(H5Tget_size(type.get()), '\0');
-    if (out.size() > kMostText || H5Aread(attribute.get(), type.get(), out.data()) < 0) return {};
-    return std::string(trimmed(out.substr(0, out.find('\0'))));
-  }
-
- private:
-  hid_t dataset_;
-  std::string name_;
-};
 
 VoxelType unsignedOf(VoxelType type) {
   using enum VoxelType;
@@ -100,12 +27,12 @@ VoxelType unsignedOf(VoxelType type) {
 }
 
 // Attributes of a dataset whose signed integers stand for unsigned ones are signed too.
-double asStored(double value, const Attributes& attributes, VoxelType type) {
+double asStored(double value, const Hdf5Attributes& attributes, VoxelType type) {
   const bool wraps = value < 0 && lower(attributes.string("_Unsigned")) == "true";
   return wraps ? value + std::ldexp(1.0, 8 * voxelBytes(type)) : value;
 }
 
-void readMissing(const Attributes& attributes, bool isNetcdf, Hdf5Meaning& meaning, VolumeInfo& info) {
+void readMissing(const Hdf5Attributes& attributes, bool isNetcdf, Hdf5Meaning& meaning, VolumeInfo& info) {
   std::string said;
   for (const char* key : {"_FillValue", "missing_value"})
     for (const double number : attributes.numbers(key, 0)) {
@@ -113,7 +40,7 @@ void readMissing(const Attributes& attributes, bool isNetcdf, Hdf5Meaning& meani
       if (std::isnan(value)) continue;  // is no number as it is
       if (std::find(meaning.missing.begin(), meaning.missing.end(), value) != meaning.missing.end()) continue;
       meaning.missing.push_back(value);
-      said += (said.empty() ? "" : ", ") + text(value) + " (" + key + ')';
+      said += (said.empty() ? "" : ", ") + shortNumber(value, 9) + " (" + key + ')';
     }
   if (isNetcdf && isFloat(meaning.layout.type) && !attributes.has("_FillValue"))
     meaning.missing.push_back(static_cast<double>(kNetcdfFill));
@@ -124,8 +51,8 @@ void readMissing(const Attributes& attributes, bool isNetcdf, Hdf5Meaning& meani
   if (const auto least = attributes.number("valid_min")) meaning.least = *least;
   if (const auto most = attributes.number("valid_max")) meaning.most = *most;
   if (std::isfinite(meaning.least) || std::isfinite(meaning.most))
-    said += (said.empty() ? "" : ", and ") + std::string("what is not from ") + text(meaning.least) + " to " +
-            text(meaning.most) + " (valid_min, valid_max or valid_range)";
+    said += (said.empty() ? "" : ", and ") + std::string("what is not from ") + shortNumber(meaning.least, 9) + " to " +
+            shortNumber(meaning.most, 9) + " (valid_min, valid_max or valid_range)";
   if (said.empty()) return;
   info.metadata["missing_value"] = said;
   info.notes.push_back("stored values of " + said +
@@ -133,7 +60,7 @@ void readMissing(const Attributes& attributes, bool isNetcdf, Hdf5Meaning& meani
 }
 
 // Numbers for the axes of the dataset, or for those three that count.
-std::optional<glm::dvec3> alongAxes(const Attributes& attributes, const std::string& name, const char* key,
+std::optional<glm::dvec3> alongAxes(const Hdf5Attributes& attributes, const std::string& name, const char* key,
                                     const std::vector<std::size_t>& axes, std::size_t rank) {
   const std::vector<double> found = attributes.numbers(key, 0);
   if (found.empty()) return std::nullopt;
@@ -148,7 +75,7 @@ std::optional<glm::dvec3> alongAxes(const Attributes& attributes, const std::str
   return out;
 }
 
-void place(const Attributes& attributes, const std::vector<std::size_t>& axes, std::size_t rank, VolumeInfo& info) {
+void place(const Hdf5Attributes& attributes, const std::vector<std::size_t>& axes, std::size_t rank, VolumeInfo& info) {
   const auto along = [&](const char* key) { return alongAxes(attributes, info.name, key, axes, rank); };
   const bool micrometres = attributes.has("element_size_um");
   const char* sizeKey = micrometres ? "element_size_um" : "resolution";
@@ -161,7 +88,7 @@ void place(const Attributes& attributes, const std::vector<std::size_t>& axes, s
   for (int axis = 0; axis < 3; ++axis) {
     const bool there = axis < static_cast<int>(axes.size());
     const double step = there ? (*size)[axis] : size->x;
-    if (!(step > 0)) failField(info.name, sizeKey, "positive numbers", text(step));
+    if (!(step > 0)) failField(info.name, sizeKey, "positive numbers", shortNumber(step, 9));
     info.indexToWorld[axis][axis] = step;
     if (offset && there) info.indexToWorld[3][axis] = (*offset)[axis];
   }
@@ -233,7 +160,7 @@ double Hdf5Meaning::decode(std::span<const std::byte> stored, std::span<float> o
 
 Hdf5Meaning readHdf5Meaning(hid_t dataset, VoxelType read, const std::vector<std::size_t>& axes, std::size_t rank,
                             VolumeInfo& info) {
-  const Attributes attributes(dataset, info.name);
+  const Hdf5Attributes attributes(dataset, info.name);
   Hdf5Meaning meaning;
   meaning.read = meaning.layout.type = read;
   meaning.layout.endian = std::endian::native;  // libhdf5 swaps

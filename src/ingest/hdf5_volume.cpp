@@ -8,10 +8,13 @@
 
 #include "core/input_file.h"
 #include "ingest/array_lists.h"
+#include "ingest/hdf5_axes.h"
 #include "ingest/hdf5_file.h"
 #include "ingest/hdf5_handle.h"
 #include "ingest/hdf5_meaning.h"
+#include "ingest/hdf5_types.h"
 #include "ingest/header_text.h"
+#include "ingest/parts.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
 #include "umbrick/core/error.h"
@@ -73,131 +76,43 @@ Place split(const fs::path& path) {
   return {path, {}};
 }
 
-std::vector<hsize_t> shapeOf(hid_t dataset) {
-  const Handle space(H5Dget_space(dataset), H5Sclose);
-  const int rank = H5Sget_simple_extent_ndims(space.get());
-  std::vector<hsize_t> shape(static_cast<std::size_t>(std::max(rank, 0)));
-  if (rank > 0) H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
-  return shape;
-}
-
-// The axes that count: of more than three, those of length 1 are dropped, the first ones first.
-std::vector<std::size_t> axesOf(const std::vector<hsize_t>& shape) {
-  std::vector<std::size_t> axes;
-  std::size_t spare = shape.size() > 3 ? shape.size() - 3 : 0;
-  for (std::size_t i = 0; i < shape.size(); ++i)
-    if (shape[i] == 1 && spare > 0)
-      --spare;
-    else
-      axes.push_back(i);
-  return axes;
-}
-
-std::string shapeText(const std::vector<hsize_t>& shape) {
-  std::string text;
-  for (const hsize_t length : shape) text += (text.empty() ? "" : " x ") + std::to_string(length);
-  return text;
-}
-
-// The type in memory that a dataset is read as, and how it is stored.
-struct NumberType {
-  VoxelType stored = VoxelType::u8, read = VoxelType::u8;
-};
-std::optional<NumberType> numberType(hid_t dataset) {
-  using enum VoxelType;
-  const Handle type(H5Dget_type(dataset), H5Tclose);
-  const std::size_t bytes = H5Tget_size(type.get());
-  const H5T_class_t kind = H5Tget_class(type.get());
-  const int power = bytes == 1 ? 0 : bytes == 2 ? 1 : bytes == 4 ? 2 : bytes == 8 ? 3 : -1;
-  if (power < 0) return std::nullopt;
-  const auto at = static_cast<std::size_t>(power);
-  if (kind == H5T_INTEGER) {
-    const VoxelType found =
-        H5Tget_sign(type.get()) == H5T_SGN_2 ? std::array{i8, i16, i32, i64}[at] : std::array{u8, u16, u32, u64}[at];
-    return NumberType{found, found};
-  }
-  if (kind != H5T_FLOAT || power < 1) return std::nullopt;
-  const VoxelType found = std::array{f16, f16, f32, f64}[at];
-  return NumberType{found, found == f16 ? f32 : found};  // libhdf5 widens halves, exactly
-}
-
-// Names a type that is not read, in the words of those who write such files.
-std::string typeText(hid_t dataset) {
-  const Handle type(H5Dget_type(dataset), H5Tclose);
-  const std::string bits = std::to_string(8 * H5Tget_size(type.get())) + " bits";
-  switch (H5Tget_class(type.get())) {
-    case H5T_INTEGER:
-      return "an integer of " + bits;
-    case H5T_FLOAT:
-      return "a float of " + bits;
-    case H5T_ENUM:
-      return "an enumeration, which is not read; bool of h5py and PyTables is one: store it as uint8";
-    case H5T_STRING:
-      return "text";
-    case H5T_BITFIELD:
-      return "a bit field of " + bits;
-    case H5T_COMPOUND:
-      return "a compound; complex numbers are stored so";
-    case H5T_REFERENCE:
-      return "references";
-    case H5T_ARRAY:
-      return "an array in each voxel";
-    case H5T_VLEN:
-      return "a sequence of its own length in each voxel";
-    default:
-      return "another type";
-  }
-}
-
-hid_t memoryType(VoxelType type) {
-  switch (type) {
-    case VoxelType::u8:
-      return H5T_NATIVE_UINT8;
-    case VoxelType::i8:
-      return H5T_NATIVE_INT8;
-    case VoxelType::u16:
-      return H5T_NATIVE_UINT16;
-    case VoxelType::i16:
-      return H5T_NATIVE_INT16;
-    case VoxelType::u32:
-      return H5T_NATIVE_UINT32;
-    case VoxelType::i32:
-      return H5T_NATIVE_INT32;
-    case VoxelType::u64:
-      return H5T_NATIVE_UINT64;
-    case VoxelType::i64:
-      return H5T_NATIVE_INT64;
-    case VoxelType::f64:
-      return H5T_NATIVE_DOUBLE;
-    default:
-      return H5T_NATIVE_FLOAT;
-  }
-}
-
 struct Found {
   std::vector<std::string> volumes;  // of three axes and numbers
-  std::string other;                 // the first one of three axes whose type is not read, and that type
+  std::vector<std::string> parts;    // that have axes of frames or of components, too
+  std::string other;                 // the first volume whose type is not read, and that type
 };
 
 herr_t onObject(hid_t file, const char* name, const H5O_info_t* info, void* user) {
   if (info->type != H5O_TYPE_DATASET) return 0;
   const Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
-  if (!dataset.good() || axesOf(shapeOf(dataset.get())).size() != 3) return 0;
+  if (!dataset.good()) return 0;
+  const Hdf5Axes axes = hdf5Axes(dataset.get());
+  const bool parts = axes.isVolume() && (axes.frames || axes.components);
+  if (!axes.isPlain() && !parts) return 0;
   auto& found = *static_cast<Found*>(user);
   const std::string path = std::string("/") + name;
-  if (numberType(dataset.get()))
-    found.volumes.push_back(path);
+  if (hdf5Number(dataset.get()))
+    (parts ? found.parts : found.volumes).push_back(path);
   else if (found.other.empty())
-    found.other = path + " holds " + typeText(dataset.get());
+    found.other = path + " holds " + hdf5TypeText(dataset.get());
   return 0;
 }
 
-std::string onlyVolume(const fs::path& path, hid_t file) {
+// @param why  gets a line that says which dataset is taken
+std::string onlyVolume(const fs::path& path, hid_t file, std::string& why) {
   Found found;
   if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, onObject, &found, H5O_INFO_BASIC) < 0)
     throw IoError(path.string() + ": expected an HDF5 file, found: " + complaint());
-  if (found.volumes.size() == 1) return found.volumes.front();
+  if (found.volumes.size() == 1) {
+    why = "dataset " + found.volumes.front() + " is taken, the only one of three axes";
+    return found.volumes.front();
+  }
+  if (found.volumes.empty() && found.parts.size() == 1) {
+    why = "dataset " + found.parts.front() + " is taken, the only one with axes of frames or of components";
+    return found.parts.front();
+  }
   std::string list;
+  found.volumes.insert(found.volumes.end(), found.parts.begin(), found.parts.end());
   for (std::size_t i = 0; i < std::min(found.volumes.size(), kMaxListed); ++i)
     list += (i == 0 ? "" : ", ") + found.volumes[i];
   if (found.volumes.size() > kMaxListed) list += ", ...";
@@ -228,7 +143,7 @@ void refuseOtherFiles(const std::string& name, hid_t file, hid_t dataset) {
 Handle openDataset(hid_t file, const std::string& name) {
   Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.good()) return dataset;
-  const std::vector<hsize_t> shape = shapeOf(dataset.get());
+  const std::vector<hsize_t> shape = hdf5Shape(dataset.get());
   const Handle creation(H5Dget_create_plist(dataset.get()), H5Pclose);
   std::vector<hsize_t> chunk(shape.size());
   if (shape.empty() || H5Pget_layout(creation.get()) != H5D_CHUNKED ||
@@ -237,9 +152,12 @@ Handle openDataset(hid_t file, const std::string& name) {
   const Handle type(H5Dget_type(dataset.get()), H5Tclose);
   double chunks = 1, bytes = static_cast<double>(H5Tget_size(type.get()));
   for (const hsize_t length : chunk) bytes *= static_cast<double>(length);
-  const std::vector<std::size_t> axes = axesOf(shape);
-  for (std::size_t i = axes.size() > 2 ? axes.size() - 2 : 0; i < axes.size(); ++i)
-    chunks *= static_cast<double>((shape[axes[i]] + chunk[axes[i]] - 1) / std::max<hsize_t>(chunk[axes[i]], 1));
+  const Hdf5Axes sorted = hdf5Axes(dataset.get());
+  std::vector<std::size_t> axes = sorted.space;
+  if (axes.size() > 2) axes.erase(axes.begin());
+  if (sorted.components) axes.push_back(*sorted.components);
+  for (const std::size_t axis : axes)
+    chunks *= static_cast<double>((shape[axis] + chunk[axis] - 1) / std::max<hsize_t>(chunk[axis], 1));
   if (chunks * bytes > static_cast<double>(kMaxCacheBytes)) return dataset;
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
   H5Pset_chunk_cache(access.get(), static_cast<std::size_t>(chunks) * 10 + 1, static_cast<std::size_t>(chunks * bytes),
@@ -249,42 +167,98 @@ Handle openDataset(hid_t file, const std::string& name) {
 
 class Hdf5Source : public VoxelSource {
  public:
-  Hdf5Source(VolumeInfo info, Handle file, Handle dataset, Hdf5Meaning meaning)
+  /// @param choice  was checked
+  Hdf5Source(VolumeInfo info, Handle file, Handle dataset, Hdf5Axes axes, const PartChoice& choice, Hdf5Meaning meaning)
       : file_(std::move(file)),
         dataset_(std::move(dataset)),
-        shape_(shapeOf(dataset_.get())),
+        shape_(hdf5Shape(dataset_.get())),
+        axes_(std::move(axes)),
+        choice_(choice),
         meaning_(std::move(meaning)) {
     info_ = std::move(info);
+    info_.valuesPerVoxel = choice_.component && !choice_.magnitude ? 1 : info_.components;
   }
 
   double readSlab(std::int64_t count, std::span<float> out) override {
     const Quiet quiet;
     slab_.resize(out.size() * static_cast<std::size_t>(voxelBytes(meaning_.layout.type)));
     std::vector<hsize_t> start(shape_.size()), extent = shape_;
-    if (const std::vector<std::size_t> axes = axesOf(shape_); axes.size() == 3) {
-      start[axes[0]] = static_cast<hsize_t>(next_);
-      extent[axes[0]] = static_cast<hsize_t>(count);
-    }
+    const auto only = [&](std::size_t axis, std::int64_t first, std::int64_t length) {
+      start[axis] = static_cast<hsize_t>(first);
+      extent[axis] = static_cast<hsize_t>(length);
+    };
+    if (axes_.space.size() == 3) only(axes_.space[0], next_, count);
+    if (axes_.frames) only(*axes_.frames, choice_.frame.value_or(0), 1);
+    if (axes_.components && info_.valuesPerVoxel == 1) only(*axes_.components, choice_.component.value_or(0), 1);
     const Handle from(H5Dget_space(dataset_.get()), H5Sclose);
     const Handle to(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose);
     if (H5Sselect_hyperslab(from.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr) < 0 ||
-        H5Dread(dataset_.get(), memoryType(meaning_.read), to.get(), from.get(), H5P_DEFAULT, slab_.data()) < 0)
+        H5Dread(dataset_.get(), hdf5MemoryType(meaning_.read), to.get(), from.get(), H5P_DEFAULT, slab_.data()) < 0)
       throw IoError(info_.name + ": expected " + describeBytes(info_) + ", found from slice " +
                     std::to_string(next_ + 1) + " on: " + complaint());
     next_ += count;
-    return meaning_.decode(slab_, out);
+    const bool sideBySide = info_.valuesPerVoxel == 1 || *axes_.components > axes_.space.back();
+    if (sideBySide) return meaning_.decode(slab_, out);
+    apart_.resize(out.size());
+    const double error = meaning_.decode(slab_, apart_);
+    putSideBySide(count, out);
+    return error;
   }
 
   void skipSlices(std::int64_t count) override { next_ += count; }
   bool skipsFast() const override { return true; }
 
  private:
+  // Components that vary slower than x become those that vary fastest.
+  void putSideBySide(std::int64_t count, std::span<float> out) const {
+    const std::int64_t components = info_.valuesPerVoxel;
+    std::int64_t inner = 1;  // voxels of the axes behind that of components
+    for (std::size_t i = 0; i < axes_.space.size(); ++i)
+      if (axes_.space[i] > *axes_.components) inner *= static_cast<std::int64_t>(shape_[axes_.space[i]]);
+    // The slowest axis of space is read in part.
+    if (axes_.space.size() == 3 && axes_.space[0] > *axes_.components) inner = info_.dims.x * info_.dims.y * count;
+    const std::int64_t outer = std::ssize(out) / (inner * components);
+    const float* value = apart_.data();
+    for (std::int64_t o = 0; o < outer; ++o)
+      for (std::int64_t c = 0; c < components; ++c)
+        for (std::int64_t i = 0; i < inner; ++i)
+          out[static_cast<std::size_t>((o * inner + i) * components + c)] = *value++;
+  }
+
   Handle file_, dataset_;
   std::vector<hsize_t> shape_;
+  Hdf5Axes axes_;
+  PartChoice choice_;
   Hdf5Meaning meaning_;
   std::int64_t next_ = 0;
   std::vector<std::byte> slab_;
+  std::vector<float> apart_;  // components one after the other, as the file has them
 };
+
+// The sizes of a dataset as a volume. @throw IoError  it is none
+void describeShape(hid_t dataset, const Hdf5Axes& axes, VolumeInfo& info) {
+  const std::vector<hsize_t> shape = hdf5Shape(dataset);
+  if (!axes.isVolume())
+    failField(info.name, "shape",
+              "two or three axes of space that are longer than 1, beside which may stand one of frames and one of "
+              "components",
+              shape.empty() ? "none" : hdf5ShapeText(shape));
+  const auto length = [&](std::size_t axis) { return static_cast<std::int64_t>(shape[axis]); };
+  info.dims = glm::i64vec3(1);
+  for (std::size_t i = 0; i < axes.space.size(); ++i)
+    info.dims[static_cast<int>(i)] = length(axes.space[axes.space.size() - 1 - i]);
+  if (axes.frames) info.frames = length(*axes.frames);
+  if (axes.components) info.components = length(*axes.components);
+  info.meaning = axes.meaning;
+  if (!arrayBytes(info))
+    failField(info.name, "shape", "each from 1 to 2147483647 and less than 2^63 bytes in all", hdf5ShapeText(shape));
+  // A slice is held as a whole. Chunks that nobody wrote take no bytes, so this leaves much room.
+  const std::int64_t sliceBytes = info.dims.x * info.dims.y * info.components * voxelBytes(info.type);
+  const auto storedBytes = static_cast<std::int64_t>(H5Dget_storage_size(dataset));
+  if (sliceBytes / 100000 > storedBytes)
+    failField(info.name, "shape", "slices that the " + std::to_string(storedBytes) + " stored bytes can fill",
+              hdf5ShapeText(shape));
+}
 
 }  // namespace
 
@@ -296,13 +270,12 @@ std::vector<ArrayRow> listHdf5Arrays(const fs::path& path) {
     if (info->type != H5O_TYPE_DATASET) return 0;
     const Handle dataset(H5Dopen2(in, name, H5P_DEFAULT), H5Dclose);
     if (!dataset.good()) return 0;
-    const std::vector<hsize_t> shape = shapeOf(dataset.get());
-    const auto type = numberType(dataset.get());
-    const std::size_t axes = axesOf(shape).size();
+    const std::vector<hsize_t> shape = hdf5Shape(dataset.get());
+    const auto type = hdf5Number(dataset.get());
     static_cast<std::vector<ArrayRow>*>(user)->push_back(
-        {std::string("/") + name, shape.empty() ? "one value" : shapeText(shape),
-         type ? std::string(voxelTypeName(type->stored)) : typeText(dataset.get()),
-         type.has_value() && (axes == 2 || axes == 3)});
+        {std::string("/") + name, shape.empty() ? "one value" : hdf5ShapeText(shape),
+         type ? std::string(voxelTypeName(type->stored)) : hdf5TypeText(dataset.get()),
+         type.has_value() && hdf5Axes(dataset.get()).isVolume()});
     return 0;
   };
   if (!file.good() || H5Ovisit2(file.get(), H5_INDEX_NAME, H5_ITER_INC, add, &rows, H5O_INFO_BASIC) < 0)
@@ -312,7 +285,7 @@ std::vector<ArrayRow> listHdf5Arrays(const fs::path& path) {
 
 bool isHdf5Dataset(const fs::path& path) { return !split(path).dataset.empty(); }
 
-std::unique_ptr<VoxelSource> openHdf5(const fs::path& path, bool besideOnly) {
+std::unique_ptr<VoxelSource> openHdf5(const fs::path& path, const PartChoice& parts, bool besideOnly) {
   const Quiet quiet;
   Place place = split(path);
   VolumeInfo info;
@@ -322,39 +295,32 @@ std::unique_ptr<VoxelSource> openHdf5(const fs::path& path, bool besideOnly) {
     throw IoError(place.file.string() + ": expected an HDF5 file, found" +
                   (beginsAs(place.file, "CDF") ? " netCDF 3, which is not read; nccopy -k nc4 makes HDF5 of it"
                                                : ": " + complaint()));
+  std::string why;
   const bool chosen = place.dataset.empty();
-  if (chosen) place.dataset = onlyVolume(place.file, file.get());
+  if (chosen) place.dataset = onlyVolume(place.file, file.get(), why);
   info.name = place.file.string() + ':' + place.dataset;
   Handle dataset = openDataset(file.get(), place.dataset);
   if (!dataset.good()) throw IoError(info.name + ": expected a dataset, found: " + complaint());
   if (besideOnly) refuseOtherFiles(info.name, file.get(), dataset.get());
 
-  const auto type = numberType(dataset.get());
+  const auto type = hdf5Number(dataset.get());
   if (!type)
     throw IoError(info.name + ": type: expected integers of 8 to 64 bits or floats of 16 to 64, found " +
-                  typeText(dataset.get()));
-  const std::vector<hsize_t> shape = shapeOf(dataset.get());
-  const std::vector<std::size_t> axes = axesOf(shape);
-  if (axes.size() < 2 || axes.size() > 3)
-    failField(info.name, "shape", "two or three axes that are longer than 1",
-              shape.empty() ? "none" : shapeText(shape));
+                  hdf5TypeText(dataset.get()));
   info.type = type->stored;
-  info.dims = glm::i64vec3(1);
-  for (std::size_t i = 0; i < axes.size(); ++i)
-    info.dims[static_cast<int>(i)] = static_cast<std::int64_t>(shape[axes[axes.size() - 1 - i]]);
-  if (!volumeBytes(info.dims, info.type))
-    failField(info.name, "shape", "each from 1 to 2147483647 and less than 2^63 bytes in all", shapeText(shape));
-  // A slice is held as a whole. Chunks that nobody wrote take no bytes, so this leaves much room.
-  const std::int64_t sliceBytes = info.dims.x * info.dims.y * voxelBytes(info.type);
-  const auto storedBytes = static_cast<std::int64_t>(H5Dget_storage_size(dataset.get()));
-  if (sliceBytes / 100000 > storedBytes)
-    failField(info.name, "shape", "slices that the " + std::to_string(storedBytes) + " stored bytes can fill",
-              shapeText(shape));
+  Hdf5Axes axes = hdf5Axes(dataset.get());
+  describeShape(dataset.get(), axes, info);
   addProvenance(info, place.file, "HDF5");
   info.metadata["source_dataset"] = place.dataset;
-  if (chosen) info.notes.push_back("dataset " + place.dataset + " is taken, the only one of three axes");
-  Hdf5Meaning meaning = readHdf5Meaning(dataset.get(), type->read, axes, shape.size(), info);
-  return std::make_unique<Hdf5Source>(std::move(info), std::move(file), std::move(dataset), std::move(meaning));
+  if (chosen) info.notes.push_back(std::move(why));
+  info.notes.insert(info.notes.end(), axes.notes.begin(), axes.notes.end());
+  guessMeaning(info);
+  const std::size_t rank = hdf5Shape(dataset.get()).size();
+  Hdf5Meaning meaning = readHdf5Meaning(dataset.get(), type->read, axes.space, rank, info);
+  checkChoice(info, parts);
+  return pickComponents(std::make_unique<Hdf5Source>(std::move(info), std::move(file), std::move(dataset),
+                                                     std::move(axes), parts, std::move(meaning)),
+                        parts);
 }
 
 }  // namespace umbrick

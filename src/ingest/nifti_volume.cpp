@@ -152,7 +152,7 @@ void place(const NiftiHeader& header, VolumeInfo& info) {
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openNifti(const fs::path& path, const PartChoice& parts, bool besideOnly) {
+std::unique_ptr<VoxelSource> openNifti(const fs::path& path, const PartChoice& parts, bool besideOnly, bool strict) {
   checkedFileSize(path);
   const fs::path headerPath = isPairName(path) ? partner(path, ".hdr") : path;
   const std::int64_t headerBytes = checkedFileSize(headerPath);
@@ -209,9 +209,11 @@ std::unique_ptr<VoxelSource> openNifti(const fs::path& path, const PartChoice& p
   const fs::path voxels = header.kind == NiftiHeader::Kind::single ? headerPath : partner(headerPath, ".img");
   if (besideOnly) requireBeside(voxels, path);
   info.fileBytes = checkedFileSize(voxels) + (voxels == headerPath ? 0 : headerBytes);
-  auto first = openVoxels(info, voxels, header.voxOffset);
-  auto open = openOnceMore(std::move(first),
-                           [info, voxels, offset = header.voxOffset] { return openVoxels(info, voxels, offset); });
+  if (!strict) noteExcess(info, voxels, header.voxOffset);
+  const auto again = [info, voxels, strict, offset = header.voxOffset] {
+    return openVoxels(info, voxels, offset, strict);
+  };
+  auto open = openOnceMore(again(), again);
   return openParts(std::move(info), axes, layout, parts, open);
 }
 

@@ -153,7 +153,7 @@ PartAxes takeParts(NpyHeader& header, VolumeInfo& info) {
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openNpy(const fs::path& path, const PartChoice& parts) {
+std::unique_ptr<VoxelSource> openNpy(const fs::path& path, const PartChoice& parts, bool strict) {
   const std::int64_t size = checkedFileSize(path);
   if (size < 0) throw IoError(path.string() + ": expected a file, found a pipe or device");
   NpyHeader header = readHeader(path);
@@ -171,9 +171,9 @@ std::unique_ptr<VoxelSource> openNpy(const fs::path& path, const PartChoice& par
   if (info.frames > 1)
     info.notes.push_back("the " + std::string(header.fortran ? "last" : "first") + " axis, of " +
                          std::to_string(info.frames) + ", is taken for one of frames");
-  auto first = openVoxels(info, path, header.bytes);
-  auto open =
-      openOnceMore(std::move(first), [info, path, bytes = header.bytes] { return openVoxels(info, path, bytes); });
+  if (!strict) noteExcess(info, path, header.bytes);
+  const auto again = [info, path, strict, bytes = header.bytes] { return openVoxels(info, path, bytes, strict); };
+  auto open = openOnceMore(again(), again);
   return openParts(std::move(info), axes, header.layout, parts, open);
 }
 

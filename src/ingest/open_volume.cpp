@@ -41,7 +41,8 @@ struct Format {
 constexpr std::size_t kMagicBytes = 352;
 
 DicomOptions dicomOptions(const OpenOptions& options) {
-  return {options.series, options.where, options.spacing, options.origin, options.overridePlace, options.evenSlices};
+  return {options.series,        options.where,      options.spacing, options.origin,
+          options.overridePlace, options.evenSlices, options.parts};
 }
 
 std::vector<Format> formats() {
@@ -71,17 +72,18 @@ std::vector<Format> formats() {
        },
        true,
        [](const fs::path& path, const OpenOptions& options) {
-         return openNifti(path, options.parts, options.besideOnly);
+         return openNifti(path, options.parts, options.besideOnly, options.strict);
        }},
       {{"DICOM",
         {".dcm", ".ima"},
-        "a file or a folder of them: grey series, single- and multi-frame, raw and compressed"},
+        "a file or a folder of them: grey and coloured series, single- and multi-frame, raw and compressed"},
        [](Bytes b) { return b.size() >= 132 && b.substr(128, 4) == "DICM"; },
        true,
        [](const fs::path& path, const OpenOptions& options) { return openDicom(path, dicomOptions(options)); }},
       {{"images",
         {".tif", ".tiff", ".png"},
-        "grey TIFF of one or many pages and PNG: a file, slice_%04d.tif, 'slice*.png' or a folder; OME-XML, ImageJ"},
+        "grey and coloured TIFF of one or many pages and PNG: a file, slice_%04d.tif, 'slice*.png' or a folder; "
+        "OME-XML, ImageJ"},
        [](Bytes b) {
          return b.starts_with(Bytes("II*\0", 4)) || b.starts_with(Bytes("MM\0*", 4)) ||
                 b.starts_with(Bytes("II+\0", 4)) || b.starts_with(Bytes("MM\0+", 4)) || b.starts_with("\x89PNG");
@@ -103,16 +105,19 @@ std::vector<Format> formats() {
        [](const fs::path& path, const OpenOptions& options) { return openLegacyVtk(path, options.parts); }},
       {{"HDF5",
         {".h5", ".hdf5", ".he5", ".nc", ".nc4"},
-        "a dataset of three axes, also of netCDF-4: file.h5:/path, or the only one; scale, offset, missing values"},
+        "a dataset of three axes, also of netCDF-4: file.h5:/path, or the only one; frames, components; scale, offset, "
+        "missing values"},
        [](Bytes b) { return b.starts_with("\x89HDF\r\n\x1a\n"); },
        false,
-       [](const fs::path& path, const OpenOptions& options) { return openHdf5(path, options.besideOnly); }},
+       [](const fs::path& path, const OpenOptions& options) {
+         return openHdf5(path, options.parts, options.besideOnly);
+       }},
       {{"NumPy",
         {".npy", ".npy.gz", ".npy.xz", ".npy.zst", ".npy.bz2"},
         "arrays of two or three axes in C or Fortran order"},
        [](Bytes b) { return b.starts_with("\x93NUMPY"); },
        false,
-       [](const fs::path& path, const OpenOptions& options) { return openNpy(path, options.parts); }},
+       [](const fs::path& path, const OpenOptions& options) { return openNpy(path, options.parts, options.strict); }},
   };
 }
 
@@ -230,7 +235,7 @@ std::unique_ptr<VoxelSource> openPlaced(const fs::path& path, const OpenOptions&
   const auto inUnit = [&](std::unique_ptr<VoxelSource> source) {
     return options.lengthUnit.empty() ? std::move(source) : inLengthUnit(std::move(source), options.lengthUnit);
   };
-  if (options.raw) return inUnit(openRaw(path, *options.raw, options.parts));
+  if (options.raw) return inUnit(openRaw(path, *options.raw, options.parts, options.strict));
   requireOrdinary(path);
   if (options.besideOnly) requireNoWayOut(path);
   const auto format = formatOf(path);

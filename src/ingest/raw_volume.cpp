@@ -52,7 +52,8 @@ void checkOptions(const std::string& name, const RawOptions& options) {
 
 }  // namespace
 
-std::unique_ptr<VoxelSource> openRaw(const fs::path& path, const RawOptions& options, const PartChoice& parts) {
+std::unique_ptr<VoxelSource> openRaw(const fs::path& path, const RawOptions& options, const PartChoice& parts,
+                                     bool strict) {
   VolumeInfo info;
   info.name = path.string();
   checkOptions(info.name, options);
@@ -70,20 +71,24 @@ std::unique_ptr<VoxelSource> openRaw(const fs::path& path, const RawOptions& opt
   const std::int64_t expected = *arrayBytes(info);
   const bool fits = size >= options.headerBytes && size - options.headerBytes == expected;
   const Packing packing = size >= 0 && !fits ? packingOf(path) : Packing::none;
-  if (size >= 0 && !fits && packing == Packing::none) {
+  const bool longer = size >= 0 && packing == Packing::none && size - options.headerBytes > expected;
+  if (longer && !strict) {
+    noteExcess(info, path, options.headerBytes);
+    info.notes.back() += "; does it begin with a header, or are the dims or the type wrong?";
+  } else if (size >= 0 && !fits && packing == Packing::none) {
     std::string header;
     if (options.headerBytes > 0) header = " after a header of " + std::to_string(options.headerBytes);
     throw IoError(info.name + ": expected " + describeBytes(info) + header + ", found " +
-                  std::to_string(std::max<std::int64_t>(size - options.headerBytes, 0)) +
-                  (size - options.headerBytes > expected ? kHint : ""));
+                  std::to_string(std::max<std::int64_t>(size - options.headerBytes, 0)) + (longer ? kHint : ""));
   }
   if (packing == Packing::gzip) checkDeflateRatio(path, info, size);
-  const auto open = [path, packing, headerBytes = options.headerBytes, name = info.name] {
+  const auto open = [path, packing, longer, expected, headerBytes = options.headerBytes,
+                     name = info.name]() -> std::unique_ptr<ByteStream> {
     auto bytes = openPacked(path, packing);
     if (const std::int64_t skipped = bytes->skip(headerBytes); skipped < headerBytes)
       throw IoError(name + ": expected a header of " + std::to_string(headerBytes) + " bytes, found " +
                     std::to_string(skipped) + " bytes in all");
-    return bytes;
+    return longer ? firstBytes(std::move(bytes), expected) : std::move(bytes);
   };
   const VoxelLayout layout{options.type, options.endian, options.bitsStored.value_or(0)};
   return openParts(std::move(info), PartAxes{}, layout, parts, open, kHint);

@@ -66,7 +66,7 @@ class TiffImages : public SliceImages {
     height = field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0);
     layout = layoutHere();
     components = samplesHere();
-    bits_ = field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1);
+    bits_ = bitsHere();
     whiteIsZero =
         field<std::uint16_t>(tiff_.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE;
     resolutionUnit = field<std::uint16_t>(tiff_.get(), TIFFTAG_RESOLUTIONUNIT, RESUNIT_NONE);
@@ -84,7 +84,7 @@ class TiffImages : public SliceImages {
   void promise(std::int64_t count) override {
     const std::int64_t rowBytes = width * components * voxelBytes(layout.type), bytes = rowBytes * height;
     const std::string expected = "one directory for " + std::to_string(count) + " slices";
-    if (pages != 1 || bits_ < 8 || planes() > 1 || TIFFIsTiled(tiff_.get()) ||
+    if (pages != 1 || bits_ < 8 || isConverted() || planes() > 1 || TIFFIsTiled(tiff_.get()) ||
         field<std::uint16_t>(tiff_.get(), TIFFTAG_COMPRESSION, COMPRESSION_NONE) != COMPRESSION_NONE)
       failField(path_, "slices", expected + ", unpacked and in strips", "a packed one, or tiles");
     const auto start = static_cast<std::int64_t>(TIFFGetStrileOffset(tiff_.get(), 0));
@@ -107,10 +107,11 @@ class TiffImages : public SliceImages {
     const auto here = layoutHere();
     if (field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0) != width ||
         field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0) != height || here.type != layout.type ||
-        field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1) != bits_ || samplesHere() != components)
+        bitsHere() != bits_ || samplesHere() != components)
       failField(path_, "page " + std::to_string(page + 1), sizeText(width, height, layout.type) + " as on the first",
                 sizeText(field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0),
                          field<std::uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0), here.type));
+    if (isConverted()) return readConverted(page, out);
     if (bits_ >= 8) return readPixels(page, rowBytes(), out);
     packed_.resize(static_cast<std::size_t>(rowBytes() * height));
     readPixels(page, rowBytes(), packed_);
@@ -137,8 +138,38 @@ class TiffImages : public SliceImages {
   }
   std::int64_t samplesAtOnce() const { return planes() > 1 ? 1 : components; }
 
+  // Whether libtiff makes RGB of the pixels: those of a palette, and YCbCr, whose colours may be coarser than its
+  // pixels.
+  bool isConverted() const {
+    const auto photometric = field<std::uint16_t>(tiff_.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    const auto samples = field<std::uint16_t>(tiff_.get(), TIFFTAG_SAMPLESPERPIXEL, 1);
+    const auto bits = field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1);
+    return (photometric == PHOTOMETRIC_PALETTE && samples == 1 && bits <= 8) ||
+           (photometric == PHOTOMETRIC_YCBCR && samples == 3 && bits == 8);
+  }
+
+  int bitsHere() const { return isConverted() ? 8 : field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1); }
+
   std::int64_t samplesHere() const {
+    if (isConverted()) return 3;
     return std::max<std::int64_t>(field<std::uint16_t>(tiff_.get(), TIFFTAG_SAMPLESPERPIXEL, 1), 1);
+  }
+
+  void readConverted(std::int64_t page, std::span<std::byte> out) {
+    std::array<char, 1024> why{};
+    if (!TIFFRGBAImageOK(tiff_.get(), why.data())) fail("colours that libtiff converts: " + std::string(why.data()));
+    raster_.resize(static_cast<std::size_t>(width * height));
+    // The orientation of the file itself, so that rows and columns stay as they are stored, as those of other pixels
+    // do.
+    const int orientation = field<std::uint16_t>(tiff_.get(), TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
+    if (!TIFFReadRGBAImageOriented(tiff_.get(), static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
+                                   raster_.data(), orientation, /*stopOnError=*/1))
+      fail("the pixels of page " + std::to_string(page + 1));
+    for (std::size_t i = 0; i < raster_.size(); ++i) {
+      out[3 * i] = static_cast<std::byte>(TIFFGetR(raster_[i]));
+      out[3 * i + 1] = static_cast<std::byte>(TIFFGetG(raster_[i]));
+      out[3 * i + 2] = static_cast<std::byte>(TIFFGetB(raster_[i]));
+    }
   }
 
   void readPixels(std::int64_t page, std::int64_t row, std::span<std::byte> out) {
@@ -189,14 +220,17 @@ class TiffImages : public SliceImages {
     const auto bits = field<std::uint16_t>(tiff_.get(), TIFFTAG_BITSPERSAMPLE, 1);
     const bool grey = photometric <= PHOTOMETRIC_MINISBLACK && (samples == 1 || samples == 2);
     const bool colour = photometric == PHOTOMETRIC_RGB && (samples == 3 || samples == 4);
-    if ((!grey && !colour) || (samples > 1 && bits < 8))
-      failField(path_, "photometric interpretation",
-                "grey of 1 or 2 samples per pixel, or RGB of 3 or 4 of 8 bits or more",
-                photometricName(photometric) + " with " + std::to_string(samples));
-    const auto format = field<std::uint16_t>(tiff_.get(), TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
-    using enum VoxelType;
     VoxelLayout out;
     out.endian = std::endian::native;  // libtiff swaps
+    if (isConverted()) return out;
+    if ((!grey && !colour) || (samples > 1 && bits < 8))
+      failField(
+          path_, "photometric interpretation",
+          "grey of 1 or 2 samples per pixel, RGB of 3 or 4 of 8 bits or more, YCbCr of 8 bits, or a palette of up "
+          "to 8 bits",
+          photometricName(photometric) + " with " + std::to_string(samples));
+    const auto format = field<std::uint16_t>(tiff_.get(), TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
+    using enum VoxelType;
     const bool integer = format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_INT || format == SAMPLEFORMAT_VOID;
     const bool isSigned = format == SAMPLEFORMAT_INT;
     if (integer && !isSigned && (bits == 1 || bits == 2 || bits == 4))
@@ -261,6 +295,7 @@ class TiffImages : public SliceImages {
   int bits_ = 8;                        // of a pixel in the file
   std::vector<std::byte> packed_;       // pixels of less than a byte
   std::vector<std::byte> plane_;        // one sample of each pixel
+  std::vector<std::uint32_t> raster_;   // a page that libtiff has made RGB of
   std::unique_ptr<ByteStream> behind_;  // slices without directories, from the first on
   std::int64_t behindPage_ = 0;         // that comes next there
   std::vector<std::uint64_t> pages_;    // offsets of their directories, so that each is found at once

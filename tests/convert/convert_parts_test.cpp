@@ -109,6 +109,41 @@ TEST_CASE("Three numbers a voxel become a grid of vec3 that is verified, others 
   CHECK(gridNamesIn(out) == std::vector<std::string>{"Cd_r float", "Cd_g float", "Cd_b float", "Cd_a float"});
 }
 
+// They share one pass over the file, in which they are cut and resampled as they are one by one.
+TEST_CASE("A grid of each component is the one that the component alone becomes", "[convert]") {
+  const TemporaryFolder folder;
+  const fs::path all = folder.path() / "all.vdb", alone = folder.path() / "alone.vdb";
+  for (const char* encoding : {"raw", "gzip"})
+    for (const int what : {0, 1, 2, 3}) {
+      CAPTURE(encoding, what);
+      const fs::path input = writeParts(folder, 3, 1, encoding);
+      ConvertOptions options;
+      options.verify = true;
+      if (what == 1) options.source.crop = {{1, 2, 3}, {8, 9, 7}};
+      if (what == 2) options.source.resample = glm::dvec3(2);
+      if (what == 3) options.build.maxError = 3;
+      options.eachComponent = true;
+      const ConvertReport together = convert({input}, all, options);
+      options.eachComponent = false;
+      REQUIRE(together.grids.size() == 3);
+      for (int c = 0; c < 3; ++c) {
+        options.source.open.parts.component = c;
+        const ConvertedGrid single = convert({input}, alone, options).grids.at(0);
+        const ConvertedGrid& shared = together.grids.at(static_cast<std::size_t>(c));
+        CHECK(shared.build.activeVoxels == single.build.activeVoxels);
+        CHECK(shared.build.maxError == single.build.maxError);
+        CHECK(shared.build.storage == single.build.storage);
+        const ScalarGrid a = readScalarGrid(all, "v_" + std::to_string(c)), b = readScalarGrid(alone);
+        CHECK(a.grid->tree().hasSameTopology(b.grid->tree()));
+        CHECK(a.indexToWorld() == b.indexToWorld());
+        std::size_t wrong = 0;
+        for (auto value = a.grid->cbeginValueAll(); value; ++value)
+          wrong += *value != b.grid->tree().getValue(value.getCoord());
+        CHECK(wrong == 0);
+      }
+    }
+}
+
 TEST_CASE("What a grid of vec3 has no use for is refused in one line", "[convert]") {
   const TemporaryFolder folder;
   const fs::path input = writeParts(folder, 3, 1), out = folder.path() / "o.vdb";

@@ -81,16 +81,22 @@ inline std::map<std::string, NamedTarget> targets() {
        {".dcm",
         [](const std::filesystem::path& path, std::string_view) {
           if (const auto segments = openDicomSegments(path)) return readSegments(*segments);
-          readAll(*openDicom(path));
+          DicomOptions options;
+          options.parts = allParts(0);
+          readAll(*openDicom(path, options));
         }}},
-      {"hdf5", {".h5", [](const std::filesystem::path& path, std::string_view) { readAll(*openHdf5(path)); }}},
+      {"hdf5", {".h5", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
+                  return openHdf5(path, parts);
+                })}},
       {"metaimage", {".mha", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
                        return openMetaImage(path, false, parts);
                      })}},
       {"nifti", {".nii", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
                    return openNifti(path, parts);
                  })}},
-      {"npy", {".npy", volumeTarget(openNpy)}},
+      {"npy", {".npy", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
+                 return openNpy(path, parts);
+               })}},
       {"nrrd", {".nrrd", volumeTarget([](const std::filesystem::path& path, const PartChoice& parts) {
                   return openNrrd(path, false, parts);
                 })}},

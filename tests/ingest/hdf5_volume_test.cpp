@@ -8,53 +8,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "ingest/write_hdf5.h"
 #include "support/files.h"
 #include "support/read_volume.h"
-#include "support/temporary_folder.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/open_volume.h"
 
 using namespace umbrick;
 using Catch::Contains;
-
-namespace {
-
-struct Hdf5File {
-  TemporaryFolder folder;
-  std::filesystem::path path = folder.path() / "v.h5";
-
-  Hdf5File() { H5Fclose(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)); }
-
-  /// @param chunk  empty: contiguous; else packed by gzip in chunks of that shape
-  template <class T>
-  void add(const char* name, const std::vector<hsize_t>& shape, hid_t stored, hid_t type, const std::vector<T>& values,
-           const std::vector<hsize_t>& chunk = {}) const {
-    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-    const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
-    const hid_t how = H5Pcreate(H5P_DATASET_CREATE), links = H5Pcreate(H5P_LINK_CREATE);
-    H5Pset_create_intermediate_group(links, 1);
-    if (!chunk.empty()) {
-      H5Pset_chunk(how, static_cast<int>(chunk.size()), chunk.data());
-      H5Pset_deflate(how, 6);
-    }
-    const hid_t set = H5Dcreate2(file, name, stored, space, links, how, H5P_DEFAULT);
-    if (!values.empty()) H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
-    H5Dclose(set);
-    H5Pclose(how);
-    H5Pclose(links);
-    H5Sclose(space);
-    H5Fclose(file);
-  }
-  std::vector<float> read(const std::string& dataset = {}) const {
-    return readVolume(*openVolume(path.string() + dataset));
-  }
-  void refused(const std::string& dataset, const std::string& message) const {
-    CHECK_THROWS_AS(read(dataset), IoError);
-    CHECK_THROWS_WITH(read(dataset), Contains(message) && Contains(path.string()));
-  }
-};
-
-}  // namespace
 
 TEST_CASE("The last axis of an HDF5 dataset is x, in every type and byte order", "[ingest]") {
   const Hdf5File file;
@@ -87,39 +48,6 @@ TEST_CASE("Slabs of an HDF5 dataset in chunks are the voxels that were written",
   again->readSlab(1, last);
   CHECK(last == std::vector<float>(values.end() - 30, values.end()));
 }
-
-namespace {
-
-// Gives a dataset an attribute of numbers, or of text.
-template <class T>
-void describe(const Hdf5File& file, const char* dataset, const char* key, hid_t stored, const std::vector<T>& values) {
-  const hid_t opened = H5Fopen(file.path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  const hid_t set = H5Dopen2(opened, dataset, H5P_DEFAULT);
-  const hsize_t count = values.size();
-  const hid_t space = H5Screate_simple(1, &count, nullptr);
-  const hid_t attribute = H5Acreate2(set, key, stored, space, H5P_DEFAULT, H5P_DEFAULT);
-  H5Awrite(attribute, std::is_floating_point_v<T> ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT, values.data());
-  H5Aclose(attribute);
-  H5Sclose(space);
-  H5Dclose(set);
-  H5Fclose(opened);
-}
-
-void describe(const Hdf5File& file, const char* dataset, const char* key, const char* text) {
-  const hid_t opened = H5Fopen(file.path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  const hid_t set = H5Dopen2(opened, dataset, H5P_DEFAULT);
-  const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
-  H5Tset_size(type, H5T_VARIABLE);
-  const hid_t attribute = H5Acreate2(set, key, type, space, H5P_DEFAULT, H5P_DEFAULT);
-  H5Awrite(attribute, type, &text);
-  H5Aclose(attribute);
-  H5Sclose(space);
-  H5Tclose(type);
-  H5Dclose(set);
-  H5Fclose(opened);
-}
-
-}  // namespace
 
 // The CF conventions: value = stored * scale_factor + add_offset, and what is missing is told by the stored value.
 TEST_CASE("Packed values of netCDF are unpacked, and missing ones are no numbers", "[ingest]") {
@@ -185,13 +113,14 @@ TEST_CASE("What is no volume in an HDF5 file is refused with both values", "[ing
   const Hdf5File file;
   file.refused("", "found none");
   file.add("/line", {6}, H5T_STD_U8LE, H5T_NATIVE_INT, std::vector<int>(6));
-  file.add("/many", {2, 2, 2, 2}, H5T_STD_U8LE, H5T_NATIVE_INT, std::vector<int>(16));
+  file.add("/many", {2, 2, 2, 2, 2, 2}, H5T_STD_U8LE, H5T_NATIVE_INT, std::vector<int>(64));
   file.add("/text", {1, 1, 1}, H5T_C_S1, H5T_C_S1, std::vector<char>{'a'});
   file.add("/opaque", {1, 1, 1}, H5T_STD_REF_OBJ, H5T_STD_REF_OBJ, std::vector<char>{});
   file.add("/huge", {1, 2000000000, 2000000000}, H5T_STD_U8LE, H5T_NATIVE_INT, std::vector<int>{}, {1, 64, 64});
   file.add("/over", {3000000000, 3000000000, 3000000000}, H5T_STD_U8LE, H5T_NATIVE_INT, std::vector<int>{}, {1, 8, 8});
-  file.refused(":/line", "shape: expected two or three axes that are longer than 1, found \"6\"");
-  file.refused(":/many", "shape: expected two or three axes that are longer than 1, found \"2 x 2 x 2 x 2\"");
+  file.refused(":/line", "shape: expected two or three axes of space that are longer than 1, beside which");
+  file.refused(":/line", "one of components, found \"6\"");
+  file.refused(":/many", "one of components, found \"2 x 2 x 2 x 2 x 2 x 2\"");
   file.refused(":/text", "type: expected integers of 8 to 64 bits or floats of 16 to 64, found text");
   file.refused(":/opaque", "found references");
   file.refused(":/huge", "can fill, found \"1 x 2000000000 x 2000000000\"");

@@ -188,6 +188,59 @@ TEST_CASE("Images of several numbers a pixel give them side by side, however the
   CHECK_THROWS_AS(openImageStack(stack.path), SeveralParts);
 }
 
+TEST_CASE("Palettes and YCbCr of TIFF become RGB", "[ingest]") {
+  const Stack stack;
+  const auto colours = [&](std::int64_t page) {
+    PartChoice parts;
+    parts.allComponents = true;
+    const auto source = openImageStack(stack.path, parts);
+    CHECK(source->info().components == 3);
+    CHECK(source->info().meaning == VoxelMeaning::colour);
+    CHECK(source->info().type == VoxelType::u8);
+    std::vector<float> out(static_cast<std::size_t>(source->info().dims.x * source->info().dims.y * 3));
+    source->skipSlices(page);
+    source->readSlab(1, out);
+    return out;
+  };
+  // Entries of a palette have 16 bits, of which the upper ones count; 257 times a byte is the same byte twice.
+  for (const int bits : {4, 8}) {
+    std::vector<std::uint16_t> red(1u << bits), green(red.size()), blue(red.size());
+    for (std::size_t i = 0; i < red.size(); ++i) {
+      red[i] = static_cast<std::uint16_t>(257 * i);
+      green[i] = static_cast<std::uint16_t>(257 * (255 - i));
+      blue[i] = 257 * 7;
+    }
+    const auto tags = [&](TIFF* tiff) {
+      TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_PALETTE);
+      TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits);
+      if (bits == 4) TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 2);
+      if (bits == 4) TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 3);
+      TIFFSetField(tiff, TIFFTAG_COLORMAP, red.data(), green.data(), blue.data());
+    };
+    if (bits == 8) {
+      writeTiff<std::uint8_t>(stack.path, {{0, 1, 2, 3, 254, 255}, {9, 8, 7, 6, 5, 4}}, tags);
+      CHECK(colours(1) == std::vector<float>{9, 246, 7, 8, 247, 7, 7, 248, 7, 6, 249, 7, 5, 250, 7, 4, 251, 7});
+    } else {
+      writeTiff<std::uint8_t>(stack.path, {{0x01, 0x23, 0xef}}, tags);  // two pixels a byte, the upper one first
+      CHECK(colours(0) == std::vector<float>{0, 255, 7, 1, 254, 7, 2, 253, 7, 3, 252, 7, 14, 241, 7, 15, 240, 7});
+    }
+  }
+  // Grey, and what CCIR 601 makes of red: Y = 0.299 * 255, Cb = 128 - 0.1687 * 255, Cr = 255.
+  writeTiff<std::uint8_t>(stack.path, {{100, 128, 128, 76, 85, 255}}, [](TIFF* tiff) {
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 2);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
+    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 3);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_YCBCR);
+    TIFFSetField(tiff, TIFFTAG_YCBCRSUBSAMPLING, 1, 1);
+  });
+  const std::vector<float> converted = colours(0), expected{100, 100, 100, 255, 0, 0};
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    CHECK(converted[i] == Approx(expected[i]).margin(1.5));  // three roundings to whole numbers
+  PartChoice green;
+  green.component = 1;
+  CHECK(readVolume(*openImageStack(stack.path, green))[0] == Approx(100).margin(1.5));
+}
+
 TEST_CASE("Images that are no slices are refused with both values", "[ingest]") {
   const Stack stack;
   writeTiff<std::uint8_t>(stack.path, {{1, 2, 3}, {1, 2, 3, 4, 5, 6}});

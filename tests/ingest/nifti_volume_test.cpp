@@ -153,6 +153,18 @@ TEST_CASE("NIfTI places voxels by the sform, else the qform, else pixdim, in mm 
   CHECK(file.info().metadata.count("space") == 0);
 }
 
+TEST_CASE("What follows the voxels of NIfTI is left out with a note, unless strict", "[ingest]") {
+  const NiftiFile file;
+  file.write(Header(), bytesOf(kValues) + "0123456");
+  const auto source = openNifti(file.path);
+  REQUIRE_FALSE(source->info().notes.empty());
+  CHECK(source->info().notes.back() ==
+        "v.nii has 31 bytes of voxels for 2 x 3 x 2 i16 = 24 bytes: the last 7 are left out");
+  CHECK(readVolume(*source) == kFloats);
+  CHECK_THROWS_WITH(openNifti(file.path, {}, false, true),
+                    Contains("expected 2 x 3 x 2 i16 = 24 bytes after a header of 352, found 31"));
+}
+
 TEST_CASE("Malformed NIfTI is refused with the field and both values", "[ingest]") {
   const NiftiFile file;
   const auto refused = [&](const Header& header, const std::string& what) {

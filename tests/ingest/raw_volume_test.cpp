@@ -148,12 +148,29 @@ TEST_CASE("A raw file of the wrong size is refused with both sizes", "[ingest]")
   RawOptions options{{4, 3, 2}, VoxelType::u16};
   writeBytes(path, std::string(47, 'x'));
   CHECK_THROWS_WITH(openRaw(path, options), path.string() + ": expected 4 x 3 x 2 u16 = 48 bytes, found 47");
-  writeBytes(path, std::string(50, 'x'));
-  CHECK_THROWS_WITH(openRaw(path, options), Contains("= 48 bytes, found 50") && Contains("headerBytes"));
+  writeBytes(path, std::string(48, 'x') + "yy");
+  CHECK_THROWS_WITH(openRaw(path, options, {}, true), Contains("= 48 bytes, found 50") && Contains("headerBytes"));
   options.headerBytes = 2;
-  CHECK_NOTHROW(openRaw(path, options));
+  CHECK_NOTHROW(openRaw(path, options, {}, true));
+  CHECK(openRaw(path, options)->info().notes.empty());
   options.headerBytes = 100;
   CHECK_THROWS_AS(openRaw(path, options), IoError);
+}
+
+TEST_CASE("A raw file that is too long is read up to its voxels, with a doubt, unless strict", "[ingest]") {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "v.raw";
+  const std::vector<std::uint16_t> voxels = someValues<std::uint16_t>(24);
+  RawOptions options{{4, 3, 2}, VoxelType::u16};
+  options.headerBytes = 3;
+  writeBytes(path, "abc" + bytesOf(voxels) + "trailing");
+  const auto source = openRaw(path, options);
+  REQUIRE(source->info().notes.size() == 1);
+  CHECK(source->info().notes[0] ==
+        "v.raw has 56 bytes of voxels for 4 x 3 x 2 u16 = 48 bytes: the last 8 are left out; does it begin with a "
+        "header, or are the dims or the type wrong?");
+  CHECK(readAll(*source, 1) == std::vector<float>(voxels.begin(), voxels.end()));
+  CHECK_THROWS_WITH(openRaw(path, options, {}, true), Contains("= 48 bytes after a header of 3, found 56"));
 }
 
 TEST_CASE("A packed file of the wrong size or cut short is found while reading", "[ingest]") {

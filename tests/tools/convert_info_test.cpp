@@ -121,7 +121,8 @@ TEST_CASE("Failed conversions exit 1 with one line and leave nothing behind", "[
   const std::string raw = " --dims 4 5 6 --type u8 -o o.vdb";
   failing.check("convert none.raw" + raw, 1, "umbrick: none.raw: no such file");
   failing.check("convert short.raw" + raw, 1, "short.raw: expected 4 x 5 x 6 u8 = 120 bytes, found 100");
-  failing.check("convert short.raw --dims 4 5 4 --type u8 -o o.vdb", 1, "found 100; does it begin with a header");
+  failing.check("convert short.raw --dims 4 5 4 --type u8 --strict -o o.vdb", 1,
+                "found 100; does it begin with a header");
   failing.check("convert ." + raw, 1, "expected a file, found a directory");
   failing.check("convert short.raw --dims 10 10 1 --type u8 -o none/o.vdb", 1, "none/o.vdb: cannot write");
   failing.check("convert none.nrrd -o o.vdb", 1, "none.nrrd: cannot read: No such file");

@@ -23,6 +23,11 @@ inline constexpr Name<Target> kTargets[]{{"blender", Target::blender},
 ///   most 2048 tiles' texels along an axis and 2 GiB in all (SparseVolumeTextureUtility.h of Unreal Engine 5.3); its
 ///   transform has no shear, and all grids of a file share it.
 /// - Omniverse, or any stage of OpenUSD that says nothing else: centimetres, y up (OpenUSD, metersPerUnit, upAxis).
+/// Names of vectors: Blender takes the grid "velocity" for motion blur unless told otherwise (Blender Python API,
+/// Volume.velocity_grid) and "color" in its principled volume; fields of Houdini's Pyro are "vel" and "Cd" (SideFX,
+/// nodes/sop/pyrosolver and pyrobakevolume). Unreal asks for the grid of each channel as it imports a file (Epic,
+/// "Sparse Volume Textures"), and a stage of OpenUSD names the grid of each field itself (OpenVDBAsset.fieldName), so
+/// that any name does: they get Blender's, which people know.
 struct TargetTraits {
   std::string_view name;       // for people
   double metresPerUnit = 1;    // of its world
@@ -33,6 +38,7 @@ struct TargetTraits {
   std::int64_t longest = 0;    // voxels along an axis that it takes; 0: as many as there are
   std::int64_t mostBytes = 0;  // of its 16-bit texture; 0: as many as there are
   bool dense = false;          // that texture holds all of the box of the active voxels
+  std::string_view velocity = "velocity", colour = "color";  // what its grids of vec3 are called
 };
 
 const TargetTraits& traitsOf(Target target);

@@ -10,7 +10,7 @@
 namespace umbrick {
 
 /// The world that the metadata of a grid state.
-World worldOf(const openvdb::FloatGrid& grid);
+World worldOf(const openvdb::GridBase& grid);
 
 /// A grid that is brought to another world. It shares the voxels. A level set keeps its distances, so that one whose
 /// unit changes is fit for a mask only.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "umbrick/core/error.h"
+#include "umbrick/ingest/volume_parts.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
@@ -40,6 +41,11 @@ struct UnevenSlices : IoError {
   using IoError::IoError;
 };
 
+/// A segmentation, whose frames overlap or leave slices out: openDicomSegments reads it.
+struct SegmentsFound : IoError {
+  using IoError::IoError;
+};
+
 struct DicomOptions {
   /// The UID of a series or its place in the list, from 1; empty for the only one. Of a series that is picked, damaged
   /// files and slices unlike most of the others, such as a localizer, are left out.
@@ -54,6 +60,7 @@ struct DicomOptions {
   bool overridePlace = false;
   /// Slices that are not evenly spaced are interpolated, linearly along the normal, to even ones.
   bool evenSlices = false;
+  PartChoice parts = {};  // of colours
 };
 
 /// Lists the series of a folder and the folders in it, by number and then UID, or the one of a file. Files that are no
@@ -61,9 +68,11 @@ struct DicomOptions {
 /// @throw IoError  the path is missing or cannot be read
 std::vector<DicomSeries> listDicomSeries(const std::filesystem::path& path);
 
-/// Opens a series of grey slices in files of one frame or of many, also enhanced ones and Siemens mosaics. Every
-/// transfer syntax is read that GDCM decodes (raw of both byte orders, RLE, JPEG, JPEG-LS, JPEG 2000), and deflated
-/// data sets. A file may lack its preamble, and have bytes behind its pixels or zeros behind its end.
+/// Opens a series of grey or coloured slices in files of one frame or of many, also enhanced ones and Siemens mosaics.
+/// Every transfer syntax is read that GDCM decodes (raw of both byte orders, RLE, JPEG, JPEG-LS, JPEG 2000), and
+/// deflated data sets. Colours (RGB, YBR_FULL and PALETTE COLOR) become red, green and blue, of 8 or 16 bits; those of
+/// three samples are not packed, or by run lengths. A file may lack its preamble, and have bytes behind its pixels or
+/// zeros behind its end.
 ///
 /// Slices are put in order of their positions along the normal of their plane, whatever their names and numbers. World
 /// space is the patient's LPS in mm: x and y are the directions of rows and columns times PixelSpacing, z is the step
@@ -76,8 +85,9 @@ std::vector<DicomSeries> listDicomSeries(const std::filesystem::path& path);
 /// @throw SeveralSeries    there are several series and none is picked
 /// @throw InvalidArgument  there is no such series or value, the message lists those there are; spacing or origin of a
 ///                         series that states its own
-/// @throw IoError          missing, unreadable, colour, slices of different kinds, positions that make no volume; of
-/// the
+/// @throw SeveralParts     colours, of which `parts` chooses none
+/// @throw IoError          missing, unreadable, colours of other kinds, slices of different kinds, positions that make
+/// no volume; of the
 ///                         types above where an option helps
 std::unique_ptr<VoxelSource> openDicom(const std::filesystem::path& path, const DicomOptions& options = {});
 

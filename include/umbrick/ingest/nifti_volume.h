@@ -22,9 +22,10 @@ namespace umbrick {
 /// The fourth axis counts frames, the fifth components, as those of a vector. Colours (RGB24, RGBA32) and complex
 /// numbers have components side by side.
 ///
+/// @param strict  refuses plain voxels behind which the file goes on, which else is noted
 /// @throw SeveralParts  several frames or components, and `parts` chooses none
-/// @throw IoError       missing, short, long, malformed, more axes, or 128-bit voxels
+/// @throw IoError       missing, short, packed and long, malformed, more axes, or 128-bit voxels
 std::unique_ptr<VoxelSource> openNifti(const std::filesystem::path& path, const PartChoice& parts = {},
-                                       bool besideOnly = false);
+                                       bool besideOnly = false, bool strict = false);
 
 }  // namespace umbrick

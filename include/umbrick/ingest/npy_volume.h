@@ -19,8 +19,10 @@ namespace umbrick {
 /// (Fortran order) those of space is one of frames.
 /// Format: https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html
 ///
+/// @param strict  refuses plain voxels behind which the file goes on, which else is noted
 /// @throw SeveralParts  several frames or components, and `parts` chooses none
-/// @throw IoError  missing, short, long, malformed, or complex, structured, or an object
-std::unique_ptr<VoxelSource> openNpy(const std::filesystem::path& path, const PartChoice& parts = {});
+/// @throw IoError       missing, short, packed and long, malformed, or complex, structured, or an object
+std::unique_ptr<VoxelSource> openNpy(const std::filesystem::path& path, const PartChoice& parts = {},
+                                     bool strict = false);
 
 }  // namespace umbrick

@@ -16,7 +16,7 @@ namespace umbrick {
 
 struct OpenOptions {
   std::optional<RawOptions> raw = {};  // when given, the file is read as headerless raw, whatever its name
-  bool strict = false;  // refuses plain voxels of NRRD and MetaImage that are longer than the header says
+  bool strict = false;  // refuses plain files that go on behind the voxels of their header, or of `raw`: else a note
   /// The unit of length that the world gets: nm, um, mm, cm, m, or "file" for the one that the file states. Where a
   /// file states none, its numbers are taken for this unit. Empty: mm, or smaller where voxels are too small for
   /// OpenVDB.

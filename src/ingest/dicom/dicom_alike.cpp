@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "ingest/dicom/dicom_colours.h"
 #include "ingest/header_text.h"
 #include "umbrick/core/error.h"
 #include "umbrick/ingest/dicom_volume.h"
@@ -37,7 +38,10 @@ struct Difference {
 Difference difference(const DicomFile& fileA, const DicomFrame& a, const DicomFile& fileB, const DicomFrame& b) {
   if (fileA.columns != fileB.columns || fileA.rows != fileB.rows)
     return {"Columns and Rows", sizeText(fileA) + " pixels", sizeText(fileB)};
-  if (fileA.pixels.layout.type != fileB.pixels.layout.type)
+  const bool greyA = fileA.pixels.colours == DicomColours::grey, greyB = fileB.pixels.colours == DicomColours::grey;
+  if (greyA != greyB || (!greyA && valueType(fileA.pixels) != valueType(fileB.pixels)))
+    return {"PhotometricInterpretation", fileA.pixels.photometric, fileB.pixels.photometric};
+  if (greyA && fileA.pixels.layout.type != fileB.pixels.layout.type)
     return {"PixelRepresentation and BitsAllocated", std::string(voxelTypeName(fileA.pixels.layout.type)) + " pixels",
             std::string(voxelTypeName(fileB.pixels.layout.type))};
   const auto stated = [](bool is) { return is ? std::string("one") : std::string("none"); };

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "ingest/dicom/dicom_colours.h"
 #include "ingest/dicom/dicom_frames.h"
 #include "ingest/dicom/dicom_mosaic.h"
 #include "ingest/dicom/dicom_segments.h"
@@ -18,6 +19,7 @@ namespace umbrick {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr std::string_view kRunLengths = "1.2.840.10008.1.2.5";
 constexpr std::size_t kLongestKept = 64;  // characters of a value by which slices may be picked
 
 void readSeries(const DicomTags& tags, DicomFile& file) {
@@ -27,18 +29,14 @@ void readSeries(const DicomTags& tags, DicomFile& file) {
   file.seriesNumber = integer(tags.text(0x00200011)).value_or(0);
 }
 
-void readPixelLayout(const DicomTags& tags, DicomFile& file) {
+void readPixelLayout(const DicomElements& elements, const DicomTags& tags, DicomFile& file) {
   file.rows = tags.unsignedShort(0x00280010, 0);
   file.columns = tags.unsignedShort(0x00280011, 0);
   if (file.rows < 1 || file.columns < 1)
     failField(file.path, "Rows and Columns", "an image",
               std::to_string(file.rows) + " x " + std::to_string(file.columns));
   DicomPixelData& pixels = file.pixels;
-  pixels.photometric = tags.text(0x00280004);
-  const auto samples = tags.unsignedShort(0x00280002, 1);
-  if (samples != 1 || (pixels.photometric != "MONOCHROME1" && pixels.photometric != "MONOCHROME2"))
-    failField(file.path, "PhotometricInterpretation", "MONOCHROME1 or MONOCHROME2 with one sample per pixel",
-              pixels.photometric + ", " + std::to_string(samples) + " samples");
+  readDicomColours(elements, tags, file);
   const auto allocated = tags.unsignedShort(0x00280100, 0), stored = tags.unsignedShort(0x00280101, allocated),
              high = tags.unsignedShort(0x00280102, stored - 1);
   const bool isSigned = tags.unsignedShort(0x00280103, 0) == 1;
@@ -101,15 +99,20 @@ void readPixelPlace(const DicomHeader& header, DicomFile& file) {
   if (header.encapsulated && pixels.bitsAllocated == 1)
     failField(file.path, "TransferSyntaxUID", "one of pixels that are not packed, where BitsAllocated is 1",
               transferSyntaxName(header.transferSyntax));
+  if (header.encapsulated && pixels.samples > 1 &&
+      (header.transferSyntax != kRunLengths || pixels.layout.type != VoxelType::u8))
+    failField(file.path, "TransferSyntaxUID",
+              "one of colours that are not packed, or run lengths of 8 bits, where there are three samples per pixel",
+              transferSyntaxName(header.transferSyntax));
   if (header.encapsulated) return readFragments(header, pixels);
-  const std::int64_t voxels = file.rows * file.columns * static_cast<std::int64_t>(pixels.images);
+  const std::int64_t voxels = file.rows * file.columns * pixels.samples * static_cast<std::int64_t>(pixels.images);
   const bool bits = pixels.bitsAllocated == 1 || pixels.bitsAllocated == 12;
   const std::int64_t bytes = bits ? (voxels * pixels.bitsAllocated + 7) / 8 : voxels * voxelBytes(pixels.layout.type);
   if (header.pixelBytes < bytes)
     throw IoError(file.path.string() + ": PixelData: expected " + std::to_string(file.columns) + " x " +
-                  std::to_string(file.rows) + " x " + std::to_string(pixels.images) + " " +
-                  std::string(voxelTypeName(pixels.layout.type)) + " = " + std::to_string(bytes) + " bytes, found " +
-                  std::to_string(header.pixelBytes));
+                  std::to_string(file.rows) + " x " + std::to_string(pixels.images) +
+                  (pixels.samples > 1 ? " x 3 samples " : " ") + std::string(voxelTypeName(pixels.layout.type)) +
+                  " = " + std::to_string(bytes) + " bytes, found " + std::to_string(header.pixelBytes));
   // DICOM adds a byte where the length would be odd, and asks readers to bear more (PS3.5 8.1.1).
   if (header.pixelBytes > bytes + 1)
     file.notes.push_back({"PixelData has more bytes than the pixels, which are not read",
@@ -121,7 +124,7 @@ void readPixelPlace(const DicomHeader& header, DicomFile& file) {
 
 // Frames and pixels of an image.
 void readImage(const DicomHeader& header, const DicomTags& tags, DicomFile& file) {
-  readPixelLayout(tags, file);
+  readPixelLayout(header.elements, tags, file);
   file.valueUnit = tags.has(0x00281054) ? tags.text(0x00281054) : tags.text(0x00541001);
   file.gantryTilt = tags.number(0x00181120, "GantryDetectorTilt", 0);
   const std::string text = tags.text(0x00280008);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,9 +34,23 @@ struct DicomFrame {
   DicomValues values;         // its own, where the file has several frames
 };
 
+/// What the samples of a pixel are.
+enum class DicomColours { grey, rgb, ybrFull, palette };
+
+/// The colours that pixels of one number stand for.
+struct DicomPalette {
+  std::size_t count = 0, first = 0;    // entries, and the pixel that stands for the first one
+  int bits = 8;                        // of an entry, 8 or 16
+  std::vector<std::uint16_t> entries;  // all of red, then green, then blue
+};
+
 /// Where the pixels of a file lie.
 struct DicomPixelData {
   std::string transferSyntax, photometric;
+  DicomColours colours = DicomColours::grey;
+  int samples = 1;      // numbers of a pixel in the file
+  bool planes = false;  // of several, the first ones of all pixels come before the second ones
+  std::shared_ptr<const DicomPalette> palette = {};
   std::int64_t columns = 0, rows = 0;  // of a picture
   std::size_t images = 1;              // pictures in the file
   VoxelLayout layout;

@@ -7,12 +7,15 @@
 #include <gdcmTrace.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <iterator>
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <utility>
 
+#include "ingest/dicom/dicom_colours.h"
 #include "ingest/dicom/dicom_rle.h"
 #include "ingest/dicom/jpeg_check.h"
 #include "ingest/streams/byte_stream.h"
@@ -223,8 +226,9 @@ Bytes readDicomPixels(const DicomFile& file, std::size_t image) try {
   const DicomPixelData& pixels = file.pixels;
   if (pixels.offset >= 0 && pixels.bitsAllocated == 1) return readBits(file, image);
   if (pixels.offset >= 0 && pixels.single()) {
-    const std::int64_t bytes = pixels.columns * pixels.rows * voxelBytes(pixels.layout.type);
-    return readBytes(file, pixels.offset + bytes * static_cast<std::int64_t>(image), bytes);
+    const std::int64_t bytes = pixels.columns * pixels.rows * pixels.samples * voxelBytes(pixels.layout.type);
+    Bytes stored = readBytes(file, pixels.offset + bytes * static_cast<std::int64_t>(image), bytes);
+    return pixels.planes ? withoutPlanes(stored, static_cast<std::size_t>(voxelBytes(pixels.layout.type))) : stored;
   }
   if (pixels.offset >= 0) return unpack(file, 0, {readBytes(file, pixels.offset, pixels.bytes)}, pixels.images);
   const std::vector<DicomFragment>& parts = pixels.fragments[pixels.single() ? image : 0];
@@ -235,10 +239,14 @@ Bytes readDicomPixels(const DicomFile& file, std::size_t image) try {
     if (!pixels.single()) throw IoError(where(file, 0) + "expected a fragment of RLE data for each frame");
     Bytes packed;
     for (const Bytes& each : fragments) packed.insert(packed.end(), each.begin(), each.end());
-    const auto pixelBytes = static_cast<std::size_t>(voxelBytes(pixels.layout.type));
+    // Samples have a segment each, as the bytes of a number have.
+    const auto pixelBytes = static_cast<std::size_t>(pixels.samples * voxelBytes(pixels.layout.type));
     Bytes out(static_cast<std::size_t>(pixels.columns * pixels.rows) * pixelBytes);
     const std::string damage = unpackDicomRle(packed, pixelBytes, out);
     if (!damage.empty()) throw IoError(where(file, image) + "expected " + damage);
+    // The first segment is the highest byte of a number, and red of a colour.
+    if (pixels.samples == 3 && std::endian::native == std::endian::little)
+      for (std::size_t i = 0; i + 2 < out.size(); i += 3) std::swap(out[i], out[i + 2]);
     return out;
   }
   if (pixels.single()) checkJpeg(file, image, fragments);

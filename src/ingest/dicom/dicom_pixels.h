@@ -13,8 +13,8 @@
 
 namespace umbrick {
 
-/// The pixels of picture `image` as pixels.layout says; those of all pictures where a picture cannot be had without the
-/// others (DicomPixelData::single). Several threads may call it at once.
+/// The pixels of picture `image` as pixels.layout says, with pixels.samples numbers side by side; those of all pictures
+/// where a picture cannot be had without the others (DicomPixelData::single). Several threads may call it at once.
 /// @throw IoError  unreadable, a transfer syntax that is not decoded, or not as many pixels as the tags say
 std::vector<std::byte> readDicomPixels(const DicomFile& file, std::size_t image);
 

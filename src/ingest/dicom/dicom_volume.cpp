@@ -10,11 +10,13 @@
 #include <mutex>
 #include <utility>
 
+#include "ingest/dicom/dicom_colours.h"
 #include "ingest/dicom/dicom_pick.h"
 #include "ingest/dicom/dicom_pixels.h"
 #include "ingest/dicom/dicom_series.h"
 #include "ingest/dicom/dicom_stack.h"
 #include "ingest/header_text.h"
+#include "ingest/parts.h"
 #include "ingest/place.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/byte_stream.h"
@@ -31,8 +33,15 @@ using Bytes = std::vector<std::byte>;
 // that is unpacked as a whole, is kept.
 class SlicePixels {
  public:
-  /// @return the pixels of the slice, as file.pixels.layout says
+  /// @return the pixels of the slice, as file.pixels.layout says, or its colours as coloursOf gives them
   Bytes read(const DicomSlice& slice) {
+    const DicomPixelData& pixels = slice.file->pixels;
+    if (pixels.colours != DicomColours::grey) return coloursOf(pixels, stored(slice));
+    return stored(slice);
+  }
+
+ private:
+  Bytes stored(const DicomSlice& slice) {
     const DicomPixelData& pixels = slice.file->pixels;
     const bool whole = pixels.columns == slice.file->columns && pixels.rows == slice.file->rows;
     if (pixels.single() && whole) return readDicomPixels(*slice.file, slice.frame->image);
@@ -40,7 +49,6 @@ class SlicePixels {
     return cut(slice, *kept);
   }
 
- private:
   std::shared_ptr<const Bytes> keptPixels(const DicomFile& file) {
     const std::scoped_lock lock(mutex_);
     if (keptOf_ != &file) {
@@ -54,7 +62,7 @@ class SlicePixels {
 
   static Bytes cut(const DicomSlice& slice, const Bytes& from) {
     const DicomPixelData& pixels = slice.file->pixels;
-    const auto voxel = static_cast<std::int64_t>(voxelBytes(pixels.layout.type));
+    const auto voxel = static_cast<std::int64_t>(voxelBytes(pixels.layout.type)) * pixels.samples;
     const std::int64_t row = slice.file->columns * voxel, wide = pixels.columns * voxel;
     const std::int64_t image = pixels.single() ? 0 : static_cast<std::int64_t>(slice.frame->image);
     const std::int64_t first = (image * pixels.rows + slice.frame->corner.y) * wide + slice.frame->corner.x * voxel;
@@ -69,6 +77,12 @@ class SlicePixels {
   std::shared_ptr<const Bytes> kept_;
 };
 
+// How the numbers lie that SlicePixels gives.
+VoxelLayout layoutOf(const DicomPixelData& pixels) {
+  if (pixels.colours == DicomColours::grey) return pixels.layout;
+  return {valueType(pixels), std::endian::native};
+}
+
 bool isRescaled(const DicomFrame& frame) { return frame.slope != 1 || frame.intercept != 0; }
 
 class DicomSource : public VoxelSource {
@@ -77,7 +91,8 @@ class DicomSource : public VoxelSource {
     info_ = std::move(info);
     using enum VoxelType;
     asStored_ = info_.type == u8 || info_.type == i8 || info_.type == u16 || info_.type == i16;
-    for (const DicomSlice& slice : stack_.slices()) asStored_ = asStored_ && !isRescaled(*slice.frame);
+    for (const DicomSlice& slice : stack_.slices())
+      asStored_ = asStored_ && (info_.components > 1 || !isRescaled(*slice.frame));
     for (const DicomBlend& blend : stack_.blends()) asStored_ = asStored_ && blend.share == 0;
   }
 
@@ -117,19 +132,21 @@ class DicomSource : public VoxelSource {
       const Bytes raw = pixels_.read(slice);
       const std::span<std::byte> to = out.subspan(i * bytes, bytes);
       std::memcpy(to.data(), raw.data(), bytes);
-      normaliseVoxels(slice.file->pixels.layout, to);
+      normaliseVoxels(layoutOf(slice.file->pixels), to);
     });
     next_ += static_cast<std::size_t>(count);
   }
 
  private:
-  std::size_t voxels() const { return static_cast<std::size_t>(info_.dims.x * info_.dims.y); }
+  std::size_t voxels() const { return static_cast<std::size_t>(info_.dims.x * info_.dims.y * info_.valuesPerVoxel); }
 
   double decode(std::size_t index, std::span<float> out) {
     const DicomSlice& slice = stack_.slices()[index];
-    VoxelLayout layout = slice.file->pixels.layout;
-    layout.slope = slice.frame->slope;
-    layout.intercept = slice.frame->intercept;
+    VoxelLayout layout = layoutOf(slice.file->pixels);
+    if (info_.components == 1) {
+      layout.slope = slice.frame->slope;
+      layout.intercept = slice.frame->intercept;
+    }
     return decodeVoxels(layout, pixels_.read(slice), out);
   }
 
@@ -172,13 +189,16 @@ void describe(const DicomStack& stack, VolumeInfo& info) {
   keep("modality", file.modality);
   keep("series_uid", file.seriesUid);
   keep("series_description", file.seriesDescription);
-  keep("value_unit", file.valueUnit.empty() && file.modality == "CT" ? "HU" : file.valueUnit);
+  const bool grey = info.components == 1;
+  keep("value_unit", !grey ? "" : file.valueUnit.empty() && file.modality == "CT" ? "HU" : file.valueUnit);
+  if (!grey) keep("photometric", file.pixels.photometric);
   if (file.pixels.photometric == "MONOCHROME1") keep("photometric", "MONOCHROME1: the lowest value is white");
   if (file.gantryTilt != 0) keep("gantry_tilt", std::to_string(file.gantryTilt) + " degrees");
   const DicomFrame& first = *stack.slices().front().frame;
   bool alike = true;
   for (const DicomSlice& slice : stack.slices())
     alike = alike && slice.frame->slope == first.slope && slice.frame->intercept == first.intercept;
+  if (!grey) return;
   VoxelLayout layout;
   layout.slope = first.slope;
   layout.intercept = first.intercept;
@@ -230,6 +250,33 @@ void dropRefused(std::vector<DicomFile>& files, bool picked, std::vector<std::st
   std::erase_if(files, refused);
 }
 
+[[noreturn]] void refuseSegments(const DicomFile& file, const std::string& why) {
+  const std::size_t count = file.segments.size();
+  throw SegmentsFound(file.path.string() + ": a DICOM segmentation of " + std::to_string(count) +
+                      (count == 1 ? " segment" : " segments") + ", whose frames are no volume: " + why);
+}
+
+// Frames of a segment are a volume where they follow each other. Those of several are none together.
+void checkSegments(const std::vector<DicomFile>& files) {
+  for (const DicomFile& file : files)
+    for (const DicomFrame& frame : file.frames)
+      if (frame.segment != files.front().frames.front().segment)
+        refuseSegments(file, "expected one segment, found frames of " +
+                                 std::to_string(files.front().frames.front().segment) + " and " +
+                                 std::to_string(frame.segment));
+}
+
+DicomStack stacked(const std::string& name, std::vector<DicomFile> files, const DicomOptions& options,
+                   std::vector<std::string>& notes) {
+  const DicomFile first = files.front();
+  try {
+    return {name, std::move(files), options, notes};
+  } catch (const IoError& error) {
+    if (first.segments.empty()) throw;
+    refuseSegments(first, error.what());
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<VoxelSource> openDicomFolder(const fs::path& path, DicomFolder folder, const DicomOptions& options) {
@@ -238,18 +285,23 @@ std::unique_ptr<VoxelSource> openDicomFolder(const fs::path& path, DicomFolder f
   std::vector<DicomFile> files = pickSeries(path, std::move(folder), options.series, info.notes);
   dropRefused(files, !options.series.empty() || !options.where.empty(), info.notes);
   keepWhere(info.name, files, options.where);
+  checkSegments(files);
   joinNotes(files, info.notes);
-  DicomStack stack(info.name, std::move(files), options, info.notes);
+  DicomStack stack = stacked(info.name, std::move(files), options, info.notes);
   for (const DicomFile& file : stack.files()) info.fileBytes += checkedFileSize(file.path);
   const DicomFile& first = stack.files().front();
   info.dims = {first.columns, first.rows, std::ssize(stack.blends())};
-  info.type = first.pixels.layout.type;
-  if (!volumeBytes(info.dims, info.type)) failField(path, "frames", "less than 2^31", std::to_string(info.dims.z));
+  info.type = valueType(first.pixels);
+  if (first.pixels.colours != DicomColours::grey) {
+    info.components = info.valuesPerVoxel = 3;
+    info.meaning = VoxelMeaning::colour;
+  }
+  if (!arrayBytes(info)) failField(path, "frames", "less than 2^31", std::to_string(info.dims.z));
   info.indexToWorld = stack.indexToWorld();
   addProvenance(info, path, "DICOM");
   describe(stack, info);
   checkPlace(info, "ImagePositionPatient, ImageOrientationPatient and PixelSpacing");
-  return std::make_unique<DicomSource>(std::move(info), std::move(stack));
+  return pickComponents(std::make_unique<DicomSource>(std::move(info), std::move(stack)), options.parts);
 }
 
 std::unique_ptr<VoxelSource> openDicom(const fs::path& path, const DicomOptions& options) {

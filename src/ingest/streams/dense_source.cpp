@@ -35,11 +35,13 @@ std::string describeBytes(const VolumeInfo& info) {
   return text + std::string(voxelTypeName(info.type)) + " = " + std::to_string(arrayBytes(info).value_or(0)) + " bytes";
 }
 
-std::unique_ptr<ByteStream> openVoxels(const VolumeInfo& info, const std::filesystem::path& path, std::int64_t offset) {
+std::unique_ptr<ByteStream> openVoxels(const VolumeInfo& info, const std::filesystem::path& path, std::int64_t offset,
+                                       bool strict) {
   const std::int64_t size = checkedFileSize(path);
   const Packing packing = size >= 0 ? packingOf(path) : Packing::none;
   const std::int64_t expected = arrayBytes(info).value_or(0);
   if (packing == Packing::none && size >= 0) {
+    if (!strict && size - offset > expected) return firstBytes(openPlain(path, offset), expected);
     if (size - offset != expected)
       throw IoError(path.string() + ": expected " + describeBytes(info) +
                     (offset > 0 ? " after a header of " + std::to_string(offset) : "") + ", found " +
@@ -52,6 +54,13 @@ std::unique_ptr<ByteStream> openVoxels(const VolumeInfo& info, const std::filesy
     throw IoError(path.string() + ": expected a header of " + std::to_string(offset) + " bytes, found " +
                   std::to_string(skipped) + " bytes in all");
   return bytes;
+}
+
+void noteExcess(VolumeInfo& info, const std::filesystem::path& path, std::int64_t offset) {
+  const std::int64_t size = checkedFileSize(path), excess = size - offset - arrayBytes(info).value_or(0);
+  if (size < 0 || excess <= 0 || packingOf(path) != Packing::none) return;
+  info.notes.push_back(path.filename().string() + " has " + std::to_string(size - offset) + " bytes of voxels for " +
+                       describeBytes(info) + ": the last " + std::to_string(excess) + " are left out");
 }
 
 void checkDeflateRatio(const std::filesystem::path& path, const VolumeInfo& info, std::int64_t packedBytes) {

@@ -19,8 +19,13 @@ std::optional<std::int64_t> volumeBytes(const glm::i64vec3& dims, VoxelType type
 std::string describeBytes(const VolumeInfo& info);
 
 /// Opens a file that holds all voxels, from byte `offset` of the unpacked file on. The first bytes tell its packing.
+/// @param strict  a plain file must end with the last voxel, and else may go on
 /// @throw IoError  a plain file of another size, or a packed one too small to hold so much
-std::unique_ptr<ByteStream> openVoxels(const VolumeInfo& info, const std::filesystem::path& path, std::int64_t offset);
+std::unique_ptr<ByteStream> openVoxels(const VolumeInfo& info, const std::filesystem::path& path, std::int64_t offset,
+                                       bool strict);
+
+/// Adds a note with both sizes where a plain file goes on behind its voxels.
+void noteExcess(VolumeInfo& info, const std::filesystem::path& path, std::int64_t offset);
 
 /// Refuses gzip or zlib data that are too small to become so many voxels, before anything is allocated for these.
 /// @throw IoError
