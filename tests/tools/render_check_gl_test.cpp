@@ -111,10 +111,8 @@ TEST_CASE("Renders that fail say so in one line and leave nothing behind", "[too
         "beyond the driver's limit");
   check(kSmoke + "--tf smoke --azimuth 0 --grid density --size 99999x99999 --backend cpu -o a.png", 1,
         "buffers of 99999 x 99999 pixels: needs ");
-  check(kSmall + "-o a.png --technique rays --backend osmesa", 1,
-        "rays does not run on OpenGL but on the CPU");
-  check(kSmall + "-o a.png --technique slices --backend cpu", 1,
-        "slices does not run on the CPU but on OpenGL");
+  check(kSmall + "-o a.png --technique rays --backend osmesa", 1, "rays does not run on OpenGL but on the CPU");
+  check(kSmall + "-o a.png --technique slices --backend cpu", 1, "slices does not run on the CPU but on OpenGL");
   check(kSmall + "-o a.png --model cone --method ordinates --backend cpu", 1, "ordinates is one of slices");
   check(kSmall + "-o a.png --eye 0 0 0", 2, "--eye needs --look-at");
   check(kSmall + "-o a.png --model glow", 2, "--model");

@@ -85,6 +85,6 @@ TEST_CASE("What a scene cannot have is said with the option that changes it", "[
     CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
   };
   check("render both.vdb --tf smoke --spacing 10000 -o a.png", "sampling.spacing (--spacing): slices ");
-  check("render both.vdb --tf smoke --model ambient -o a.png",
-        "model (--model): ambient is integrated by the reference");
+  check("render both.vdb --tf smoke --model cone-ray -o a.png",
+        "model (--model): cone-ray is integrated by the reference");
 }
