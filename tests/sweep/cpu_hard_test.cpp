@@ -7,8 +7,6 @@ using namespace umbrick;
 
 namespace {
 
-ScalarGrid blobGrid(const glm::ivec3& origin = glm::ivec3(0)) { return makeFilled(glm::ivec3(24), origin, smallBlobs); }
-
 // Of a field that is its own z: without its faces, where it falls to the background through all values.
 const Box kInside{glm::dvec3(0.5), glm::dvec3(23.5)};
 

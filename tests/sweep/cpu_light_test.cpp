@@ -7,8 +7,6 @@ using namespace umbrick;
 
 namespace {
 
-ScalarGrid blobGrid() { return makeFilled(glm::ivec3(24), {0, 0, 0}, smallBlobs); }
-
 ResolvedScene litScene(const TransferFunction& transfer, const Camera& camera) {
   ResolvedScene scene = plainScene(transfer, camera, 0.5);
   scene.model = Model::cone;

@@ -11,8 +11,6 @@ using namespace umbrick;
 
 namespace {
 
-ScalarGrid blobGrid() { return makeFilled(glm::ivec3(24), {0, 0, 0}, smallBlobs); }
-
 ResolvedScene blobScene(const Camera& camera, double sigma_t = 0.6) { return plainScene(ramp(sigma_t), camera, 0.5); }
 
 // Cameras all around, so that each axis is the main one in both directions.
