@@ -438,15 +438,15 @@ TEST_CASE("Options of samples that make no sense are refused", "[shade][gl]") {
   const auto refused = [&](const ResolvedScene& changed, const ProgressiveOptions& options) {
     return complaint<InvalidArgument>([&] { renderProgressive(*context, *volume, changed, options); });
   };
-  ResolvedScene emission = scene, dos = scene, ambient = scene;
+  ResolvedScene emission = scene, dos = scene, aroundRay = scene;
   emission.model = Model::emission;
   dos.method = Method::dos;
-  ambient.model = Model::ambient;
+  aroundRay.model = Model::coneRay;
   const std::string needs =
       "progressive: needs the model cone, ambient or lights and the method ordinates or light-volume, found ";
   CHECK(refused(emission, {}) == needs + "emission and ordinates");
   CHECK(refused(dos, {}) == needs + "cone and dos");
-  CHECK(refused(ambient, {}) == needs + "ambient and ordinates");
+  CHECK(refused(aroundRay, {}) == needs + "cone-ray and ordinates");
   CHECK(refused(scene, {.passes = 0}) == "progressive: passes is 0, must be 1 or more");
   CHECK(refused(scene, {.passes = -3}) == "progressive: passes is -3, must be 1 or more");
   using Catch::Contains;
