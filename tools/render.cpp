@@ -260,6 +260,9 @@ int render(const RenderCommand& command) {
         "light-volume");
   // Ordinates alone can be refined, so that a target takes them unless the user names a method.
   if (command.targetError && !command.scene->has("method")) scene.method = Method::ordinates;
+  if (progressive && command.backend == "cpu")
+    throw UsageError(
+        "--progressive, --max-seconds and --target-error are made by slices: give --backend osmesa or egl");
   // A draft is one of slices, but where these cannot be.
   if (command.backend == "cpu" && command.scene->quality && !command.scene->has("method"))
     scene.method = Method::lightVolume;

@@ -295,7 +295,9 @@ std::vector<LightDirection> Environment::directions(int count, double rotation) 
       light += cells[piece->cell].light;
       moment += cells[piece->cell].moment;
     }
-    result.push_back({glm::normalize(moment), scale_ * light});
+    // Light from all sides has no middle.
+    const bool even = !(glm::length(moment) > 1e-6 * powerOf(light));
+    result.push_back({even ? viewer_ : glm::normalize(moment), scale_ * light});
   });
   return result;
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "umbrick/core/stopwatch.h"
 
@@ -63,8 +64,10 @@ void BrickLight::update(BrickVoxels& voxels, const ResolvedScene& scene, const s
   for (const glm::dvec4& plane : planes)
     if (cutsAny(plane, medium.cells, voxels.volume().layout.interior)) medium.planes.push_back(plane);
   const std::uint64_t most = std::max<std::uint64_t>(scene.bricks.budgetMiB << 20, std::uint64_t{2} << 30);
+  // Where anything fails on the way, light is stored again the next time.
+  const bool stored = std::exchange(generation_, kNoGeneration) == voxels.generation();
   const bool computed = light_.update(medium, most);
-  if (computed || generation_ != voxels.generation()) store(voxels);
+  if (computed || !stored) store(voxels);
   generation_ = voxels.generation();
   ms_ = watch.elapsedMs();
 }

@@ -36,7 +36,8 @@ class BrickLight {
   LightVolume light_;
   float unit_ = 1;
   double ms_ = 0;
-  std::uint64_t generation_ = 0;  // of the bricks that have light
+  static constexpr std::uint64_t kNoGeneration = ~std::uint64_t{0};
+  std::uint64_t generation_ = kNoGeneration;  // of the bricks that have light
 };
 
 }  // namespace umbrick

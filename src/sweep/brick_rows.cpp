@@ -5,6 +5,8 @@
 #include <limits>
 #include <tuple>
 
+#include "umbrick/core/memory.h"
+
 namespace umbrick {
 BrickRows::BrickRows(const BrickVoxels& voxels, const RayLattice& axes)
     : voxels_(voxels), u_(axes.u), v_(axes.v), n_(axes.n) {
@@ -48,6 +50,10 @@ BrickRows::BrickRows(const BrickVoxels& voxels, const RayLattice& axes)
   }
   rowsV_ = (static_cast<std::int64_t>(last.y) - base_.y) / interior_.y + 1;
   rowsN_ = (static_cast<std::int64_t>(last.z) - base_.z) / interior_.z + 1;
+  const glm::ivec3 groups = voxels.groups();
+  requireMemory("shear-warp: a table of rows of bricks", sizeof(std::uint32_t) * static_cast<double>(rowsV_) *
+                                                             static_cast<double>(rowsN_) *
+                                                             (1 + static_cast<double>(groups[v_]) * groups[n_]));
   start_.assign(static_cast<std::size_t>(rowsV_ * rowsN_) + 1, 0);
   for (const Placed& one : placed) {
     const std::int64_t row =

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "umbrick/core/memory.h"
+
 namespace umbrick {
 
 BrickTable::BrickTable(const BrickVoxels& voxels) : interior_(voxels.volume().layout.interior) {
@@ -32,6 +34,7 @@ BrickTable::BrickTable(const BrickVoxels& voxels) : interior_(voxels.volume().la
     blocks_[at] = (cells_[at] + kBlock - 1) / kBlock;
     count *= static_cast<std::size_t>(blocks_[at]);
   }
+  requireMemory("rays: a table of where bricks lie", static_cast<double>(count) * sizeof(table_.front()));
   table_.resize(count);
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     std::array<std::int64_t, 3> cell;

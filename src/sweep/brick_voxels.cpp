@@ -41,46 +41,55 @@ void BrickVoxels::select(const MediumTable& table, bool culling, bool background
   std::ranges::sort(wanted, {}, [](const Brick& brick) { return orderOf(brick.origin); });
   const std::uint64_t voxels = volume_.layout.voxels();
   const std::uint64_t each = voxels * (bytesOf(code_) + (table.is2d() ? sizeof(float) : 0));
-  const auto held =
-      static_cast<std::uint64_t>(std::ranges::count_if(wanted, [](const Brick& brick) { return !brick.uniform(); }));
+  // Bricks of one value take none, but those of 2D functions are read for their gradients.
+  const auto held = static_cast<std::uint64_t>(
+      std::ranges::count_if(wanted, [&](const Brick& brick) { return table.is2d() || !brick.uniform(); }));
   if (held * each > mostBytes)
     throw InvalidArgument("bricks.budgetMiB: the voxels of " + std::to_string(held) + " visible bricks take " +
                           std::to_string((held * each >> 20) + 1) + " MiB, more than " +
                           std::to_string(mostBytes >> 20) + " MiB");
   requireMemory("the voxels of " + std::to_string(held) + " visible bricks", static_cast<double>(held * each));
-  std::map<std::tuple<int, int, int>, std::unique_ptr<VoxelBrick>> before;
-  for (auto& brick : bricks_)
+  // What is missing is read aside: where that fails, nothing has changed.
+  std::map<std::tuple<int, int, int>, std::size_t> before;
+  for (std::size_t i = 0; i < bricks_.size(); ++i)
     // Gradients are read with the voxels.
-    if (!table.is2d() || brick->gradients) before[orderOf(brick->origin)] = std::move(brick);
-  bricks_.clear();
+    if (!table.is2d() || bricks_[i]->gradients) before[orderOf(bricks_[i]->origin)] = i;
+  std::vector<std::unique_ptr<VoxelBrick>> next(wanted.size());
+  std::vector<std::pair<std::size_t, std::size_t>> kept;  // places in `next` and in bricks_
   std::vector<VoxelBrick*> missing;
-  for (const Brick& brick : wanted) {
-    const auto found = before.find(orderOf(brick.origin));
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const auto found = before.find(orderOf(wanted[i].origin));
     if (found != before.end()) {
-      bricks_.push_back(std::move(found->second));
+      kept.emplace_back(i, found->second);
       continue;
     }
-    auto made = std::make_unique<VoxelBrick>();
-    made->origin = brick.origin;
-    made->value = brick.value;
-    made->gradient = brick.gradient;
-    missing.push_back(made.get());
-    bricks_.push_back(std::move(made));
+    next[i] = std::make_unique<VoxelBrick>();
+    next[i]->origin = wanted[i].origin;
+    next[i]->value = wanted[i].value;
+    next[i]->gradient = wanted[i].gradient;
+    missing.push_back(next[i].get());
   }
-  before.clear();
   tbb::enumerable_thread_specific<std::vector<float>> scratches;
   const bool gradients = table.is2d();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, missing.size(), 1), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       if (gradients) missing[i]->gradients = std::make_unique_for_overwrite<float[]>(voxels + kPadding);
       load(*missing[i], scratches.local());
+      missing[i]->active.resize(groupCount());
     }
   });
+  for (const auto& [place, old] : kept) next[place] = std::move(bricks_[old]);
+  bricks_ = std::move(next);
+  ++generation_;
+  loaded_ = missing.size();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bricks_.size(), 4), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) activate(*bricks_[i], table, culling);
   });
-  loaded_ = missing.size();
-  ++generation_;
+}
+
+std::size_t BrickVoxels::groupCount() const {
+  return static_cast<std::size_t>(groups_.x) * static_cast<std::size_t>(groups_.y) *
+         static_cast<std::size_t>(groups_.z);
 }
 
 void BrickVoxels::load(VoxelBrick& brick, std::vector<float>& values) const {
@@ -106,8 +115,7 @@ void BrickVoxels::store(VoxelBrick& brick, std::span<const float> values) const 
 void BrickVoxels::findRanges(VoxelBrick& brick, std::span<const float> values) const {
   const glm::ivec3 edge = volume_.layout.edge();
   const int apron = volume_.layout.apron;
-  const auto count =
-      static_cast<std::size_t>(groups_.x) * static_cast<std::size_t>(groups_.y) * static_cast<std::size_t>(groups_.z);
+  const std::size_t count = groupCount();
   brick.ranges = std::make_unique_for_overwrite<float[]>(2 * count);
   float* next = brick.ranges.get();
   // A group's first and last voxel along an axis, the corners of its last cells included.
@@ -131,8 +139,7 @@ void BrickVoxels::findRanges(VoxelBrick& brick, std::span<const float> values) c
 }
 
 void BrickVoxels::activate(VoxelBrick& brick, const MediumTable& table, bool culling) const {
-  const auto count =
-      static_cast<std::size_t>(groups_.x) * static_cast<std::size_t>(groups_.y) * static_cast<std::size_t>(groups_.z);
+  const std::size_t count = groupCount();
   brick.active.assign(count, 1);
   if (!culling || !brick.ranges) return;
   for (std::size_t i = 0; i < count; ++i)

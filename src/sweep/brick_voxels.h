@@ -42,7 +42,8 @@ class BrickVoxels {
   /// @param volume  outlives this
   explicit BrickVoxels(const Bricks& volume);
 
-  /// Holds the bricks that the function shows and lets others go. @throw InvalidArgument  more than `mostBytes`
+  /// Holds the bricks that the function shows and lets others go. Where this throws, nothing has changed.
+  /// @throw InvalidArgument  more than `mostBytes`
   /// @param culling  false: all bricks are held, and all groups are active
   void select(const MediumTable& table, bool culling, bool backgroundVisible, std::uint64_t mostBytes);
 
@@ -66,6 +67,7 @@ class BrickVoxels {
   }
 
  private:
+  std::size_t groupCount() const;
   void load(VoxelBrick& brick, std::vector<float>& values) const;
   template <class Code>
   void store(VoxelBrick& brick, std::span<const float> values) const;

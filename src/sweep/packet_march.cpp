@@ -20,10 +20,27 @@ PacketMarch::PacketMarch(const PacketFrame& frame) : frame_(frame) {}
 
 std::uint64_t PacketMarch::march(const std::array<glm::dvec2, kRayGroup>& screen, PacketPixels& pixels) {
   samples_ = 0;
+  if (aim(screen)) {
+    marchTogether(pixels);
+    return samples_;
+  }
+  // Rays that are far apart, in small pictures of wide views, go one by one.
+  for (std::size_t i = 0; i < kRayGroup; ++i) {
+    std::array<glm::dvec2, kRayGroup> single;
+    single.fill(screen[i]);
+    aim(single);
+    PacketPixels own;
+    marchTogether(own);
+    pixels.colour[i] = own.colour.front();
+    pixels.aux[i] = own.aux.front();
+  }
+  return samples_;
+}
+
+void PacketMarch::marchTogether(PacketPixels& pixels) {
   full_ = 0;
   isSampled_ = {};
   for (Lanes* lanes : {&red_, &green_, &blue_, &opacity_, &seen_, &depth_}) lanes->fill(0);
-  aim(screen);
   if (enterBox()) {
     clip();
     if (first_ != last_) marchLayers();
@@ -38,11 +55,10 @@ std::uint64_t PacketMarch::march(const std::array<glm::dvec2, kRayGroup>& screen
                                                  : exact_[i] + slope_ * (n - axes_->eye.z);
     pixels.aux[i].y = opacity_[i] * static_cast<float>(glm::dot(axes_->depth, glm::dvec4(across, n, 1)));
   }
-  return samples_;
 }
 
-// Picks the main axis, and describes the rays along it.
-void PacketMarch::aim(const std::array<glm::dvec2, kRayGroup>& screen) {
+// Picks the main axis, and describes the rays along it. @return false: some lie too flat in its slices
+bool PacketMarch::aim(const std::array<glm::dvec2, kRayGroup>& screen) {
   const auto direction = [&](const PacketAxes& axes, const glm::dvec2& p) {
     return frame_.perspective ? axes.screen[2] + axes.screen[0] * p.x + axes.screen[1] * p.y : axes.screen[2];
   };
@@ -55,9 +71,10 @@ void PacketMarch::aim(const std::array<glm::dvec2, kRayGroup>& screen) {
   slope_ = glm::dvec2(forward) / forward.z;
   for (std::size_t i = 0; i < kRayGroup; ++i) {
     const glm::dvec3 along = direction(*axes_, screen[i]);
+    constexpr double kFlattest = 2;  // voxels across, from slice to slice
+    if (!(along.z * sign_ * kFlattest >= std::max(std::abs(along.x), std::abs(along.y)))) return false;
     glm::dvec2 slope = glm::dvec2(along) / along.z;
     if (frame_.perspective) {
-      // Neighbours of a ray at 45 degrees to the axis stay near it, however wide the view is.
       exact_[i] = slope;
     } else {
       const glm::dvec3 o = axes_->eye + axes_->screen[0] * screen[i].x + axes_->screen[1] * screen[i].y;
@@ -91,6 +108,7 @@ void PacketMarch::aim(const std::array<glm::dvec2, kRayGroup>& screen) {
       bounds_[at] = {start + least[across], slope_[across], start + most[across], slope_[across]};
     }
   }
+  return true;
 }
 
 // Finds the part of the way in which some ray may be among what is visible. @return false: there is none

@@ -60,6 +60,7 @@ class PacketMarch {
   std::uint64_t march(const std::array<glm::dvec2, kRayGroup>& screen, PacketPixels& pixels);
 
  private:
+  void marchTogether(PacketPixels& pixels);
   using Lanes = std::array<float, kRayGroup>;
   // The bricks of a part of a layer, as they were listed last: those that are not held first.
   struct Listed {
@@ -70,7 +71,7 @@ class PacketMarch {
   struct Extent {
     double low = 0, high = 0;
   };
-  void aim(const std::array<glm::dvec2, kRayGroup>& screen);
+  bool aim(const std::array<glm::dvec2, kRayGroup>& screen);
   bool enterBox();
   void clip();
   void marchLayers();

@@ -120,8 +120,9 @@ class RayRenderer::Implementation {
         for (int column = 0; column < columns; ++column) {
           std::array<glm::dvec2, kRayGroup> screen;
           for (int i = 0; i < kRayGroup; ++i) {
-            const glm::dvec2 pixel(column * kPacketEdge + i % kPacketEdge + 0.5,
-                                   row * kPacketEdge + i / kPacketEdge + 0.5);
+            // What would lie outside of the picture goes with its last pixels.
+            const glm::dvec2 pixel(std::min(column * kPacketEdge + i % kPacketEdge, width - 1) + 0.5,
+                                   std::min(row * kPacketEdge + i / kPacketEdge, height - 1) + 0.5);
             screen[static_cast<std::size_t>(i)] =
                 view.centre + view.halfExtent * (2.0 * pixel / glm::dvec2(width, height) - 1.0);
           }

@@ -293,7 +293,7 @@ void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const 
   const bool is2d = table.is2d();
   const float whole = segment.to - segment.from;
   const Floats half = hn::Set(d, 0.5f), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const Floats far = hn::Set(d, 1e6f);  // beyond all tables, where single precision still knows whole numbers
+  const Floats far = hn::Set(d, 1e30f);  // so that differences are finite; values may lie far beyond the table
   for (int group = first; group < first + count; group += kRayGroup) {
     for (int at = group; at < group + kRayGroup; at += n) {
       Floats from = hn::LoadU(d, front[0] + at), to = hn::LoadU(d, back[0] + at);

@@ -69,6 +69,7 @@ class ShearWarpRenderer::Implementation {
 
   void draw(const ResolvedScene& scene, const RenderSample& sample) {
     pictures_.clear();
+    drawn_ = false;
     stats_ = {};
     scene_.prepare(scene, sample, stats_);
     const Stopwatch sweep;

@@ -39,12 +39,13 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
   std::optional<MediumTable> table;
   // What this extinction leaves of light on the way through a thousandth of a voxel is nothing.
   if (transfer) table.emplace(next.transfer, volume().background, 1e5 / shortestVoxelEdge(volume().indexToWorld));
-  if (transfer || before->bricks.culling != next.bricks.culling) {
+  if (transfer || before->bricks.culling != next.bricks.culling || before->bricks.budgetMiB != next.bricks.budgetMiB) {
     const MediumTable& now = table ? *table : *table_;
     const Range background{volume().background, volume().background};
-    backgroundVisible_ = !volume().domain.empty() && !now.isTransparent(background, {0, 0});
+    const bool backgroundVisible = !volume().domain.empty() && !now.isTransparent(background, {0, 0});
     const Stopwatch watch;
-    voxels_.select(now, next.bricks.culling, backgroundVisible_, next.bricks.budgetMiB << 20);
+    voxels_.select(now, next.bricks.culling, backgroundVisible, next.bricks.budgetMiB << 20);
+    backgroundVisible_ = backgroundVisible;
     loadMs_ += watch.elapsedMs();
     loaded_ += voxels_.loaded();
   }

@@ -180,6 +180,15 @@ TEST_CASE("A constant map is the whole sphere where light may come from behind",
   }
 }
 
+TEST_CASE("One direction of a light from all sides is one", "[scene]") {
+  ResolvedScene scene = sceneWith({environment(8, 4, [](double, double) { return glm::dvec3(1); })});
+  scene.method = Method::lightVolume;
+  const std::vector<LightDirection> list = lightDirections(scene, 1);
+  REQUIRE(list.size() == 1);
+  CHECK(glm::length(list.front().direction) == Approx(1));
+  CHECK(list.front().radiance.r == Approx(1).epsilon(1e-3));
+}
+
 TEST_CASE("A light behind what is seen keeps its place and its power in a whole map", "[scene]") {
   // One bright pixel in the middle of the map, which is behind the viewer, and a brighter one a half turn from it.
   LightSource source = environment(64, 32, [](double x, double y) {

@@ -112,3 +112,57 @@ TEST_CASE("Thin fog in many slices keeps its opacity on the CPU", "[sweep][cpu]"
   const Image exact = renderReference(grid, scene).colour;
   CHECK(picture.at(2, 2)[3] == Approx(exact.at(2, 2)[3]).epsilon(1e-4));
 }
+
+TEST_CASE("Pictures of few pixels see what their pixels see, however wide the view", "[sweep][cpu]") {
+  const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
+  INFO(techniqueName(technique));
+  const ScalarGrid grid = blobGrid();
+  for (const double fov : {1.0, 2.0, 2.9})
+    for (const glm::ivec2& size :
+         {glm::ivec2(1, 1), glm::ivec2(1, 5), glm::ivec2(7, 1), glm::ivec2(3, 3), glm::ivec2(5, 6)})
+      for (const glm::dvec3& eye : {glm::dvec3(12, 30, 12), glm::dvec3(12.5, 10.2, 15.5)}) {
+        // Straight along an axis, so that rays lie in slices of the others.
+        Camera camera = perspectiveCamera(eye, {eye.x, eye.y - 20, eye.z}, fov, 1);
+        camera.up = {0, 0, 1};
+        camera.width = size.x;
+        camera.height = size.y;
+        const ResolvedScene scene = plainScene(ramp(0.3), camera, 0.25);
+        CAPTURE(fov, size.x, size.y, eye.y);
+        const Image exact = renderReference(grid, scene).colour, picture = renderedOnCpu(technique, grid, scene).colour;
+        CHECK(isFinite(picture));
+        // The warp knows no more of a picture of a few pixels than its rays.
+        CHECK(maxDifference(picture, exact) < (technique == Technique::rays ? 4e-3 : 2e-2));
+      }
+}
+
+// Voxels beside the shell are 10 000 times its width away, in units of the value.
+TEST_CASE("A shell that is thin for the values beside it has its optical depth", "[sweep][cpu]") {
+  const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
+  INFO(techniqueName(technique));
+  const ScalarGrid grid =
+      fieldGrid({glm::ivec3(-1), glm::ivec3(25)}, [](const glm::dvec3& p) { return 1000 * (p.z - 11.5); });
+  const TransferFunction transfer({{0, {kAlbedo, 0}}, {0.05, {kAlbedo, 8000}}, {0.1, {kAlbedo, 0}}});
+  ResolvedScene scene = plainScene(transfer, orthographicCamera({12, 12, 60}, {12, 12, 0}, 10, 16), 1);
+  scene.clipBox = kInside;
+  const Image picture = renderedOnCpu(technique, grid, scene).colour;
+  // 0.1 of 1000 units a voxel, at 4000 a voxel on average.
+  CHECK(picture.at(8, 8)[3] == Approx(-std::expm1(-0.4)).margin(5e-3));
+}
+
+TEST_CASE("A scene that is refused leaves the renderer with the one before", "[sweep][cpu]") {
+  const ScalarGrid grid = makeFilled(
+      glm::ivec3(40), {3, 4, 5}, [](const glm::ivec3& i) { return 1 + 0.05 * i.x; }, 1);
+  const Camera camera = orthographicCamera({60, 45, 70}, {22, 24, 25}, 60, 24);
+  ResolvedScene scene = plainScene(TransferFunction({{1.5, {kAlbedo, 0}}, {3, {kAlbedo, 0.3}}}), camera, 1);
+  const auto bricks = cpuBricksFor(grid, scene);
+  RayRenderer rays(*bricks, scene);
+  ShearWarpRenderer warped(*bricks, scene);
+  for (Renderer* renderer : {static_cast<Renderer*>(&rays), static_cast<Renderer*>(&warped)}) {
+    const Image before = renderer->render().colour;
+    ResolvedScene other = scene;
+    other.transfer = TransferFunction({{0, {kAlbedo, 0.1}}, {3, {kAlbedo, 0.3}}});  // the background is seen, too
+    other.bricks.budgetMiB = 0;
+    CHECK_THROWS_WITH(renderer->setScene(other), Catch::Contains("bricks.budgetMiB"));
+    CHECK(maxDifference(renderer->render().colour, before) == 0);
+  }
+}
