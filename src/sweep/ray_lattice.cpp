@@ -101,7 +101,7 @@ bool place(RayLattice& lattice, const IndexView& view, const Box& volume, const 
         if (std::abs(distance) > 1e-9)
           include(boxFirst, boxLast, offset / distance);
         else
-          include(boxFirst, boxLast, glm::sign(offset) * 1e9);
+          include(boxFirst, boxLast, glm::sign(offset) * (1e9 * lattice.sign));
       }
   } else {
     for (const double n : {nearest, farthest})
