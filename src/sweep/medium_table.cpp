@@ -100,9 +100,21 @@ void MediumTable::fill1d(const TransferFunction& transfer, double most) {
   }
   const double whole = sums.back()[0];
   sumUnit_ = static_cast<float>(whole > 0 ? whole / 2147483000.0 : 1);
+  double least = whole, largest = 0;
   for (std::size_t i = 0; i < entries; ++i)
-    for (std::size_t c = 0; c < 4; ++c)
-      sums_[4 * i + c] = static_cast<std::int32_t>(std::lround(std::min(sums[i][c] / sumUnit_, 2147483600.0)));
+    if (points_[4 * i] > 0) {
+      least = std::min<double>(least, points_[4 * i]);
+      largest = std::max<double>(largest, points_[4 * i]);
+    }
+  const bool fine = largest > 1e3 * least;
+  if (fine) rests_.resize(4 * entries);
+  for (std::size_t i = 0; i < entries; ++i)
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double sum = std::min(sums[i][c] / sumUnit_, 2147483600.0);
+      const double units = fine ? std::floor(sum) : std::round(sum);
+      sums_[4 * i + c] = static_cast<std::int32_t>(units);
+      if (fine) rests_[4 * i + c] = static_cast<std::int32_t>(std::lround((sum - units) * kRests));
+    }
   for (std::size_t i = 0; i < entries; ++i) {
     const bool way = i + 1 < entries && sums[i + 1][0] > sums[i][0];
     counts_[2 * i + 1] = counts_[2 * i] + (points_[4 * i] > 0);

@@ -41,6 +41,10 @@ class MediumTable {
   /// The integrals of the same four from step 0 on, in units of sumUnit(); none of a 2D function.
   const std::int32_t* sums() const { return sums_.data(); }
   float sumUnit() const { return sumUnit_; }
+  /// What sums() leaves of the integrals, in units of sumUnit() / kRests; null where nobody needs it: where extinction
+  /// is a thousand times larger elsewhere, 31 bits of the whole leave too few for it.
+  const std::int32_t* rests() const { return rests_.empty() ? nullptr : rests_.data(); }
+  static constexpr int kRests = 1 << 20;
 
   /// Tells whether the medium is empty for all values between two, and for all gradients between two.
   bool isTransparent(const Range& value, const Range& gradient) const;
@@ -57,7 +61,7 @@ class MediumTable {
   int steps_ = 0, gradientSteps_ = 0;
   float sumUnit_ = 1;
   std::vector<float> points_;
-  std::vector<std::int32_t> sums_;
+  std::vector<std::int32_t> sums_, rests_;
   /// Of a 1D function: how many of the steps and of the ways behind them, in turn, have medium before each. Of a 2D
   /// function a table of sums, see countAt().
   std::vector<std::int64_t> counts_;

@@ -152,14 +152,18 @@ struct MeanMedium {
 // A value of the table, a whole step, and the sums up to it.
 struct TableEnd {
   Floats step;
-  Ints sum[4];
+  Ints sum[4], rest[4];
 };
 
 // Means between two values that are whole steps.
 class LinearMedium {
  public:
   explicit LinearMedium(const MediumTable& table)
-      : points_(table.points()), sums_(table.sums()), steps_(table.steps()), unit_(table.sumUnit()) {}
+      : points_(table.points()),
+        sums_(table.sums()),
+        rests_(table.rests()),
+        steps_(table.steps()),
+        unit_(table.sumUnit()) {}
 
   HWY_INLINE Ints entry(Lanes d, Floats step) const {
     const Floats within = hn::Min(hn::Max(step, hn::Zero(d)), hn::Set(d, static_cast<float>(steps_)));
@@ -170,13 +174,19 @@ class LinearMedium {
   HWY_INLINE TableEnd end(Lanes d, Floats step) const {
     TableEnd end;
     end.step = step;
-    end.sum[0] = hn::GatherIndex(Numbers(), sums_, entry(d, step));
+    const Ints at = entry(d, step);
+    end.sum[0] = hn::GatherIndex(Numbers(), sums_, at);
     end.sum[1] = end.sum[2] = end.sum[3] = hn::Zero(Numbers());
+    end.rest[0] = end.rest[1] = end.rest[2] = end.rest[3] = hn::Zero(Numbers());
+    if (rests_) end.rest[0] = hn::GatherIndex(Numbers(), rests_, at);
     return end;
   }
   HWY_INLINE void addColours(Lanes d, TableEnd& end) const {
     const Ints at = entry(d, end.step);
-    for (int c = 1; c < 4; ++c) end.sum[c] = hn::GatherIndex(Numbers(), sums_ + c, at);
+    for (int c = 1; c < 4; ++c) {
+      end.sum[c] = hn::GatherIndex(Numbers(), sums_ + c, at);
+      if (rests_) end.rest[c] = hn::GatherIndex(Numbers(), rests_ + c, at);
+    }
   }
 
   // What is the same for all channels of a part.
@@ -198,7 +208,11 @@ class LinearMedium {
   }
 
   HWY_INLINE Floats mean(Lanes d, const Part& part, const TableEnd& from, const TableEnd& to, int c) const {
-    Floats mean = hn::Mul(hn::ConvertTo(d, hn::Sub(to.sum[c], from.sum[c])), part.perStep);
+    Floats units = hn::ConvertTo(d, hn::Sub(to.sum[c], from.sum[c]));
+    if (rests_)
+      units = hn::MulAdd(hn::ConvertTo(d, hn::Sub(to.rest[c], from.rest[c])), hn::Set(d, 1.0f / MediumTable::kRests),
+                         units);
+    Floats mean = hn::Mul(units, part.perStep);
     mean = hn::MulAdd(part.below, hn::Set(d, points_[c]), mean);
     mean = hn::MulAdd(part.above, hn::Set(d, points_[4 * steps_ + c]), mean);
     if (!hn::AllFalse(d, part.single))
@@ -208,7 +222,7 @@ class LinearMedium {
 
  private:
   const float* points_;
-  const std::int32_t* sums_;
+  const std::int32_t *sums_, *rests_;
   int steps_;
   float unit_;
 };

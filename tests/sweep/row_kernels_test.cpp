@@ -169,6 +169,27 @@ TEST_CASE("A value that runs through a peak meets all of it", "[sweep]") {
   });
 }
 
+TEST_CASE("A faint medium keeps its extinction beside one a million times as dense", "[sweep]") {
+  const TransferFunction transfer({{0, {glm::dvec3(1), 0.02}},
+                                   {1200, {glm::dvec3(1), 0.02}},
+                                   {1200.05, {glm::dvec3(1), 20000}},
+                                   {3000, {glm::dvec3(1), 20000}}});
+  const MediumTable table(transfer, 0, 1e9);
+  REQUIRE(table.rests());
+  forBothInstructions([&] {
+    for (const double change : {0.3, 3.0, 40.0}) {
+      Rays row(1, 10);
+      std::vector<float> front(kRayGroup, static_cast<float>(table.stepsOf(500))),
+          back(kRayGroup, static_cast<float>(table.stepsOf(500 + change)));
+      const float *fronts[kMostFields]{front.data()}, *backs[kMostFields]{back.data()};
+      RowSegment segment;
+      segment.to = 1;
+      integrateRows(table, segment, row.rays(), 0, kRayGroup, fronts, backs);
+      CHECK(row.colour[3][0] == Approx(-std::expm1(-0.2)).epsilon(1e-3));
+    }
+  });
+}
+
 TEST_CASE("Planes leave a part of a segment, and light is that of its middle", "[sweep]") {
   const TransferFunction transfer({{0, {glm::dvec3(1), 0}}, {100, {glm::dvec3(1), 1}}});
   const MediumTable table(transfer, 0, 1e9);
