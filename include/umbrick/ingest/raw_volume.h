@@ -26,8 +26,8 @@ struct RawOptions {
 /// Opens a raw file, plain or packed by gzip, xz, zstd or bzip2. A file of just the size that the options ask for is
 /// plain; of others the first bytes tell how they are packed.
 /// The size of a plain file is checked at once, that of a packed one as it is read.
-/// @param strict  refuses a plain file that is longer than the options say, which else is noted with the doubt that they
-///                are wrong
+/// @param strict  refuses a plain file that is longer than the options say, which else is noted with the doubt that
+///                they are wrong
 /// @throw InvalidArgument  dims outside [1, 2^31), spacing not positive and finite, origin not finite, headerBytes < 0,
 ///                         bitsStored outside [1, width of the type] or for floats, components outside [1, 65536]
 /// @throw SeveralParts     several components, and `parts` chooses none

@@ -13,8 +13,10 @@ namespace umbrick {
 /// What may draw. Automatic: a GPU where there is one; else the CPU where a technique of it can render the scene; else
 /// OpenGL in software.
 enum class EngineKind { automatic, cpu, osmesa, egl };
-inline constexpr Name<EngineKind> kEngineKinds[]{
-    {"auto", EngineKind::automatic}, {"cpu", EngineKind::cpu}, {"osmesa", EngineKind::osmesa}, {"egl", EngineKind::egl}};
+inline constexpr Name<EngineKind> kEngineKinds[]{{"auto", EngineKind::automatic},
+                                                 {"cpu", EngineKind::cpu},
+                                                 {"osmesa", EngineKind::osmesa},
+                                                 {"egl", EngineKind::egl}};
 
 /// What draws a scene.
 struct Engine {

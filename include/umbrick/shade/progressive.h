@@ -62,8 +62,8 @@ struct ProgressivePicture {
 /// Sample i belongs to stream i modulo this number.
 inline constexpr int kStreams = 4;
 
-/// Renders cone, ambient or lights by ordinates or light volumes again and again and averages the samples, which it may since
-/// the picture is linear in its light. Each sample has the next K directions of a low-discrepancy sequence
+/// Renders cone, ambient or lights by ordinates or light volumes again and again and averages the samples, which it may
+/// since the picture is linear in its light. Each sample has the next K directions of a low-discrepancy sequence
 /// (lightSamples) and other places of slices, of the lattice of light, of roundings and, unless pixelArea is false,
 /// inside the pixels. Samples of a stream continue one sequence, so that the error falls faster than with the root of
 /// their number, and the streams' spread, which needs no more than that they are independent, is an honest standard
