@@ -51,6 +51,15 @@ SweptDirection sweptDirection(const LightDirection& light, const glm::dmat3& toI
 
 }  // namespace
 
+bool cutsMedium(const glm::dvec4& plane, std::span<const glm::ivec3> cells, const glm::ivec3& interior) {
+  return std::ranges::any_of(cells, [&](const glm::ivec3& cell) {
+    double least = plane.w;
+    for (int axis = 0; axis < 3; ++axis)
+      least += std::min(plane[axis] * (cell[axis] - 2), plane[axis] * (cell[axis] + interior[axis] + 1));
+    return least < 0;
+  });
+}
+
 class LightVolume::Implementation {
  public:
   explicit Implementation(const Bricks& volume) : volume_(volume) {}

@@ -43,24 +43,6 @@ class UniformCone : public Light {
   glm::dmat3 toWorld_;
 };
 
-// The same from everywhere. Directions are those of the world, so that they stay as the camera moves.
-class EvenSphere : public Light {
- public:
-  EvenSphere() : Light(1, 4 * std::numbers::pi) {}
-
-  std::vector<LightDirection> directions(int count, double rotation) const override {
-    std::vector<LightDirection> result;
-    const bool few = count <= 64;  // as of a cone
-    for (const auto& [direction, weight] :
-         few ? spiralDirections({0, 0, 1}, std::numbers::pi, count, rotation) : sphereDirections(count, rotation))
-      result.push_back({direction, glm::dvec3(weight)});
-    return result;
-  }
-  LightDirection sample(double u, double v) const override {
-    return {sampleCone({0, 0, 1}, std::numbers::pi, u, v), glm::dvec3(1)};
-  }
-};
-
 double sumOfPowers(const std::vector<LightDirection>& list) {
   double power = 0;
   for (const LightDirection& light : list) power += powerOf(light.radiance);
@@ -134,7 +116,9 @@ LightSet::LightSet(const ResolvedScene& scene) {
     lights_.push_back(
         makeLight(ConeLight{{0, 0, 1}, scene.occlusion.aperture, glm::dvec3(1)}, viewToWorld, -frame.forward, false));
   } else if (model.sphere) {
-    lights_.push_back(std::make_unique<EvenSphere>());
+    // The whole sphere is a cone; its directions are those of the world, so that they stay as the camera moves.
+    lights_.push_back(
+        std::make_unique<UniformCone>(ConeLight{{0, 0, 1}, std::numbers::pi, glm::dvec3(1)}, glm::dmat3(1)));
   } else if (model.directions) {
     const bool whole = lightComesFromBehind(scene);
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {

@@ -74,19 +74,9 @@ class LightVolumePass : public SlicePass {
       const glm::dvec3 n(plane);
       const glm::dvec4 inIndex(glm::dot(n, frame.view.axis[0]), glm::dot(n, frame.view.axis[1]),
                                glm::dot(n, frame.view.axis[2]), glm::dot(n, frame.view.origin) + plane.w);
-      if (cuts(inIndex, medium.cells, frame.atlas.layout().interior)) medium.planes.push_back(inIndex);
+      if (cutsMedium(inIndex, medium.cells, frame.atlas.layout().interior)) medium.planes.push_back(inIndex);
     }
     return medium;
-  }
-
-  // Tells whether a plane leaves anything out of bricks that are grown by a voxel.
-  static bool cuts(const glm::dvec4& plane, std::span<const glm::ivec3> cells, const glm::ivec3& interior) {
-    return std::ranges::any_of(cells, [&](const glm::ivec3& cell) {
-      double least = plane.w;
-      for (int axis = 0; axis < 3; ++axis)
-        least += std::min(plane[axis] * (cell[axis] - 2), plane[axis] * (cell[axis] + interior[axis] + 1));
-      return least < 0;
-    });
   }
 
   LightVolume light_;

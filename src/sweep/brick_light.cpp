@@ -15,16 +15,6 @@
 namespace umbrick {
 namespace {
 
-// Tells whether a plane leaves anything out of bricks that are grown by a voxel.
-bool cutsAny(const glm::dvec4& plane, const std::vector<glm::ivec3>& cells, const glm::ivec3& interior) {
-  return std::ranges::any_of(cells, [&](const glm::ivec3& cell) {
-    double least = plane.w;
-    for (int axis = 0; axis < 3; ++axis)
-      least += std::min(plane[axis] * (cell[axis] - 2), plane[axis] * (cell[axis] + interior[axis] + 1));
-    return least < 0;
-  });
-}
-
 // Light is 0 at voxels without medium next to them. Rays read light half a slice away from the medium, too, so that it
 // goes on for one more voxel along each axis.
 void spread(std::vector<float>& light, const glm::ivec3& edge) {
@@ -62,7 +52,7 @@ void BrickLight::update(BrickVoxels& voxels, const ResolvedScene& scene, const s
   LightMedium medium{scene.transfer, directions, {}, {}};
   for (const auto& brick : voxels.bricks()) medium.cells.push_back(brick->origin);
   for (const glm::dvec4& plane : planes)
-    if (cutsAny(plane, medium.cells, voxels.volume().layout.interior)) medium.planes.push_back(plane);
+    if (cutsMedium(plane, medium.cells, voxels.volume().layout.interior)) medium.planes.push_back(plane);
   const std::uint64_t most = std::max<std::uint64_t>(scene.bricks.budgetMiB << 20, std::uint64_t{2} << 30);
   // Where anything fails on the way, light is stored again the next time.
   const bool stored = std::exchange(generation_, kNoGeneration) == voxels.generation();

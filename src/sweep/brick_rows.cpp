@@ -10,22 +10,19 @@
 namespace umbrick {
 BrickRows::BrickRows(const BrickVoxels& voxels, const RayLattice& axes)
     : voxels_(voxels), u_(axes.u), v_(axes.v), n_(axes.n) {
-  const Bricks& volume = voxels.volume();
-  const glm::ivec3 interior = volume.layout.interior;
+  const glm::ivec3 interior = voxels.volume().layout.interior;
   const auto permuted = [&](const glm::ivec3& p) { return glm::ivec3(p[u_], p[v_], p[n_]); };
   interior_ = permuted(interior);
-  // All bricks, those that are held and others, of which no more than a value is known.
   struct Placed {
     glm::ivec3 first;
     RowBrick brick;
   };
   std::vector<Placed> placed;
-  const auto held = voxels.bricks();
-  placed.reserve(volume.bricks.size() + held.size());
   bool any = false;
-  for (const auto& brick : held) {
-    const glm::ivec3 first = permuted(brick->origin);
-    placed.push_back({first, {first.x, brick.get(), 0}});
+  for (const PlacedBrick& one : voxels.allBricks()) {
+    const glm::ivec3 first = permuted(one.origin);
+    placed.push_back({first, {first.x, one.brick, one.value}});
+    if (!one.brick) continue;
     low_ = any ? glm::min(low_, first) : first;
     high_ = any ? glm::max(high_, first + interior_) : first + interior_;
     any = true;
@@ -33,13 +30,6 @@ BrickRows::BrickRows(const BrickVoxels& voxels, const RayLattice& axes)
   const auto comesBefore = [](const glm::ivec3& a, const glm::ivec3& b) {
     return std::tuple(a.z, a.y, a.x) < std::tuple(b.z, b.y, b.x);
   };
-  for (const Brick& brick : volume.bricks) {
-    const auto found = std::lower_bound(held.begin(), held.end(), brick.origin,
-                                        [&](const auto& a, const glm::ivec3& b) { return comesBefore(a->origin, b); });
-    if (found != held.end() && (*found)->origin == brick.origin) continue;
-    const glm::ivec3 first = permuted(brick.origin);
-    placed.push_back({first, {first.x, nullptr, 0.5f * (brick.value.min + brick.value.max)}});
-  }
   if (placed.empty()) return;
   std::ranges::sort(placed, comesBefore, &Placed::first);
   glm::ivec3 last = placed.front().first;
@@ -218,7 +208,7 @@ void RowReader::readBrick(const RowBrick& at, const Place& place, std::int64_t f
   } else {
     const bool whole = voxels_.code() != VoxelCode::f32;
     rows.bias = whole ? 0 : static_cast<float>(table_.origin());
-    rows.factor = static_cast<float>((whole ? voxels_.scale() : 1) * table_.perUnit());
+    rows.factor = static_cast<float>(table_.perUnit());
     rows.first = static_cast<float>(whole ? table_.stepsOf(voxels_.offset()) : table_.first());
     if (voxels_.code() == VoxelCode::u8) blendFrom(BrickVoxels::codes<std::uint8_t>(brick), VoxelCode::u8, values);
     if (voxels_.code() == VoxelCode::u16) blendFrom(BrickVoxels::codes<std::uint16_t>(brick), VoxelCode::u16, values);

@@ -1,29 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/brick_table.h"
 
-#include <algorithm>
-#include <tuple>
-
 #include "umbrick/core/memory.h"
 
 namespace umbrick {
 
-BrickTable::BrickTable(const BrickVoxels& voxels) : interior_(voxels.volume().layout.interior) {
-  const auto comesBefore = [](const glm::ivec3& a, const glm::ivec3& b) {
-    return std::tuple(a.z, a.y, a.x) < std::tuple(b.z, b.y, b.x);
-  };
-  const auto held = voxels.bricks();
-  for (const auto& brick : held) entries_.push_back({brick->origin, brick.get(), 0});
-  for (const Brick& brick : voxels.volume().bricks) {
-    const auto found = std::lower_bound(held.begin(), held.end(), brick.origin,
-                                        [&](const auto& a, const glm::ivec3& b) { return comesBefore(a->origin, b); });
-    if (found == held.end() || (*found)->origin != brick.origin)
-      entries_.push_back({brick.origin, nullptr, 0.5f * (brick.value.min + brick.value.max)});
-  }
+BrickTable::BrickTable(const BrickVoxels& voxels)
+    : interior_(voxels.volume().layout.interior), entries_(voxels.allBricks()) {
   if (entries_.empty()) return;
   glm::ivec3 last = entries_.front().origin;
   base_ = last;
-  for (const Entry& entry : entries_) {
+  for (const PlacedBrick& entry : entries_) {
     base_ = glm::min(base_, entry.origin);
     last = glm::max(last, entry.origin);
   }

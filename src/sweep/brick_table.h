@@ -14,12 +14,6 @@ namespace umbrick {
 /// Finds bricks by their place. What is not visible is no more than a value.
 class BrickTable {
  public:
-  struct Entry {
-    glm::ivec3 origin{0};               // first owned voxel
-    const VoxelBrick* brick = nullptr;  // none: nothing of it is visible
-    float value = 0;                    // then: a value that it has
-  };
-
   explicit BrickTable(const BrickVoxels& voxels);
 
   /// Returns the cell that owns a voxel along an axis.
@@ -29,7 +23,7 @@ class BrickTable {
   }
   std::int64_t firstOf(std::int64_t cell, int axis) const { return base_[axis] + cell * interior_[axis]; }
   /// Returns the brick of a cell; null: there is nothing but background.
-  const Entry* find(const std::array<std::int64_t, 3>& cell) const;
+  const PlacedBrick* find(const std::array<std::int64_t, 3>& cell) const;
 
  private:
   static constexpr int kBlock = 16;  // cells of a block along each axis
@@ -41,10 +35,10 @@ class BrickTable {
   glm::ivec3 interior_, base_{0};
   std::array<std::int64_t, 3> cells_{}, blocks_{};
   std::vector<std::unique_ptr<Block>> table_;
-  std::vector<Entry> entries_;
+  std::vector<PlacedBrick> entries_;
 };
 
-inline const BrickTable::Entry* BrickTable::find(const std::array<std::int64_t, 3>& cell) const {
+inline const PlacedBrick* BrickTable::find(const std::array<std::int64_t, 3>& cell) const {
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (cell[axis] < 0 || cell[axis] >= cells_[axis]) return nullptr;
   const auto block = ((cell[2] / kBlock) * blocks_[1] + cell[1] / kBlock) * blocks_[0] + cell[0] / kBlock;

@@ -87,6 +87,17 @@ void BrickVoxels::select(const MediumTable& table, bool culling, bool background
   });
 }
 
+std::vector<PlacedBrick> BrickVoxels::allBricks() const {
+  std::vector<PlacedBrick> all;
+  all.reserve(volume_.bricks.size() + bricks_.size());
+  for (const auto& brick : bricks_) all.push_back({brick->origin, brick.get(), 0});
+  for (const Brick& brick : volume_.bricks)
+    if (!std::ranges::binary_search(bricks_, orderOf(brick.origin), {},
+                                    [](const auto& held) { return orderOf(held->origin); }))
+      all.push_back({brick.origin, nullptr, 0.5f * (brick.value.min + brick.value.max)});
+  return all;
+}
+
 std::size_t BrickVoxels::groupCount() const {
   return static_cast<std::size_t>(groups_.x) * static_cast<std::size_t>(groups_.y) *
          static_cast<std::size_t>(groups_.z);

@@ -31,6 +31,13 @@ struct VoxelBrick {
   std::vector<std::uint8_t> active;
 };
 
+/// A brick of a volume, whether it is held or not.
+struct PlacedBrick {
+  glm::ivec3 origin{0};               // first owned voxel
+  const VoxelBrick* brick = nullptr;  // none: nothing of it is visible, so that its voxels are not held
+  float value = 0;                    // then: a value that it has
+};
+
 /// Holds the bricks that a transfer function shows. A cell is the space between eight voxels; a brick has the cells
 /// that begin at its owned voxels and at the layer of ghost voxels before them. Cells come in groups of kGroup along
 /// each axis, counted from the first owned voxel; the layer before belongs to the first groups.
@@ -49,10 +56,11 @@ class BrickVoxels {
 
   const Bricks& volume() const { return volume_; }
   VoxelCode code() const { return code_; }
-  /// value = offset() + code * scale()
+  /// value = offset() + code
   double offset() const { return offset_; }
-  double scale() const { return scale_; }
   std::span<const std::unique_ptr<VoxelBrick>> bricks() const { return bricks_; }
+  /// Returns those and all others of the volume, of which no more than a value is known.
+  std::vector<PlacedBrick> allBricks() const;
   VoxelBrick& brick(std::size_t i) { return *bricks_[i]; }
   std::uint64_t bytes() const;
   std::uint64_t loaded() const { return loaded_; }  // bricks that were read for the last selection
@@ -76,7 +84,7 @@ class BrickVoxels {
 
   const Bricks& volume_;
   VoxelCode code_ = VoxelCode::f32;
-  double offset_ = 0, scale_ = 1;
+  double offset_ = 0;
   glm::ivec3 groups_{1};
   std::vector<std::unique_ptr<VoxelBrick>> bricks_;  // ascending in z, then y, then x
   std::uint64_t loaded_ = 0, generation_ = 0;

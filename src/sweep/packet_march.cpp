@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "sweep/ray_clip.h"
+
 namespace umbrick {
 namespace {
 
@@ -158,19 +160,9 @@ void PacketMarch::clip() {
     const double distance = first_ - axes_->eye.z;
     const glm::dvec2 slope = frame_.perspective ? exact_[i] : slope_;
     const glm::dvec2 at = (frame_.perspective ? glm::dvec2(axes_->eye) : exact_[i]) + slope * distance;
-    double enter = -1, leave = way + 1;
-    for (const glm::dvec4& plane : axes_->planes) {
-      const double inside = plane.x * at.x + plane.y * at.y + plane.z * first_ + plane.w;
-      const double change = sign_ * (plane.x * slope.x + plane.y * slope.y + plane.z);
-      if (change > 0)
-        enter = std::max(enter, -inside / change);
-      else if (change < 0)
-        leave = std::min(leave, -inside / change);
-      else if (inside < 0)
-        leave = -1;
-    }
-    enter_[i] = static_cast<float>(enter);
-    leave_[i] = static_cast<float>(std::max(leave, enter));
+    const KeptWay kept = keptWay(axes_->planes, at, first_, slope, sign_, way + 1);
+    enter_[i] = kept.enter;
+    leave_[i] = kept.leave;
   }
   firstEnter_ = *std::ranges::min_element(enter_);
   lastEnter_ = *std::ranges::max_element(enter_);
@@ -224,7 +216,7 @@ bool PacketMarch::hasBricks(double from, double to, std::int64_t cellN) {
     for (std::int64_t i = at(u.low, axes_->u); i <= at(u.high + 1, axes_->u); ++i) {
       cell[static_cast<std::size_t>(axes_->u)] = i;
       cell[static_cast<std::size_t>(axes_->v)] = j;
-      const BrickTable::Entry* const entry = table.find(cell);
+      const PlacedBrick* const entry = table.find(cell);
       if (entry && entry->brick) return true;
     }
   return false;
@@ -248,7 +240,7 @@ bool PacketMarch::isActive(double from, double to, std::int64_t group) {
     for (std::int64_t i = table.cellOf(u0, axes_->u); i <= table.cellOf(u1, axes_->u); ++i) {
       cell[static_cast<std::size_t>(axes_->u)] = i;
       cell[static_cast<std::size_t>(axes_->v)] = j;
-      const BrickTable::Entry* const entry = table.find(cell);
+      const PlacedBrick* const entry = table.find(cell);
       if (!entry || !entry->brick) continue;
       const auto groupOf = [&](std::int64_t voxel, int axis) {
         const std::int64_t offset = voxel - entry->origin[axis];
@@ -335,7 +327,7 @@ void PacketMarch::sample(double n, int side) {
   slice.n = share < kOnVoxels ? 0 : static_cast<float>(share);
   const bool codes = voxels.code() != VoxelCode::f32;
   slice.bias = codes ? 0 : static_cast<float>(table.origin());
-  slice.factor = static_cast<float>((codes ? voxels.scale() : 1) * table.perUnit());
+  slice.factor = static_cast<float>(table.perUnit());
   slice.first = static_cast<float>(codes ? table.stepsOf(voxels.offset()) : table.first());
   slice.gradients = table.is2d();
   slice.gradientFactor = static_cast<float>(table.gradientPerUnit());
@@ -381,11 +373,11 @@ void PacketMarch::addBricks(std::int64_t n, std::int64_t layer, Listed& listed) 
       for (std::int64_t i = cells[0]; i <= cells[1]; ++i) {
         cell[static_cast<std::size_t>(axes_->u)] = i;
         cell[static_cast<std::size_t>(axes_->v)] = j;
-        const BrickTable::Entry* const entry = table.find(cell);
+        const PlacedBrick* const entry = table.find(cell);
         if (entry) listed.entries.insert(entry->brick ? listed.entries.end() : listed.entries.begin(), entry);
       }
   }
-  for (const BrickTable::Entry* const entry : listed.entries) {
+  for (const PlacedBrick* const entry : listed.entries) {
     PacketBrick brick;
     const auto firstU = static_cast<std::int32_t>(entry->origin[axes_->u] - baseU_);
     const auto firstV = static_cast<std::int32_t>(entry->origin[axes_->v] - baseV_);

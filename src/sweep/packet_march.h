@@ -66,7 +66,7 @@ class PacketMarch {
   struct Listed {
     std::array<std::int64_t, 5> cells{};  // of u, v and n
     int axis = -1;
-    std::vector<const BrickTable::Entry*> entries;
+    std::vector<const PlacedBrick*> entries;
   };
   struct Extent {
     double low = 0, high = 0;

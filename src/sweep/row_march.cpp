@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "sweep/ray_clip.h"
+
 namespace umbrick {
 namespace {
 
@@ -105,21 +107,11 @@ void RowMarch::clipRays(int j) {
   const double front = frame_.slices.front().at, way = std::abs(frame_.slices.back().at - front) + 1;
   const glm::dvec2 start = frame_.slices.front().start, spacing = frame_.slices.front().spacing;
   for (std::size_t i = 0; i < length_.size(); ++i) {
-    double enter = -1, leave = way;
     const double column = static_cast<double>(i);
     const glm::dvec2 slope = lattice.slopeOf(column, j), at = start + spacing * glm::dvec2(column, j);
-    for (const glm::dvec4& plane : frame_.planes) {
-      const double inside = plane.x * at.x + plane.y * at.y + plane.z * front + plane.w;
-      const double change = lattice.sign * (plane.x * slope.x + plane.y * slope.y + plane.z);
-      if (change > 0)
-        enter = std::max(enter, -inside / change);
-      else if (change < 0)
-        leave = std::min(leave, -inside / change);
-      else if (inside < 0)
-        leave = -1;
-    }
-    enter_[i] = static_cast<float>(enter);
-    leave_[i] = static_cast<float>(std::max(leave, enter));
+    const KeptWay kept = keptWay(frame_.planes, at, front, slope, lattice.sign, way);
+    enter_[i] = kept.enter;
+    leave_[i] = kept.leave;
   }
   for (int group = 0; group < groups_; ++group) {
     const auto begin = group * kRayGroup, end = begin + kRayGroup;

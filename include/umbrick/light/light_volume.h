@@ -47,6 +47,10 @@ struct LightMedium {
   bool operator==(const LightMedium&) const = default;
 };
 
+/// Tells whether a plane leaves anything out of bricks that are grown by a voxel, so that it is one of a medium's.
+/// @param cells  first owned voxels; interior: owned voxels along each axis
+bool cutsMedium(const glm::dvec4& plane, std::span<const glm::ivec3> cells, const glm::ivec3& interior);
+
 struct LightStats {
   int directions = 0, sweeps = 0;
   std::uint64_t updates = 0;  // path texels that were taken through a slice
