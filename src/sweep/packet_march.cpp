@@ -260,13 +260,7 @@ void PacketMarch::segment(double from, double to) {
   const int side = front < 0 ? 0 : front;
   if (front < 0) sample(from, side);
   sample(to, 1 - side);
-  RowSegment part;
-  part.from = static_cast<float>(std::abs(from - first_));
-  part.to = static_cast<float>(std::abs(to - first_));
-  part.saturation = frame_.saturation;
-  part.midpoint = frame_.midpoint;
-  part.lights = frame_.lights;
-  part.power = frame_.power;
+  RowSegment part = frame_.segment(first_, from, to);
   part.clipped = !axes_->planes.empty() && (lastEnter_ > part.from || firstLeave_ < part.to);
   const RowRays rays{red_.data(),
                      green_.data(),

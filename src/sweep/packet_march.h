@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "sweep/brick_table.h"
-#include "sweep/medium_table.h"
 #include "sweep/packet_kernels.h"
+#include "sweep/swept_frame.h"
 #include "umbrick/slice/proxy_slices.h"
 
 namespace umbrick {
@@ -30,18 +30,11 @@ struct PacketAxes {
 };
 
 /// What all packets of a picture share.
-struct PacketFrame {
-  const BrickVoxels* voxels = nullptr;
+struct PacketFrame : SweptFrame {
   const BrickTable* bricks = nullptr;
-  const MediumTable* table = nullptr;
   std::array<PacketAxes, 3> axes;  // by n
   bool perspective = true;
   double perVoxel = 1;  // slices
-  float saturation = 0;
-  bool midpoint = false, aux = false;
-  int lights = 0;
-  float lightUnit = 1;
-  std::array<float, 3> power{1, 1, 1};
 };
 
 /// What the rays of a packet have gathered.

@@ -20,7 +20,6 @@
 namespace umbrick {
 namespace {
 
-constexpr int kMostSamplesPerVoxel = 8;
 constexpr std::array<std::array<int, 3>, 3> kAxesByMain{{{1, 2, 0}, {0, 2, 1}, {0, 1, 2}}};  // u, v, n
 
 PacketAxes axesAlong(std::size_t n, const SweptScene& scene, const glm::dvec3& low, const glm::dvec3& high) {
@@ -49,8 +48,7 @@ PacketAxes axesAlong(std::size_t n, const SweptScene& scene, const glm::dvec3& l
 bool raysSupport(const SceneSettings& scene) { return sweptSupports(scene); }
 
 int raySamplesPerVoxel(const ResolvedScene& scene, const Bricks& volume) {
-  const double perVoxel = shortestVoxelEdge(volume.indexToWorld) * scene.sampling.segments / scene.sampling.spacing;
-  return static_cast<int>(std::clamp(std::round(perVoxel), 1.0, double(kMostSamplesPerVoxel)));
+  return static_cast<int>(std::clamp(std::round(segmentsPerVoxel(scene, volume)), 1.0, double(kMostPerVoxel)));
 }
 
 class RayRenderer::Implementation {
@@ -83,24 +81,13 @@ class RayRenderer::Implementation {
 
  private:
   PacketFrame frameOf(const ResolvedScene& scene) const {
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    for (const auto& brick : scene_.voxels().bricks()) {
-      low = glm::min(low, glm::dvec3(brick->origin) - 1.0);
-      high = glm::max(high, glm::dvec3(brick->origin + scene_.volume().layout.interior));
-    }
     PacketFrame frame;
-    frame.voxels = &scene_.voxels();
+    static_cast<SweptFrame&>(frame) = scene_.frame(scene, options_.visibilityAndDepth);
     frame.bricks = &*bricks_;
-    frame.table = &scene_.table();
-    for (std::size_t n = 0; n < 3; ++n) frame.axes[n] = axesAlong(n, scene_, low, high);
+    const Box visible = scene_.visibleBox();
+    for (std::size_t n = 0; n < 3; ++n) frame.axes[n] = axesAlong(n, scene_, visible.min, visible.max);
     frame.perspective = scene.camera.projection == Projection::perspective;
     frame.perVoxel = perVoxel_.value_or(raySamplesPerVoxel(scene, scene_.volume()));
-    frame.saturation = static_cast<float>(scene.sampling.saturation);
-    frame.midpoint = scene.sampling.quadrature == Quadrature::midpoint;
-    frame.aux = options_.visibilityAndDepth;
-    frame.lights = scene_.lights();
-    frame.lightUnit = scene_.lightUnit();
-    frame.power = scene_.power();
     return frame;
   }
 

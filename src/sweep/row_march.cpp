@@ -206,13 +206,7 @@ void RowMarch::sample(int group, int end, std::size_t slice) {
 }
 
 void RowMarch::integrate(int group, int end, std::size_t slice) {
-  RowSegment segment;
-  segment.from = static_cast<float>(std::abs(frame_.slices[slice].at - frame_.slices.front().at));
-  segment.to = static_cast<float>(std::abs(frame_.slices[slice + 1].at - frame_.slices.front().at));
-  segment.saturation = frame_.saturation;
-  segment.midpoint = frame_.midpoint;
-  segment.lights = frame_.lights;
-  segment.power = frame_.power;
+  RowSegment segment = frame_.segment(frame_.slices.front().at, frame_.slices[slice].at, frame_.slices[slice + 1].at);
   if (!frame_.planes.empty())
     for (int g = group; g < end; ++g) {
       const auto at = static_cast<std::size_t>(g);

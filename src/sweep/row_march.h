@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "sweep/brick_rows.h"
-#include "sweep/medium_table.h"
 #include "sweep/ray_lattice.h"
 #include "sweep/row_kernels.h"
+#include "sweep/swept_frame.h"
 #include "sweep/warp.h"
 
 namespace umbrick {
@@ -22,18 +22,11 @@ struct MarchSlice {
 };
 
 /// What all rows of a picture share.
-struct MarchFrame {
+struct MarchFrame : SweptFrame {
   const RayLattice* lattice = nullptr;
-  const BrickVoxels* voxels = nullptr;
   const BrickRows* rows = nullptr;
-  const MediumTable* table = nullptr;
   std::vector<MarchSlice> slices;  // front to back
   std::vector<glm::dvec4> planes;  // along (u, v, n): the medium lies where dot + w >= 0
-  float saturation = 0;
-  bool midpoint = false, aux = false;
-  int lights = 0;
-  float lightUnit = 1;
-  std::array<float, 3> power{1, 1, 1};
 };
 
 /// Takes rows of rays through the slices, one after another. Each thread has one.

@@ -20,10 +20,6 @@
 namespace umbrick {
 namespace {
 
-constexpr int kMostSlicesPerVoxel = 8;
-
-double voxelEdge(const Bricks& volume) { return shortestVoxelEdge(volume.indexToWorld); }
-
 // Returns slices along n, front to back, a share of a voxel apart; the first one is at the eye where that is inside.
 std::vector<double> slicesOf(const RayLattice& lattice, const BrickRows& rows, int perVoxel) {
   std::vector<double> slices;
@@ -49,10 +45,10 @@ std::vector<double> slicesOf(const RayLattice& lattice, const BrickRows& rows, i
 bool shearWarpSupports(const SceneSettings& scene) { return sweptSupports(scene); }
 
 ShearWarpSampling shearWarpSampling(const ResolvedScene& scene, const Bricks& volume) {
-  const double perVoxel = voxelEdge(volume) * scene.sampling.segments / scene.sampling.spacing;
+  const double perVoxel = segmentsPerVoxel(scene, volume);
   ShearWarpSampling sampling;
-  sampling.slicesPerVoxel = static_cast<int>(std::clamp(std::round(perVoxel), 1.0, double(kMostSlicesPerVoxel)));
-  sampling.raysPerVoxel = std::clamp(perVoxel, 0.25, double(kMostSlicesPerVoxel));
+  sampling.slicesPerVoxel = static_cast<int>(std::clamp(std::round(perVoxel), 1.0, double(kMostPerVoxel)));
+  sampling.raysPerVoxel = std::clamp(perVoxel, 0.25, double(kMostPerVoxel));
   sampling.raysPerPixel = std::min(0.75, 0.5 * perVoxel);
   return sampling;
 }
@@ -101,18 +97,14 @@ class ShearWarpRenderer::Implementation {
   void drawLattices(const ResolvedScene& scene) {
     const Bricks& volume = scene_.volume();
     const BrickVoxels& voxels = scene_.voxels();
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    for (const auto& brick : voxels.bricks()) {
-      low = glm::min(low, glm::dvec3(brick->origin) - 1.0);
-      high = glm::max(high, glm::dvec3(brick->origin + volume.layout.interior));
-    }
+    const Box visible = scene_.visibleBox();
     const ShearWarpSampling sampling = sampling_.value_or(shearWarpSampling(scene, volume));
     LatticeOptions options;
     options.raysPerVoxel = sampling.raysPerVoxel;
     options.raysPerPixel = sampling.raysPerPixel;
     const Box domain{glm::dvec3(volume.domain.min), glm::dvec3(volume.domain.max)};
     const std::vector<RayLattice> lattices =
-        rayLattices(scene_.view(), glm::dmat3(volume.indexToWorld), domain, low, high, options);
+        rayLattices(scene_.view(), glm::dmat3(volume.indexToWorld), domain, visible.min, visible.max, options);
     double done = 0;
     for (const RayLattice& lattice : lattices) {
       const BrickRows rows(voxels, lattice);
@@ -137,20 +129,13 @@ class ShearWarpRenderer::Implementation {
   MarchFrame frameOf(const ResolvedScene& scene, const RayLattice& lattice, const BrickRows& rows,
                      const ShearWarpSampling& sampling) const {
     MarchFrame frame;
+    static_cast<SweptFrame&>(frame) = scene_.frame(scene, options_.visibilityAndDepth);
     frame.lattice = &lattice;
-    frame.voxels = &scene_.voxels();
     frame.rows = &rows;
-    frame.table = &scene_.table();
     for (const double at : slicesOf(lattice, rows, sampling.slicesPerVoxel))
       frame.slices.push_back({at, lattice.start(at), lattice.spacing(at)});
     for (const glm::dvec4& plane : scene_.planes())
       frame.planes.emplace_back(plane[lattice.u], plane[lattice.v], plane[lattice.n], plane.w);
-    frame.saturation = static_cast<float>(scene.sampling.saturation);
-    frame.midpoint = scene.sampling.quadrature == Quadrature::midpoint;
-    frame.aux = options_.visibilityAndDepth;
-    frame.lights = scene_.lights();
-    frame.lightUnit = scene_.lightUnit();
-    frame.power = scene_.power();
     return frame;
   }
 

@@ -71,13 +71,38 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
     lights_ = light_.channels();
     whole_ = glm::vec3(light_.whole());
   }
-  const float sum = whole_.r + whole_.g + whole_.b;
-  for (int c = 0; c < 3; ++c) power_[static_cast<std::size_t>(c)] = sum > 0 ? whole_[c] / sum : 0;
   if (scene.camera.projection == Projection::orthographic) planes_.push_back(frontPlane(scene, volume()));
   stats.geometryMs = watch.elapsedMs() - stats.lightMs;
   stats.bricks = volume().bricks.size();
   stats.visibleBricks = stats.brickSlots = voxels_.bricks().size();
   stats.textureBytes = voxels_.bytes();
+}
+
+SweptFrame SweptScene::frame(const ResolvedScene& scene, bool aux) const {
+  SweptFrame frame;
+  frame.voxels = &voxels_;
+  frame.table = &*table_;
+  frame.saturation = static_cast<float>(scene.sampling.saturation);
+  frame.midpoint = scene.sampling.quadrature == Quadrature::midpoint;
+  frame.aux = aux;
+  frame.lights = lights_;
+  frame.lightUnit = light_.unit();
+  const float sum = whole_.r + whole_.g + whole_.b;
+  for (int c = 0; c < 3; ++c) frame.power[static_cast<std::size_t>(c)] = sum > 0 ? whole_[c] / sum : 0;
+  return frame;
+}
+
+Box SweptScene::visibleBox() const {
+  Box box{glm::dvec3(std::numeric_limits<double>::infinity()), glm::dvec3(-std::numeric_limits<double>::infinity())};
+  for (const auto& brick : voxels_.bricks()) {
+    box.min = glm::min(box.min, glm::dvec3(brick->origin) - 1.0);
+    box.max = glm::max(box.max, glm::dvec3(brick->origin + volume().layout.interior));
+  }
+  return box;
+}
+
+double segmentsPerVoxel(const ResolvedScene& scene, const Bricks& volume) {
+  return shortestVoxelEdge(volume.indexToWorld) * scene.sampling.segments / scene.sampling.spacing;
 }
 
 void SweptScene::storePixel(const ResolvedScene& scene, std::size_t at, const glm::vec4& colour, const glm::vec2& aux,

@@ -1,7 +1,6 @@
 // What techniques on the CPU share: a scene's visible bricks in memory, its table of the medium, its light.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -12,6 +11,8 @@
 #include "sweep/brick_light.h"
 #include "sweep/brick_voxels.h"
 #include "sweep/medium_table.h"
+#include "sweep/swept_frame.h"
+#include "umbrick/core/box.h"
 #include "umbrick/draw/renderer.h"
 #include "umbrick/slice/proxy_slices.h"
 
@@ -35,16 +36,13 @@ class SweptScene {
   void prepare(const ResolvedScene& scene, const RenderSample& sample, RenderStats& stats);
 
   const BrickVoxels& voxels() const { return voxels_; }
-  const MediumTable& table() const { return *table_; }
+  /// What all rays of the prepared picture share. @param aux  also light and depth
+  SweptFrame frame(const ResolvedScene& scene, bool aux) const;
+  /// The space of cells in visible bricks, index coordinates. @pre there are some
+  Box visibleBox() const;
   const IndexView& view() const { return view_; }
   /// Half-spaces that the medium lies in, index coordinates.
   const std::vector<glm::dvec4>& planes() const { return planes_; }
-  /// Channels of light beside the voxels; 0 where all is lit alike.
-  int lights() const { return lights_; }
-  float lightUnit() const { return light_.unit(); }
-  /// Light that arrives where nothing is in the way, and the share of the power of each channel.
-  const glm::vec3& whole() const { return whole_; }
-  std::array<float, 3> power() const { return power_; }
   const Bricks& volume() const { return voxels_.volume(); }
 
   /// Fills in a pixel: colour is premultiplied, of light 1; aux is opacity times light, and times depth.
@@ -61,10 +59,14 @@ class SweptScene {
   std::uint64_t loaded_ = 0;  // their number
   IndexView view_;
   std::vector<glm::dvec4> planes_;
-  int lights_ = 0;
-  glm::vec3 whole_{1};
-  std::array<float, 3> power_{1, 1, 1};
+  int lights_ = 0;      // channels of light beside the voxels; 0 where all is lit alike
+  glm::vec3 whole_{1};  // light that arrives where nothing is in the way
 };
+
+/// Returns how many samples a scene takes between two slices of voxels, of which its slabs have segments; at most 8.
+/// @return before rounding
+double segmentsPerVoxel(const ResolvedScene& scene, const Bricks& volume);
+inline constexpr int kMostPerVoxel = 8;
 
 /// An empty picture of the scene's size. @param layers  also those of Picture besides colour
 Picture emptyPicture(const ResolvedScene& scene, bool layers);

@@ -11,15 +11,15 @@ namespace umbrick {
 namespace {
 
 // Four floats that compilers keep in one register.
-using Four [[gnu::vector_size(16)]] = float;
+using FourFloats [[gnu::vector_size(16)]] = float;
 
-Four load(const glm::vec4& from) {
-  Four four;
+FourFloats load(const glm::vec4& from) {
+  FourFloats four;
   std::memcpy(&four, &from, sizeof four);
   return four;
 }
-Four lesser(Four a, Four b) { return a < b ? a : b; }
-Four greater(Four a, Four b) { return a > b ? a : b; }
+FourFloats lesser(FourFloats a, FourFloats b) { return a < b ? a : b; }
+FourFloats greater(FourFloats a, FourFloats b) { return a > b ? a : b; }
 
 std::array<float, 4> cubicWeights(float t) {
   const float s = 1 - t;
@@ -34,11 +34,11 @@ void warpPixel(const LatticePicture& picture, const glm::dvec2& place, WarpedPix
   const glm::vec4* rows = picture.colour.data() + first;
   const auto u = static_cast<float>(place.x - i), v = static_cast<float>(place.y - j);
   const std::array<float, 4> x = cubicWeights(u), y = cubicWeights(v);
-  Four sum{0, 0, 0, 0};
+  FourFloats sum{0, 0, 0, 0};
   for (std::size_t row = 0; row < 4; ++row, rows += stride)
     sum += y[row] * (x[0] * load(rows[0]) + x[1] * load(rows[1]) + x[2] * load(rows[2]) + x[3] * load(rows[3]));
   const glm::vec4* near = picture.colour.data() + first + stride + 1;
-  const Four a = load(near[0]), b = load(near[1]), c = load(near[stride]), d = load(near[stride + 1]);
+  const FourFloats a = load(near[0]), b = load(near[1]), c = load(near[stride]), d = load(near[stride + 1]);
   sum = greater(sum, lesser(lesser(a, b), lesser(c, d)));
   sum = lesser(sum, greater(greater(a, b), greater(c, d)));
   std::memcpy(&pixel.colour, &sum, sizeof sum);
