@@ -23,10 +23,10 @@
 #include "umbrick/core/pending_file.h"
 #include "umbrick/core/pixel_points.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/draw/progressive.h"
 #include "umbrick/render/render.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/shade/prepare.h"
-#include "umbrick/shade/progressive.h"
 #include "validators.h"
 
 namespace umbrick::tools {
@@ -182,10 +182,14 @@ ResolvedScene recordedScene(const ProgressivePicture& picture, const Progressive
   return scene;
 }
 
+// Makes a renderer of the scene; once it accepts that, there will be a picture.
+using MakeRenderer = std::function<std::unique_ptr<Renderer>(const RenderOptions& options)>;
+
 // Renders samples until there are enough, or time is over, or the picture is accurate enough. The file
 // gets better meanwhile.
-ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& volume, const ResolvedScene& scene,
-                                RenderOptions options, RenderWatch& watch, std::vector<double>& framesMs) {
+ProgressivePicture renderPasses(const RenderCommand& command, const MakeRenderer& make, const ResolvedScene& scene,
+                                const std::string& engine, RenderOptions options, RenderWatch& watch,
+                                std::vector<double>& framesMs) {
   constexpr double kWriteEveryMs = 1000;
   ProgressiveOptions progressive;
   progressive.passes = command.passes.value_or(1 << 20);
@@ -205,15 +209,16 @@ ProgressivePicture renderPasses(const RenderCommand& command, ResidentVolume& vo
     watch.bar.show(shareOfPasses(command, watch.kept, share));
     if (watch.stop.requested()) throw Interrupted("interrupted before the first pass was done; nothing was written");
   };
+  const std::unique_ptr<Renderer> renderer = make(options);
+  watch.bar.begin("rendering");
   const auto renderAll = [&] {
-    return renderProgressive(volume, scene, progressive, options, [&](const ProgressivePicture& picture) {
+    return renderProgressive(*renderer, progressive, [&](const ProgressivePicture& picture) {
       framesMs.push_back(pass.elapsedMs());
       watch.kept = picture;
       watch.bar.clear();
       if (first || written.elapsedMs() > kWriteEveryMs) {
-        writePicture(*command.output, picture.picture, recordedScene(picture, progressive),
-                     volume.context().description(), printPasses(picture, command.seed).dump(),
-                     PictureState::unfinished);
+        writePicture(*command.output, picture.picture, recordedScene(picture, progressive), engine,
+                     printPasses(picture, command.seed).dump(), PictureState::unfinished);
         written = Stopwatch();
         first = false;
       }
@@ -253,26 +258,27 @@ int render(const RenderCommand& command) {
   Scene scene = makeScene(*command.scene, {.model = Model::cone});
   const bool progressive = command.passes || command.maxSeconds || command.targetError;
   if (progressive && command.frames > 1) throw UsageError("--frames and --progressive exclude each other");
-  if (progressive && !(traitsOf(scene.model).occlusion && traitsOf(scene.method).directions))
+  const bool occluded = occlusionMethod(scene).has_value();
+  if (progressive && occluded && !(traitsOf(scene.model).directions && traitsOf(scene.method).directions))
     throw UsageError(
-        "--progressive, --max-seconds and --target-error need the model cone, ambient or lights and the method "
-        "ordinates or "
-        "light-volume");
+        "--progressive, --max-seconds and --target-error need the model emission, or cone, ambient or lights and the "
+        "method ordinates or light-volume");
+  if (command.targetError && occluded && command.backend == "cpu")
+    throw UsageError(
+        "--target-error: occlusion on the CPU comes from light volumes, which cannot be refined: give --backend osmesa "
+        "or egl");
   // Ordinates alone can be refined, so that a target takes them unless the user names a method.
   if (command.targetError && !command.scene->has("method")) scene.method = Method::ordinates;
-  if (progressive && command.backend == "cpu")
-    throw UsageError(
-        "--progressive, --max-seconds and --target-error are made by slices: give --backend osmesa or egl");
   // A draft is one of slices, but where these cannot be.
   if (command.backend == "cpu" && command.scene->quality && !command.scene->has("method"))
     scene.method = Method::lightVolume;
-  if (command.targetError && scene.method == Method::lightVolume)
+  if (command.targetError && occluded && scene.method == Method::lightVolume)
     throw UsageError("--target-error: needs --method ordinates, whose windows can be refined");
   RenderWatch watch;
   const std::string nothing = "interrupted; nothing was written";
   watch.bar.begin("loading " + scene.volume.file.filename().string());
   const OpenedScene opened = openScene(*command.scene, scene, showShare(watch.bar, watch.stop, nothing));
-  Engine engine = chooseEngine(opened.scene, parseName(kEngineKinds, command.backend, "--backend"), progressive);
+  Engine engine = chooseEngine(opened.scene, parseName(kEngineKinds, command.backend, "--backend"));
   const std::unique_ptr<GlContext, ContextCloser> context(engine.context.release());  // null: on the CPU
   if (!context) tellUnused(command);
   LoadedScene loaded = loadScene(opened, engine.technique, progressive);
@@ -288,15 +294,15 @@ int render(const RenderCommand& command) {
   std::vector<double> framesMs;
   Picture picture;
   std::optional<ProgressivePicture> passes;
-  // Once a renderer accepts the scene, there will be a picture.
-  const auto begin = [&] {
+  const MakeRenderer make = [&](const RenderOptions& chosen) {
+    auto renderer =
+        volume ? makeRenderer(*volume, loaded.scene, chosen) : makeRenderer(*loaded.bricks, loaded.scene, chosen);
     std::cerr << opened.chosen;
-    watch.bar.begin("rendering");
+    return renderer;
   };
   if (progressive) {
-    begin();
     watch.stop.keepParts();
-    passes = renderPasses(command, *volume, loaded.scene, options, watch, framesMs);
+    passes = renderPasses(command, make, loaded.scene, engine.description, options, watch, framesMs);
     picture = passes->picture;
     loaded.scene = passes->scene;
   } else {
@@ -308,9 +314,8 @@ int render(const RenderCommand& command) {
       last = share;
       show((drawn + share) / (command.frames * loaded.scene.sampling.pixelSamples));
     };
-    const std::unique_ptr<Renderer> renderer =
-        volume ? makeRenderer(*volume, loaded.scene, options) : makeRenderer(*loaded.bricks, loaded.scene, options);
-    begin();
+    const std::unique_ptr<Renderer> renderer = make(options);
+    watch.bar.begin("rendering");
     for (int i = 0; i < command.frames; ++i) {
       const Stopwatch frame;
       picture = renderer->render();
@@ -356,17 +361,18 @@ Command addRender(CLI::App& app) {
       ->group("Output");
   const std::string progressive = "Progressive";
   sub->add_option("--progressive", command->passes,
-                  "ordinates and light-volume: average so many passes, each of other directions, slices, texels and "
-                  "places in the pixels "
-                  "(--samples 1: their centres); the picture is written again meanwhile")
+                  "all but dos: average so many passes, each of other directions, slices, texels and places in the "
+                  "pixels (--samples 1: their centres); the picture is written again meanwhile")
       ->check(CLI::Range(1, 1 << 20))
       ->group(progressive);
   sub->add_option("--max-seconds", command->maxSeconds, "begin no pass later")
       ->check(CLI::PositiveNumber)
       ->group(progressive);
-  sub->add_option("--target-error", command->targetError,
-                  "stop when the estimated RMSE of linear RGB is no larger; slabs and texels are halved where they are "
-                  "in its way; exit status 1 when it is not reached")
+  sub->add_option(
+         "--target-error", command->targetError,
+         "stop when the estimated RMSE of linear RGB is no larger; the distance of samples (slabs and texels) is "
+         "halved where it is in its way; with ordinates or without occlusion; exit status 1 when it is not "
+         "reached")
       ->check(CLI::PositiveNumber)
       ->group(progressive);
   sub->add_option("--seed", command->seed, "of the passes")

@@ -36,16 +36,13 @@ Engine onGl(Technique technique, Backend backend) {
 
 }  // namespace
 
-Engine chooseEngine(const SceneSettings& scene, EngineKind kind, bool needSlices) {
+Engine chooseEngine(const SceneSettings& scene, EngineKind kind) {
   const bool named = scene.technique != Technique::automatic;
-  const TechniqueTraits* const onProcessor = needSlices ? nullptr : cpuTechnique(scene);
-  if (named && needSlices && scene.technique != Technique::slices)
-    throw InvalidArgument("technique: " + techniqueName(scene.technique) + ", where slices are needed");
+  const TechniqueTraits* const onProcessor = cpuTechnique(scene);
   if (kind == EngineKind::cpu) {
     if (onProcessor) return onCpu(onProcessor->technique);
-    if (named || needSlices)
-      throw InvalidArgument("technique: " + techniqueName(named ? scene.technique : Technique::slices) +
-                            " does not run on the CPU but on OpenGL");
+    if (named)
+      throw InvalidArgument("technique: " + techniqueName(scene.technique) + " does not run on the CPU but on OpenGL");
     return onCpu(Technique::rays);  // which says in its own words what it cannot do
   }
   const Technique onGraphics = named ? scene.technique : Technique::slices;

@@ -11,10 +11,10 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/core/transformed_box.h"
+#include "umbrick/draw/progressive.h"
 #include "umbrick/grid/value_survey.h"
 #include "umbrick/render/suggest_transfer.h"
 #include "umbrick/shade/prepare.h"
-#include "umbrick/shade/progressive.h"
 
 namespace umbrick {
 

@@ -123,6 +123,22 @@ class SliceRenderer::Implementation {
     fits_ = fits;
   }
 
+  std::optional<RaySampling> sampling(const ResolvedScene& scene) const {
+    try {
+      if (requiredApron(scene, volume_.indexToWorld) > volume_.layout.apron) return std::nullopt;
+    } catch (const InvalidArgument&) {
+      return std::nullopt;
+    }
+    RaySampling sampling{scene.sampling.spacing, shortestVoxelEdge(volume_.indexToWorld)};
+    const std::optional<Method> method = occlusionMethod(scene);
+    if (!method) return sampling;
+    sampling.mostOrder = 1;
+    const double scale = *method == Method::ordinates ? scene.occlusion.ordinates.scale : 0;
+    const double texelVoxels = scale > 0 ? 1 / scale : 1;
+    sampling.leastOrder = 1 - 0.55 * std::clamp(0.5 * std::log2(2 * texelVoxels), 0.0, 1.0);
+    return sampling;
+  }
+
   /// Draws a picture. What throws leaves none to be read.
   void draw(const ResolvedScene& scene, const RenderSample& sample) {
     drawn_ = false;
@@ -366,6 +382,9 @@ void SliceRenderer::update(const ResolvedScene& next) {
 Picture SliceRenderer::render(const Camera& camera, const RenderSample& sample) {
   setCamera(camera);
   return render(sample);
+}
+std::optional<RaySampling> SliceRenderer::sampling(const ResolvedScene& scene) const {
+  return implementation_->sampling(scene);
 }
 void SliceRenderer::draw(const RenderSample& sample) { implementation_->draw(scene(), sample); }
 Picture SliceRenderer::read() { return implementation_->read(scene()); }

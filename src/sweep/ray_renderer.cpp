@@ -63,6 +63,11 @@ class RayRenderer::Implementation {
     picture_.reset();
   }
 
+  RaySampling sampling(const ResolvedScene& scene) const {
+    const double edge = shortestVoxelEdge(scene_.volume().indexToWorld);
+    return {edge / perVoxel_.value_or(raySamplesPerVoxel(scene, scene_.volume())), edge};
+  }
+
   void draw(const ResolvedScene& scene, const RenderSample& sample) {
     picture_.reset();
     Picture picture = emptyPicture(scene, options_.visibilityAndDepth);
@@ -147,6 +152,10 @@ RayRenderer::RayRenderer(const Bricks& volume, const ResolvedScene& scene, const
 RayRenderer::~RayRenderer() = default;
 
 void RayRenderer::update(const ResolvedScene& next) { implementation_->update(next, hasScene() ? &scene() : nullptr); }
+
+std::optional<RaySampling> RayRenderer::sampling(const ResolvedScene& scene) const {
+  return implementation_->sampling(scene);
+}
 
 void RayRenderer::draw(const RenderSample& sample) { implementation_->draw(scene(), sample); }
 

@@ -63,6 +63,13 @@ class ShearWarpRenderer::Implementation {
     drawn_ = false;
   }
 
+  // Rays that are more than a voxel apart are left out: slices are never.
+  RaySampling sampling(const ResolvedScene& scene) const {
+    const double edge = shortestVoxelEdge(scene_.volume().indexToWorld);
+    const ShearWarpSampling taken = sampling_.value_or(shearWarpSampling(scene, scene_.volume()));
+    return {edge / std::max(1.0, taken.raysPerVoxel), edge};
+  }
+
   void draw(const ResolvedScene& scene, const RenderSample& sample) {
     pictures_.clear();
     drawn_ = false;
@@ -174,6 +181,10 @@ ShearWarpRenderer::~ShearWarpRenderer() = default;
 
 void ShearWarpRenderer::update(const ResolvedScene& next) {
   implementation_->update(next, hasScene() ? &scene() : nullptr);
+}
+
+std::optional<RaySampling> ShearWarpRenderer::sampling(const ResolvedScene& scene) const {
+  return implementation_->sampling(scene);
 }
 
 void ShearWarpRenderer::draw(const RenderSample& sample) { implementation_->draw(scene(), sample); }

@@ -3,8 +3,8 @@
 #include <complex>
 
 #include "shade/hard_case.h"
+#include "shade/progressive_slices.h"
 #include "umbrick/core/error.h"
-#include "umbrick/shade/progressive.h"
 
 using namespace umbrick;
 
@@ -262,11 +262,11 @@ TEST_CASE("Samples of a light volume average to finer light", "[shade][light-vol
   ProgressiveOptions options;
   options.passes = 8;
   options.pixelArea = false;  // the pictures beside it are through the centres of pixels
-  const ProgressivePicture mean = renderProgressive(*context, *bricks, scene, options);
+  const ProgressivePicture mean = progressiveSlices(*context, *bricks, scene, options);
   CHECK(mean.passes == 8);
   CHECK(std::isfinite(mean.error.total()));
   CHECK(rmsDifference(mean.picture.colour, exact) <
         0.85 * rmsDifference(renderGrid(*context, grid, scene).colour, exact));
   options.targetError = 0.01;
-  CHECK_THROWS_WITH(renderProgressive(*context, *bricks, scene, options), Catch::Contains("windows can be refined"));
+  CHECK_THROWS_WITH(progressiveSlices(*context, *bricks, scene, options), Catch::Contains("windows can be refined"));
 }

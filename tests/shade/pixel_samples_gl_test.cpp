@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "shade/hard_case.h"
+#include "shade/progressive_slices.h"
 #include "support/complaint.h"
 #include "support/observed_order.h"
 #include "support/seen_edge.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pixel_points.h"
-#include "umbrick/shade/progressive.h"
 
 using namespace umbrick;
 
@@ -253,7 +253,7 @@ TEST_CASE("A progressive picture tends to the mean over pixels, or stays at thei
     // A scene that names a number of samples is no other: each pass is one.
     cut.sampling.pixelSamples = 8;
     const ProgressivePicture area =
-        renderProgressive(resident, cut, {.passes = 64, .seed = i + 1}, {}, [&](const ProgressivePicture& picture) {
+        progressiveSlices(resident, cut, {.passes = 64, .seed = i + 1}, {}, [&](const ProgressivePicture& picture) {
           const Image& colour = picture.picture.colour;
           for (std::size_t n = 0; n < 3; ++n)
             if (picture.passes == passes[n])
@@ -271,7 +271,7 @@ TEST_CASE("A progressive picture tends to the mean over pixels, or stays at thei
   CHECK(errors.back() < 0.06);
 
   cut.sampling.pixelSamples = 1;
-  const ProgressivePicture centres = renderProgressive(resident, cut, {.passes = 4, .pixelArea = false});
+  const ProgressivePicture centres = progressiveSlices(resident, cut, {.passes = 4, .pixelArea = false});
   const Image plain = SliceRenderer(resident, cut).render().colour;
   for (std::size_t i = 3; i < plain.pixels.size(); i += 4)
     CHECK(centres.picture.colour.pixels[i] == Approx(plain.pixels[i]).margin(1e-5));

@@ -1,6 +1,6 @@
 // Pictures that are the mean of samples: what they converge to, how fast, and how well they know their own error.
 // SPDX-License-Identifier: Apache-2.0
-#include "umbrick/shade/progressive.h"
+#include "shade/progressive_slices.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
@@ -122,7 +122,7 @@ TEST_CASE("The picture after n samples is the mean of n pictures", "[shade][gl]"
   // Each sample is the difference that it makes to the sum of the samples.
   std::vector<Image> means;
   const ProgressivePicture all =
-      renderProgressive(*context, *volume, scene, {.passes = 6}, kLayers, [&](const ProgressivePicture& picture) {
+      progressiveSlices(*context, *volume, scene, {.passes = 6}, kLayers, [&](const ProgressivePicture& picture) {
         means.push_back(picture.picture.colour);
         CHECK(picture.passes == static_cast<int>(means.size()));
         CHECK(std::isfinite(picture.error.statistical) == (means.size() >= kStreams));
@@ -155,12 +155,12 @@ TEST_CASE("Layers are averaged as the picture is", "[shade][gl]") {
   const ScalarGrid grid = courtyard();
   ResolvedScene scene = smallScene();
   const auto volume = bricksForPasses(grid, scene);
-  const Picture picture = renderProgressive(*context, *volume, scene, {.passes = 8}, kLayers).picture;
+  const Picture picture = progressiveSlices(*context, *volume, scene, {.passes = 8}, kLayers).picture;
   REQUIRE(picture.visibility.pixels.size() == picture.colour.pixels.size() / 4);
   REQUIRE(picture.depth.pixels.size() == picture.colour.pixels.size() / 4);
   // V depends on the sample no more than the picture does: with one albedo it is the picture.
   scene.transfer = TransferFunction({{0, {glm::dvec3(0.5), 0}}, {1, {glm::dvec3(0.5), 3}}});
-  const Picture grey = renderProgressive(*context, *volume, scene, {.passes = 8}, kLayers).picture;
+  const Picture grey = progressiveSlices(*context, *volume, scene, {.passes = 8}, kLayers).picture;
   double worst = 0;
   for (std::size_t i = 0; i < grey.visibility.pixels.size(); ++i)
     worst = std::max(worst, std::abs(grey.visibility.pixels[i] - 2.0 * grey.colour.pixels[4 * i]));
@@ -180,7 +180,7 @@ TEST_CASE("Layers are averaged as the picture is", "[shade][gl]") {
   CHECK(apart / opaque < 0.5 * scene.sampling.spacing);
   // Where there is nothing there is no depth.
   scene.clipPlanes = {{0, 0, 1, -1000}};
-  const Picture empty = renderProgressive(*context, *volume, scene, {.passes = 4}, kLayers).picture;
+  const Picture empty = progressiveSlices(*context, *volume, scene, {.passes = 4}, kLayers).picture;
   for (const float depth : empty.depth.pixels) CHECK(depth == std::numeric_limits<float>::infinity());
   for (const float alpha : empty.colour.pixels) CHECK(alpha == 0);
 }
@@ -192,7 +192,7 @@ TEST_CASE("The same seed gives the same picture to the bit, another seed another
   const ResolvedScene scene = smallScene();
   const auto volume = bricksForPasses(grid, scene);
   const auto picture = [&](std::uint64_t seed) {
-    return renderProgressive(*context, *volume, scene, {.passes = 5, .seed = seed}, kLayers);
+    return progressiveSlices(*context, *volume, scene, {.passes = 5, .seed = seed}, kLayers);
   };
   const ProgressivePicture a = picture(3), b = picture(3), c = picture(4);
   CHECK((a.picture.colour.pixels == b.picture.colour.pixels));
@@ -214,11 +214,11 @@ TEST_CASE("The standard error is that of the samples' mean, which falls faster t
   const ScalarGrid grid = courtyard();
   const ResolvedScene scene = smallScene();
   const auto volume = bricksForPasses(grid, scene);
-  const Image limit = renderProgressive(*context, *volume, scene, {.passes = 256, .seed = 99}).picture.colour;
+  const Image limit = progressiveSlices(*context, *volume, scene, {.passes = 256, .seed = 99}).picture.colour;
   std::vector<double> passes{4, 8, 16}, distances;
   std::vector<std::vector<double>> estimated(3), apart(3);
   for (std::uint64_t seed = 1; seed <= 8; ++seed)
-    renderProgressive(*context, *volume, scene, {.passes = 16, .seed = seed}, {},
+    progressiveSlices(*context, *volume, scene, {.passes = 16, .seed = seed}, {},
                       [&](const ProgressivePicture& picture) {
                         for (std::size_t n = 0; n < 3; ++n)
                           if (picture.passes == passes[n]) {
@@ -269,7 +269,7 @@ TEST_CASE("Better quality is nearer to the reference at any size and estimates h
       const ResolvedScene scene = qualityScene(quality, pixels);
       const auto volume = bricksForPasses(grid, scene);
       const double single = rmsOfRgb(renderPicture(*context, *volume, scene).colour, exact);
-      const ProgressivePicture passes = renderProgressive(*context, *volume, scene, {.passes = 8});
+      const ProgressivePicture passes = progressiveSlices(*context, *volume, scene, {.passes = 8});
       const double mean = rmsOfRgb(passes.picture.colour, exact);
       INFO(pixels << " pixels, quality " << static_cast<int>(quality) << ": one picture " << single << ", mean of 8 "
                   << mean << ", estimated " << passes.error.statistical << " and " << passes.error.systematic << ", "
@@ -291,29 +291,29 @@ TEST_CASE("Samples end where the target is reached, at the time limit, or when t
   const ScalarGrid grid = courtyard();
   const ResolvedScene scene = smallScene(64);
   const auto volume = bricksForPasses(grid, scene);
-  const ProgressivePicture four = renderProgressive(*context, *volume, scene, {.passes = 4});
+  const ProgressivePicture four = progressiveSlices(*context, *volume, scene, {.passes = 4});
   // The target lies between the error after four samples and the error that no number of samples gets below.
   const double target = std::hypot(four.error.systematic, 0.6 * four.error.statistical);
   const ProgressivePicture reached =
-      renderProgressive(*context, *volume, scene, {.passes = 200, .targetError = target});
+      progressiveSlices(*context, *volume, scene, {.passes = 200, .targetError = target});
   CHECK(reached.reachedTarget);
   CHECK(reached.error.total() <= target);
   CHECK(reached.passes > 4);
   CHECK(reached.passes < 40);
   CHECK(reached.scene == scene);
   // The picture is the same as if so many samples had been asked for.
-  const ProgressivePicture asked = renderProgressive(*context, *volume, scene, {.passes = reached.passes});
+  const ProgressivePicture asked = progressiveSlices(*context, *volume, scene, {.passes = reached.passes});
   CHECK((asked.picture.colour.pixels == reached.picture.colour.pixels));
   CHECK_FALSE(asked.reachedTarget);
   const ProgressivePicture missed =
-      renderProgressive(*context, *volume, scene, {.passes = 10, .targetError = 0.5 * four.error.systematic});
+      progressiveSlices(*context, *volume, scene, {.passes = 10, .targetError = 0.5 * four.error.systematic});
   CHECK_FALSE(missed.reachedTarget);
   CHECK(missed.passes == 10);
   CHECK(missed.scene == scene);  // nobody has allowed the scene to be refined
 
-  CHECK(renderProgressive(*context, *volume, scene, {.passes = 100, .maxSeconds = 1e-9}).passes == 1);
+  CHECK(progressiveSlices(*context, *volume, scene, {.passes = 100, .maxSeconds = 1e-9}).passes == 1);
   int calls = 0;
-  const ProgressivePicture told = renderProgressive(*context, *volume, scene, {.passes = 100}, {},
+  const ProgressivePicture told = progressiveSlices(*context, *volume, scene, {.passes = 100}, {},
                                                     [&](const ProgressivePicture&) { return ++calls < 3; });
   CHECK(calls == 3);
   CHECK(told.passes == 3);
@@ -326,12 +326,12 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
   const ScalarGrid grid = courtyard();
   const ResolvedScene scene = smallScene(10, 16);
   const auto volume = bricksForPasses(grid, scene);
-  const ProgressivePicture coarse = renderProgressive(*context, *volume, scene, {.passes = 4, .pixelArea = false});
+  const ProgressivePicture coarse = progressiveSlices(*context, *volume, scene, {.passes = 4, .pixelArea = false});
   ProgressiveOptions options{
       .passes = 60, .targetError = 0.75 * coarse.error.systematic, .refine = true, .pixelArea = false};
   std::vector<double> spacings;
   const ProgressivePicture fine =
-      renderProgressive(*context, *volume, scene, options, {}, [&](const ProgressivePicture& picture) {
+      progressiveSlices(*context, *volume, scene, options, {}, [&](const ProgressivePicture& picture) {
         if (spacings.empty() || picture.scene.sampling.spacing < spacings.back()) {
           // Finer slabs take over once they are known to be better.
           CHECK(picture.passes >= (spacings.empty() ? 1 : kStreams));
@@ -351,7 +351,7 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
   // The picture is one of the scene that it says. Its bricks were resident already, at other places of the texture,
   // whose coordinates are single precision.
   const ProgressivePicture again =
-      renderProgressive(*context, *volume, fine.scene, {.passes = fine.passes, .pixelArea = false});
+      progressiveSlices(*context, *volume, fine.scene, {.passes = fine.passes, .pixelArea = false});
   CHECK(maxDifference(again.picture.colour, fine.picture.colour) < 2e-5);
   CHECK(again.error.systematic < coarse.error.systematic);
 
@@ -359,7 +359,7 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
   // of finer slabs.
   for (const int passes : {4, 5, 7}) {
     options.passes = passes;
-    const ProgressivePicture last = renderProgressive(*context, *volume, scene, options);
+    const ProgressivePicture last = progressiveSlices(*context, *volume, scene, options);
     INFO("of " << passes << " passes");
     CHECK(last.passes == passes);
     CHECK(last.scene == scene);
@@ -371,7 +371,7 @@ TEST_CASE("Slabs and texels are halved where they are in the way of the target",
   ResolvedScene finest = scene;
   finest.clipPlanes = {{0, 0, -1, 3}};  // leaves fewer slices
   finest.sampling.spacing = 0.125;
-  CHECK(renderProgressive(*context, *volume, finest, options).scene == finest);
+  CHECK(progressiveSlices(*context, *volume, finest, options).scene == finest);
 }
 
 TEST_CASE("Without bricks for thicker slabs, thinner ones tell the systematic error", "[shade][gl]") {
@@ -381,8 +381,8 @@ TEST_CASE("Without bricks for thicker slabs, thinner ones tell the systematic er
   const ResolvedScene scene = smallScene();  // slabs of 3.25 voxels
   const auto narrow = bricksFor(grid, scene), wide = bricksForPasses(grid, scene);
   REQUIRE(narrow->layout.apron < wide->layout.apron);
-  const ProgressivePicture picture = renderProgressive(*context, *narrow, scene, {.passes = 8});
-  const ProgressivePicture other = renderProgressive(*context, *wide, scene, {.passes = 8});
+  const ProgressivePicture picture = progressiveSlices(*context, *narrow, scene, {.passes = 8});
+  const ProgressivePicture other = progressiveSlices(*context, *wide, scene, {.passes = 8});
   ReferenceOptions options;
   options.tolerance = 2e-3;
   options.directions = 128;
@@ -402,7 +402,7 @@ TEST_CASE("Listed directions come whole in every sample", "[shade][gl]") {
   if (!context) return;
   const ResolvedScene layer = layerScene(false);
   const FieldBricks volume = layerVolume(coarserScene(layer));
-  const ProgressivePicture passes = renderProgressive(*context, volume, layer, {.passes = 8});
+  const ProgressivePicture passes = progressiveSlices(*context, volume, layer, {.passes = 8});
   // As the test of samples says, all samples are one picture, to which slabs twice as thick make no difference.
   const double slabs = 16 / layer.sampling.spacing + 2;
   const double tolerance = 2 * (slabs * 10 * kFloatRounding + 4e-6 * 0.11 * 2 * layer.sampling.spacing);
@@ -419,7 +419,7 @@ TEST_CASE("Listed directions come whole in every sample", "[shade][gl]") {
   ReferenceOptions options;
   options.tolerance = 1e-3;
   const Image exact = renderReference(grid, scene, options).colour;
-  const ProgressivePicture lit = renderProgressive(*context, *bricks, scene, {.passes = 16});
+  const ProgressivePicture lit = progressiveSlices(*context, *bricks, scene, {.passes = 16});
   const double mean = rmsOfRgb(lit.picture.colour, exact);
   INFO("estimated " << lit.error.statistical << " and " << lit.error.systematic << ", found " << mean);
   // Texels are as wide as a pixel, 1.8 voxels, and twice as wide as slabs are thick: their blur is in the
@@ -436,17 +436,13 @@ TEST_CASE("Options of samples that make no sense are refused", "[shade][gl]") {
   const ResolvedScene scene = smallScene();
   const auto volume = bricksForPasses(grid, scene);
   const auto refused = [&](const ResolvedScene& changed, const ProgressiveOptions& options) {
-    return complaint<InvalidArgument>([&] { renderProgressive(*context, *volume, changed, options); });
+    return complaint<InvalidArgument>([&] { progressiveSlices(*context, *volume, changed, options); });
   };
-  ResolvedScene emission = scene, dos = scene, aroundRay = scene;
-  emission.model = Model::emission;
+  ResolvedScene dos = scene;
   dos.method = Method::dos;
-  aroundRay.model = Model::coneRay;
-  const std::string needs =
-      "progressive: needs the model cone, ambient or lights and the method ordinates or light-volume, found ";
-  CHECK(refused(emission, {}) == needs + "emission and ordinates");
-  CHECK(refused(dos, {}) == needs + "cone and dos");
-  CHECK(refused(aroundRay, {}) == needs + "cone-ray and ordinates");
+  CHECK(refused(dos, {}) ==
+        "progressive: needs the model emission, or cone, ambient or lights and the method ordinates or light-volume, "
+        "found cone and dos");
   CHECK(refused(scene, {.passes = 0}) == "progressive: passes is 0, must be 1 or more");
   CHECK(refused(scene, {.passes = -3}) == "progressive: passes is -3, must be 1 or more");
   using Catch::Contains;

@@ -108,11 +108,10 @@ TEST_CASE("Samples of a scene without directions are refused in one line and lea
     CHECK(result.out.empty());
     CHECK(filesIn(at.folder) == before);
   };
-  const std::string needs = "need the model cone, ambient or lights and the method ordinates or light-volume";
-  check("--model emission --progressive 4", 2, needs);
+  const std::string needs =
+      "need the model emission, or cone, ambient or lights and the method ordinates or light-volume";
   check("--model cone --method dos --progressive 4", 2, needs);
   check("--model cone --method dos --target-error 0.1", 2, needs);
-  check("--model emission --max-seconds 1", 2, needs);
   check("--model cone --progressive 4 --frames 2", 2, "--frames and --progressive exclude each other");
   check("--model cone --progressive 3 --target-error 0.1", 1, "passes is 3, a target error needs at least 4");
   check("--model cone --method dos --quality high", 2, "--quality");
@@ -132,7 +131,26 @@ TEST_CASE("Samples of a scene without directions are refused in one line and lea
           option.substr(0, option.find(' ')) + ": is for --method dos, found light-volume");
   check("--model cone --occlusion-scale 1", 2, "--occlusion-scale: is for --method ordinates, found light-volume");
   check("--model cone --method light-volume --target-error 0.1", 2, "--target-error: needs --method ordinates");
+  check("--model cone --backend cpu --target-error 0.1", 2, "--target-error: occlusion on the CPU");
   check("--model cone --method dos --occlusion-scale 1", 2, "--occlusion-scale: is for --method ordinates, found dos");
+}
+
+TEST_CASE("Unlit pictures are refined to a target error, by all techniques", "[tools]") {
+  const std::string technique = GENERATE("rays", "shear-warp", "slices");
+  if (technique == "slices" && !testContext()) return;
+  const BallWorkplace at;
+  const auto asked = [&](const std::string& error) {
+    const ProgramResult result = at.run(kRenderBall + "--model emission --spacing 2 --technique " + technique +
+                                        " --target-error " + error + " -o a.exr --stats s.json");
+    INFO(result.err);
+    CHECK(result.status == 0);
+    const SceneJson stats = at.json("s.json");
+    CHECK(stats["technique"] == technique);
+    CHECK(stats["progressive"]["error"] <= std::stod(error));
+    return stats["scene"]["sampling"]["spacing"].get<double>();
+  };
+  CHECK(asked("0.5") == 2);
+  CHECK(asked("0.0002") < 2);
 }
 
 TEST_CASE("A quality sets what goes together, and single options overrule it", "[tools]") {

@@ -80,6 +80,17 @@ struct Picture {
   RenderStats stats;
 };
 
+/// How a renderer samples a scene along its rays, from which the error of pictures is estimated.
+struct RaySampling {
+  /// The distance between samples, world units, or what else is halved where a scene is made twice as fine: it tells
+  /// how scenes compare.
+  double spacing = 0;
+  double voxelEdge = 0;  // the shortest edge of a voxel, world units
+  /// Errors fall with a power of the distance that is between these two: with the least at edges of solid medium, with
+  /// the most where values run smoothly.
+  double leastOrder = 1, mostOrder = 2;
+};
+
 /// Makes pictures of one volume. Scenes change by setters, which do no more than the change asks for: camera, theta,
 /// clip planes, lights and the size of the picture upload nothing, and another transfer function uploads the bricks
 /// that became visible and are not resident.
@@ -102,6 +113,9 @@ class Renderer {
   void setLight(Model model, Method method, const std::vector<LightSource>& sources);
   void setOcclusion(const OcclusionOptions& occlusion);
   void setSampling(const SamplingOptions& sampling);
+
+  /// Tells how it would sample a scene of its volume; none where the bricks were not cut for such a scene.
+  virtual std::optional<RaySampling> sampling(const ResolvedScene& scene) const = 0;
 
   /// Draws the scene into the renderer's own buffers, with one ray a pixel.
   /// @throw GlError, InvalidArgument

@@ -26,10 +26,9 @@ struct Engine {
 };
 
 /// Chooses the technique and where it runs, and makes a context where one is needed.
-/// @param scene       its technique and its light count
-/// @param needSlices  what is to be done is done by slices alone, such as progressive pictures
+/// @param scene  its technique and its light count
 /// @throw InvalidArgument  the technique does not run there: names both
 /// @throw GlError          no context
-Engine chooseEngine(const SceneSettings& scene, EngineKind kind = EngineKind::automatic, bool needSlices = false);
+Engine chooseEngine(const SceneSettings& scene, EngineKind kind = EngineKind::automatic);
 
 }  // namespace umbrick

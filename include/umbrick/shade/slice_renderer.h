@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "umbrick/atlas/resident_volume.h"
@@ -54,6 +55,10 @@ class SliceRenderer : public Renderer {
   /// Renders the same scene from another camera. @throw InvalidArgument  slabs reach beyond the apron
   Picture render(const Camera& camera, const RenderSample& sample = {});
 
+  /// Slices, so that what is halved is their distance, segments and windows; none where slabs reach beyond the apron.
+  /// At hard edges of light in windows errors fall with an order of at least 0.45 for texels of 2 voxels or more, as
+  /// measured. Interpolation between voxels blurs edges, so that it is at least 1 for texels of half a voxel.
+  std::optional<RaySampling> sampling(const ResolvedScene& scene) const override;
   void draw(const RenderSample& sample = {}) override;
   Picture read() override;
 

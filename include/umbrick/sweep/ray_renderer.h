@@ -35,6 +35,7 @@ class RayRenderer : public Renderer {
               std::optional<int> perVoxel = {});
   ~RayRenderer() override;
 
+  std::optional<RaySampling> sampling(const ResolvedScene& scene) const override;
   void draw(const RenderSample& sample = {}) override;
   Picture read() override;
 

@@ -45,6 +45,7 @@ class ShearWarpRenderer : public Renderer {
                     std::optional<ShearWarpSampling> sampling = {});
   ~ShearWarpRenderer() override;
 
+  std::optional<RaySampling> sampling(const ResolvedScene& scene) const override;
   void draw(const RenderSample& sample = {}) override;
   Picture read() override;
 

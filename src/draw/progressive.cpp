@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "umbrick/shade/progressive.h"
+#include "umbrick/draw/progressive.h"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,6 @@
 #include "umbrick/draw/picture_mean.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/resolve.h"
-#include "umbrick/shade/prepare.h"
 
 namespace umbrick {
 namespace {
@@ -62,8 +62,9 @@ class Stream {
   RenderSample sample(const ResolvedScene& scene, int pass, bool pixelArea) const {
     const int count = scene.occlusion.ordinates.directions;
     RenderSample sample;
-    sample.lights =
-        lightSamples(scene, static_cast<std::uint64_t>(pass) * static_cast<std::uint64_t>(count), count, seed_);
+    if (occlusionMethod(scene))
+      sample.lights =
+          lightSamples(scene, static_cast<std::uint64_t>(pass) * static_cast<std::uint64_t>(count), count, seed_);
     // A phase is in the open interval: at 0 a slice would lie in the eye.
     sample.phase = std::clamp(glm::fract(phase_ + pass * kGoldenStep), 1e-3, 1 - 1e-3);
     sample.latticeShift = glm::fract(shift_ + static_cast<double>(pass) * kR2Step);
@@ -79,11 +80,13 @@ class Stream {
 };
 
 void check(const ResolvedScene& scene, const ProgressiveOptions& options) {
-  if (!traitsOf(scene.model).directions || !traitsOf(scene.method).directions)
+  const std::optional<Method> method = occlusionMethod(scene);
+  if (method && !(traitsOf(scene.model).directions && traitsOf(*method).directions))
     throw InvalidArgument(
-        "progressive: needs the model cone, ambient or lights and the method ordinates or light-volume, found " +
-        modelName(scene.model) + " and " + methodName(scene.method));
-  if (options.targetError > 0 && scene.method == Method::lightVolume)
+        "progressive: needs the model emission, or cone, ambient or lights and the method ordinates or light-volume, "
+        "found " +
+        modelName(scene.model) + " and " + methodName(*method));
+  if (options.targetError > 0 && method == Method::lightVolume)
     throw InvalidArgument("progressive: a target error needs the method ordinates, whose windows can be refined");
   if (options.passes < 1)
     throw InvalidArgument("progressive: passes is " + std::to_string(options.passes) + ", must be 1 or more");
@@ -93,14 +96,6 @@ void check(const ResolvedScene& scene, const ProgressiveOptions& options) {
   if (!(options.maxSeconds >= 0) || !(options.targetError >= 0))
     throw InvalidArgument("progressive: seconds and target error are " + std::to_string(options.maxSeconds) + " and " +
                           std::to_string(options.targetError) + ", must be 0 or more");
-}
-
-bool fits(const Bricks& volume, const ResolvedScene& scene) {
-  try {
-    return requiredApron(scene, volume.indexToWorld) <= volume.layout.apron;
-  } catch (const InvalidArgument&) {
-    return false;
-  }
 }
 
 }  // namespace
@@ -124,13 +119,11 @@ ResolvedScene finerScene(const ResolvedScene& scene) {
   return fine;
 }
 
-// Returns the error of a picture whose texels are so many voxels wide over its difference to one with slabs and texels
-// `ratio` times as large: 1 / |ratio^p - 1| where errors fall with the order p. The order is at most 1. At hard edges
-// it is at least 0.45 for texels of 2 voxels or more; interpolation between voxels blurs edges, so that it is at least
-// 1 for texels of half a voxel. The result is the geometric mean of both ends.
-double errorOverDifference(double ratio, double texelVoxels) {
-  const double least = 1 - 0.55 * std::clamp(0.5 * std::log2(2 * texelVoxels), 0.0, 1.0);
-  return 1 / std::sqrt(std::abs(std::pow(ratio, least) - 1) * std::abs(ratio - 1));
+// Returns the error of a picture over its difference to one whose samples are `ratio` times as far apart: 1 / |ratio^p
+// - 1| where errors fall with the order p. The result is the geometric mean of both ends of p.
+double errorOverDifference(double ratio, const RaySampling& sampling) {
+  const auto part = [&](double order) { return std::abs(std::pow(ratio, order) - 1); };
+  return 1 / std::sqrt(part(sampling.leastOrder) * part(sampling.mostOrder));
 }
 
 // Returns the scene of one sample, which has one ray a pixel: the samples are what a pixel is averaged over.
@@ -139,16 +132,25 @@ ResolvedScene onePerPixel(ResolvedScene scene) {
   return scene;
 }
 
+// Returns the scene with samples half as far apart; none where they would be closer than an eighth of a voxel, or the
+// bricks were not cut for it. Where a technique takes samples no farther apart than so much, whatever the scene says,
+// it is halved until they are closer.
+std::optional<ResolvedScene> nextFiner(const Renderer& renderer, const ResolvedScene& scene) {
+  const std::optional<RaySampling> now = renderer.sampling(scene);
+  if (!now) return std::nullopt;
+  for (ResolvedScene finer = finerScene(scene);; finer = finerScene(finer)) {
+    const std::optional<RaySampling> sampling = renderer.sampling(finer);
+    if (!sampling || sampling->spacing < now->voxelEdge / 8) return std::nullopt;
+    if (sampling->spacing < now->spacing) return finer;
+    if (finer.sampling.spacing < now->voxelEdge / 64) return std::nullopt;
+  }
+}
+
 // The samples of one scene, rendered one after another.
 class PassSeries {
  public:
-  PassSeries(ResidentVolume& resident, const ResolvedScene& scene, const ProgressiveOptions& options,
-             const RenderOptions& render)
-      : resident_(resident),
-        scene_(scene),
-        render_(render),
-        fine_(resident, onePerPixel(scene), render),
-        pixelArea_(options.pixelArea) {
+  PassSeries(Renderer& renderer, const ResolvedScene& scene, const ProgressiveOptions& options)
+      : renderer_(renderer), scene_(scene), pixelArea_(options.pixelArea) {
     for (int i = 0; i < kStreams; ++i) streams_.emplace_back(options.seed, static_cast<std::uint64_t>(i));
   }
 
@@ -158,74 +160,96 @@ class PassSeries {
   void pass(Picture& picture, ErrorEstimate& error) {
     const auto stream = static_cast<std::size_t>(passes_ % kStreams);
     const RenderSample sample = streams_[stream].sample(scene_, passes_ / kStreams, pixelArea_);
-    picture = fine_.render(sample);
+    renderer_.setScene(onePerPixel(scene_));
+    picture = renderer_.render(sample);
     means_[stream].add(picture);
     all_.add(picture);
-    if (passes_ == 0) {
-      // From now on the automatic texel is that of the first picture, so that twice and half of it are what they say.
-      if (scene_.method == Method::ordinates)
-        scene_.occlusion.ordinates.scale =
-            shortestVoxelEdge(resident_.volume().indexToWorld) / picture.stats.windowTexel;
-      // Coarser pictures cost an eighth and finer ones eight times as much, but finer ones can be made from bricks
-      // with any apron.
-      const ResolvedScene coarse = coarserScene(scene_);
-      const bool fit = fits(resident_.volume(), coarse);
-      ratio_ = fit ? 2 : 0.5;
-      other_.emplace(resident_, onePerPixel(fit ? coarse : finerScene(scene_)), render_);
+    if (passes_ == 0) choose(picture);
+    // The other picture has the same light; only the distance of its samples differs.
+    if (other_) {
+      renderer_.setScene(onePerPixel(*other_));
+      otherMeans_[stream].add(renderer_.render(sample));
     }
-    // The other picture has the same light; only its slabs and texels differ.
-    if (other_) otherMeans_[stream].add(other_->render(sample));
     if (++passes_ >= kStreams) error.statistical = standardError();
-    if (passes_ == kStreams) {
+    if (passes_ == kStreams && other_) {
       // The part of the difference that is there by chance, as the streams' spread tells, does not count.
       const double difference = rootMean(all_.values(), [&](std::size_t i) {
         const StreamMoments moments =
             momentsOf([&](std::size_t k) { return otherMeans_[k].colour(i) - means_[k].colour(i); });
         return moments.mean * moments.mean - moments.variance;
       });
-      const double texel = scene_.method == Method::ordinates ? 1 / scene_.occlusion.ordinates.scale : 1;
-      error.systematic = errorOverDifference(ratio_, texel) * difference;
+      error.systematic = errorOverDifference(ratio_, *sampling_) * difference;
       other_.reset();
     }
     all_.store(picture);
   }
 
  private:
+  // Chooses the scene that pictures are compared with. Coarser pictures cost less and finer ones more, but finer ones
+  // can be made from bricks with any apron, and of samples that cannot be farther apart.
+  void choose(const Picture& first) {
+    // From now on the automatic texel is that of the first picture, so that twice and half of it are what they say.
+    sampling_ = renderer_.sampling(scene_);
+    if (!sampling_) return;
+    if (occlusionMethod(scene_) == Method::ordinates) {
+      scene_.occlusion.ordinates.scale = sampling_->voxelEdge / first.stats.windowTexel;
+      sampling_ = renderer_.sampling(scene_);
+    }
+    other_ = coarserScene(scene_);
+    std::optional<RaySampling> sampling = renderer_.sampling(*other_);
+    if (!sampling || sampling->spacing == sampling_->spacing) {
+      other_ = nextFiner(renderer_, scene_);
+      if (other_) sampling = renderer_.sampling(*other_);
+    }
+    if (other_) ratio_ = sampling->spacing / sampling_->spacing;
+  }
+
   double standardError() const {
     return rootMean(all_.values(), [&](std::size_t i) {
       return momentsOf([&](std::size_t k) { return means_[k].colour(i); }).variance;
     });
   }
 
-  ResidentVolume& resident_;
+  Renderer& renderer_;
   ResolvedScene scene_;
-  RenderOptions render_;
-  SliceRenderer fine_;
-  std::optional<SliceRenderer> other_;  // renderer with slabs and texels `ratio_` times as large
-  double ratio_ = 2;
   bool pixelArea_;
+  std::optional<RaySampling> sampling_;
+  std::optional<ResolvedScene> other_;  // with samples `ratio_` times as far apart
+  double ratio_ = 2;
   std::vector<Stream> streams_;
   std::array<PictureMean, kStreams> means_, otherMeans_;
   PictureMean all_;
   int passes_ = 0;
 };
 
+// Gives a renderer the scene again that it had.
+class SceneKeeper {
+ public:
+  explicit SceneKeeper(Renderer& renderer) : renderer_(renderer), scene_(renderer.scene()) {}
+  ~SceneKeeper() {
+    try {
+      renderer_.setScene(scene_);
+    } catch (const std::exception&) {
+      // What ends the series is told; a renderer that cannot take its old scene again keeps the last one.
+    }
+  }
+  SceneKeeper(const SceneKeeper&) = delete;
+  SceneKeeper& operator=(const SceneKeeper&) = delete;
+
+ private:
+  Renderer& renderer_;
+  ResolvedScene scene_;
+};
+
 }  // namespace
 
-ProgressivePicture renderProgressive(const GlContext& context, const Bricks& volume, const ResolvedScene& scene,
-                                     const ProgressiveOptions& options, const RenderOptions& render,
+ProgressivePicture renderProgressive(Renderer& renderer, const ProgressiveOptions& options,
                                      const std::function<bool(const ProgressivePicture&)>& onPass) {
-  ResidentVolume resident(context, volume, atlasOptions(scene, volume));
-  return renderProgressive(resident, scene, options, render, onPass);
-}
-
-ProgressivePicture renderProgressive(ResidentVolume& resident, const ResolvedScene& scene,
-                                     const ProgressiveOptions& options, const RenderOptions& render,
-                                     const std::function<bool(const ProgressivePicture&)>& onPass) {
+  const ResolvedScene scene = renderer.scene();
   check(scene, options);
+  const SceneKeeper keeper(renderer);
   const Stopwatch watch;
-  const double finest = shortestVoxelEdge(resident.volume().indexToWorld) / 8;
-  auto series = std::make_unique<PassSeries>(resident, scene, options, render);
+  auto series = std::make_unique<PassSeries>(renderer, scene, options);
   ProgressivePicture best{.scene = scene}, current{.scene = scene};
   bool refined = false;
   double systematicBefore = kInfinity;  // the systematic error of the coarser scene
@@ -248,15 +272,15 @@ ProgressivePicture renderProgressive(ResidentVolume& resident, const ResolvedSce
     // Either kind of error may take half of the squared target. Waiting does not help where the error that does not
     // average out takes more.
     const bool inTheWay = !(current.error.systematic <= options.targetError / std::sqrt(2.0));
-    const bool canRefine =
-        options.refine && current.scene.sampling.spacing / 2 >= finest && current.error.systematic <= systematicBefore;
-    if (inTheWay && canRefine && pass + kStreams < options.passes) {
-      series = std::make_unique<PassSeries>(resident, finerScene(series->scene()), options, render);
+    std::optional<ResolvedScene> finer;
+    if (options.refine && current.error.systematic <= systematicBefore) finer = nextFiner(renderer, series->scene());
+    if (inTheWay && finer && pass + kStreams < options.passes) {
+      series = std::make_unique<PassSeries>(renderer, *finer, options);
       systematicBefore = current.error.systematic;
       refined = true;
       current.passes = 0;
       current.error = {kInfinity, kInfinity};
-    } else if (options.refine && !canRefine && !(current.error.systematic < options.targetError)) {
+    } else if (options.refine && !finer && !(current.error.systematic < options.targetError)) {
       break;  // and nothing is left to make it smaller
     }
   }
