@@ -172,7 +172,8 @@ int check(const CheckCommand& command) {
 
 Command addCheck(CLI::App& app) {
   const auto command = std::make_shared<CheckCommand>();
-  CLI::App* sub = app.add_subcommand("check", "Measure on a volume that bricks and culling change nothing.");
+  CLI::App* sub = app.add_subcommand(
+      "check", "Measure on a volume that bricks and culling change nothing and that techniques agree.");
   command->scene = addSceneOptions(*sub);
   addBackendOption(*sub, command->backend);
   // The check decides what is compared: emission and cone, with and without bricks and culling. So these

@@ -35,6 +35,8 @@ ModelLaws::ModelLaws(Model model, Method method) {
   skipped = makeResult(5, "V across skipped space" + m, "largest difference of V from not culled", rounding + light);
   jumps = makeResult(5, "V beside projected brick faces" + m, "how much steeper than unbricked", rounding + light);
   order = makeResult(6, "bricks drawn in reverse" + m, picture, "the same samples: none");
+  techniques = makeResult(8, "techniques on the CPU agree with slices" + m, "RMS difference of colour",
+                          "twice the errors that both say they have");
 }
 
 Laws::Laws(Method method)
@@ -55,7 +57,7 @@ Laws::Laws(Method method)
 
 void finish(ModelLaws& laws) {
   for (InvariantResult* law : {&laws.edges, &laws.pool, &laws.textures, &laws.culling, &laws.saturated, &laws.seam,
-                               &laws.skipped, &laws.jumps, &laws.order})
+                               &laws.skipped, &laws.jumps, &laws.order, &laws.techniques})
     finish(*law);
 }
 
@@ -89,6 +91,8 @@ std::vector<InvariantResult> collect(Laws laws, const std::string& referenceNote
   add(laws.cone.jumps, "not measured: no parallel view along the faces");
   for (ModelLaws* model : {&laws.emission, &laws.cone}) add(model->order, "");
   add(laws.border, "not measured: the background is visible, or no leaf of the grid");
+  for (ModelLaws* model : {&laws.emission, &laws.cone})
+    add(model->techniques, "not measured: no technique on the CPU has this method");
   return results;
 }
 

@@ -11,7 +11,7 @@ namespace umbrick {
 /// The laws about pictures of one model.
 struct ModelLaws {
   ModelLaws(Model model, Method method);
-  InvariantResult edges, pool, textures, culling, saturated, seam, skipped, jumps, order;
+  InvariantResult edges, pool, textures, culling, saturated, seam, skipped, jumps, order, techniques;
 };
 
 /// All laws. None is complete until it is said to be.

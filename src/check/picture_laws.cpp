@@ -35,7 +35,8 @@ PictureLaws::PictureLaws(const GlContext& context, const CutVolume& volume, cons
       precision_(samplerPrecision),
       steps_(steps),
       options_(layers(steps)),
-      renderers_(context, scenes.emission.bricks.budgetMiB << 20, options_) {}
+      renderers_(context, scenes.emission.bricks.budgetMiB << 20, options_),
+      techniques_(volume, steps) {}
 
 PictureLaws::Drawn PictureLaws::draw(SliceRenderer& renderer) {
   steps_.begin(drawing_, work_);
@@ -145,6 +146,13 @@ void PictureLaws::check(const CheckView& view, Model model, ModelLaws& laws) {
     if (edge == volume_.sceneEdge) whole = std::move(drawn);
   }
   checkCulling(whole, reference, scene, saturation, placeOf(volume_.sceneEdge), laws);
+  checkTechniques(scene, view.name, laws.techniques);
+}
+
+void PictureLaws::checkTechniques(ResolvedScene scene, const std::string& view, InvariantResult& result) {
+  scene.bricks.culling = true;
+  const Bricks& bricks = *volume_.bricks.at(volume_.sceneEdge);
+  techniques_.check(renderers_.get(bricks, scene), view + ", " + modelName(scene.model), work_, result);
 }
 
 void PictureLaws::checkCulling(const Drawn& whole, const Reference& reference, ResolvedScene scene, double saturation,

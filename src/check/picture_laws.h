@@ -10,6 +10,7 @@
 #include "check/picture_check.h"
 #include "check/renderers.h"
 #include "check/steps.h"
+#include "check/technique_law.h"
 
 namespace umbrick {
 
@@ -18,7 +19,9 @@ class PictureLaws {
   /// How much work a picture of a model is, where a picture of emission is 1.
   static double workOf(Model model) { return model == Model::emission ? 1 : 3; }
   /// About how many pictures check() makes of a volume.
-  static double picturesOf(const CutVolume& volume) { return static_cast<double>(volume.bricks.size()) + 9; }
+  static double picturesOf(const CutVolume& volume) {
+    return static_cast<double>(volume.bricks.size()) + 9 + TechniqueLaw::kWork;
+  }
 
   /// @param samplerPrecision  voxels
   /// Everything outlives this.
@@ -52,6 +55,7 @@ class PictureLaws {
                const std::string& where, InvariantResult& all, InvariantResult* visibility) const;
   void checkCulling(const Drawn& whole, const Reference& reference, ResolvedScene scene, double saturation,
                     const std::string& where, ModelLaws& laws);
+  void checkTechniques(ResolvedScene scene, const std::string& view, InvariantResult& result);
   void checkPool(const Drawn& whole, const Reference& reference, const ResolvedScene& scene, const std::string& view,
                  InvariantResult& result);
   void checkTextures(const Drawn& whole, const Reference& reference, const ResolvedScene& scene,
@@ -67,6 +71,7 @@ class PictureLaws {
   CheckSteps& steps_;
   RenderOptions options_;
   CheckRenderers renderers_;
+  TechniqueLaw techniques_;
   std::unique_ptr<Bricks> reference_;
   std::map<std::string, double> poolShare_;  // by view: size of the pool of slots over what all bricks take
   std::string drawing_;                      // what the present step draws

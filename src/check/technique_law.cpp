@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "check/technique_law.h"
+
+#include <cmath>
+
+#include "umbrick/core/error.h"
+#include "umbrick/draw/progressive.h"
+#include "umbrick/render/techniques.h"
+
+namespace umbrick {
+namespace {
+
+// Returns the RMS difference of R, G and B, as estimates of errors are meant.
+double rmsDifference(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    if (i % 4 != 3) sum += std::pow(static_cast<double>(a.pixels[i]) - static_cast<double>(b.pixels[i]), 2);
+  return std::sqrt(sum / (0.75 * static_cast<double>(a.pixels.size())));
+}
+
+// Samples go through the centres of pixels, and have the same directions in all techniques.
+ProgressivePicture drawn(Renderer& renderer) {
+  return renderProgressive(renderer, {.passes = kStreams, .pixelArea = false});
+}
+
+// Returns how far apart pictures may be by the rounding of sums: of slabs on OpenGL, of the table on the CPU.
+double rounding(const RenderStats& slices) { return static_cast<double>(slices.slices) * 0x1p-23 + 0x1p-18; }
+
+}  // namespace
+
+Renderer& TechniqueLaw::rendererOf(Technique technique, const ResolvedScene& scene) {
+  if (!bricks_) {
+    BrickOptions options;
+    options.interior = volume_.sceneEdge;
+    options.gradients = scene.transfer.is2d();
+    bricks_ = cutGrid(volume_.grid, options, true);
+  }
+  std::unique_ptr<Renderer>& renderer = renderers_[technique];
+  if (renderer)
+    renderer->setScene(scene);
+  else
+    renderer = traitsOf(technique).makeOnCpu(*bricks_, scene, {});
+  return *renderer;
+}
+
+void TechniqueLaw::check(Renderer& slices, const std::string& where, double work, InvariantResult& result) {
+  const ResolvedScene scene = slices.scene();
+  std::optional<ProgressivePicture> bySlices;
+  for (const TechniqueTraits& traits : techniques()) {
+    if (!traits.makeOnCpu || !traits.supports(scene)) continue;
+    steps_.begin(where + ": " + techniqueName(traits.technique), kWork * work / 2);
+    if (!bySlices) bySlices = drawn(slices);
+    ResolvedScene there = scene;
+    there.technique = traits.technique;
+    const ProgressivePicture picture = drawn(rendererOf(traits.technique, there));
+    const double said = bySlices->error.total() + picture.error.total();
+    addMeasurement(result, rmsDifference(bySlices->picture.colour, picture.picture.colour),
+                   2 * said + rounding(bySlices->picture.stats), bySlices->picture.colour.pixels.size() / 4,
+                   where + ": slices and " + techniqueName(traits.technique));
+  }
+}
+
+}  // namespace umbrick

@@ -1,0 +1,38 @@
+// The law that techniques agree: what slices draw on OpenGL is what techniques on the CPU make of it, within the errors
+// that both state.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+
+#include "check/cut_volume.h"
+#include "check/result.h"
+#include "check/steps.h"
+#include "umbrick/draw/renderer.h"
+
+namespace umbrick {
+
+class TechniqueLaw {
+ public:
+  /// How much work a view is, where a picture of slices is 1.
+  static constexpr double kWork = 12;
+
+  /// Everything outlives this.
+  TechniqueLaw(const CutVolume& volume, CheckSteps& steps) : volume_(volume), steps_(steps) {}
+
+  /// Draws progressive pictures of a scene by slices and by each technique on the CPU that can render it, and compares
+  /// them: they may be apart by twice what they say they are off by together, since such an estimate may be half of the
+  /// true error. @param slices  a renderer of the scene, which it has again in the end  @throw CheckStopped
+  void check(Renderer& slices, const std::string& where, double work, InvariantResult& result);
+
+ private:
+  Renderer& rendererOf(Technique technique, const ResolvedScene& scene);
+
+  const CutVolume& volume_;
+  CheckSteps& steps_;
+  std::unique_ptr<Bricks> bricks_;  // as techniques on the CPU need them
+  std::map<Technique, std::unique_ptr<Renderer>> renderers_;
+};
+
+}  // namespace umbrick
