@@ -20,9 +20,9 @@ int stepsFor(const std::vector<double>& values) {
   double nearest = values.back() - values.front();
   for (std::size_t i = 1; i < values.size(); ++i)
     if (values[i] > values[i - 1]) nearest = std::min(nearest, values[i] - values[i - 1]);
-  if (!(nearest > 0)) return 4096;
+  if (!(nearest > 0)) return 16384;
   const double wanted = 8 * (values.back() - values.front()) / nearest;
-  int steps = 4096;
+  int steps = 16384;
   while (steps < 65536 && steps < wanted) steps *= 2;
   return steps;
 }

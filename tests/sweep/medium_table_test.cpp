@@ -87,6 +87,6 @@ TEST_CASE("Extinction that is opaque over any segment leaves the rest of a table
   const int middle = static_cast<int>(table.stepsOf(0.5));
   // One unit of the sums over eight steps.
   CHECK(tableMean(table, middle, middle + 8, 0) == Approx(0.01).margin(table.sumUnit() / 8));
-  CHECK(table.sumUnit() < 0.2);
+  CHECK(table.sumUnit() < 0.4);  // half of 16384 steps of 1e5, in 31 bits
   CHECK(table.points()[4 * middle] == Approx(0.01));
 }
