@@ -17,7 +17,8 @@ function(umbrick_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
   # GCC 12 sees overlaps that are not there in std::string (its bug 105329).
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
-  if(CMAKE_UNITY_BUILD)
+  get_target_property(unity ${target} UNITY_BUILD)
+  if(unity)
     # Where many files are one, GCC takes them for headers, whose types must not lie in unnamed namespaces, and 12 warns
     # of code of std::vector and std::string that is never reached. Builds of single files keep these warnings.
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>

@@ -100,7 +100,7 @@ TransferFunction randomFunction(std::mt19937& random, double background, bool tw
 
 }  // namespace
 
-TEST_CASE("The reference agrees with short steps through all of space on random scenes", "[reference]") {
+TEST_CASE("The reference agrees with short steps through all of space on random scenes", "[reference][slow]") {
   std::mt19937 random(11);
   for (int trial = 0; trial < 24; ++trial) {
     const bool twoD = trial % 2 == 1;

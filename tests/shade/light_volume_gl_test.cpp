@@ -209,7 +209,7 @@ TEST_CASE("Coloured lights of a light volume are those of the reference", "[shad
 }
 
 // Rings of `ordinates` on slanting surfaces come at the distance of slices; a light volume has none.
-TEST_CASE("No ripple on a slanting solid has the period of slices", "[shade][light-volume][gl]") {
+TEST_CASE("No ripple on a slanting solid has the period of slices", "[shade][light-volume][slow][gl]") {
   const auto context = testContext();
   if (!context) return;
   constexpr int kEdge = 64, kPixels = 128;

@@ -50,7 +50,7 @@ TEST_CASE("Coloured lights of the world give the picture of the reference", "[sw
 }
 
 TEST_CASE("Light of the whole sphere and from behind gives the picture of the reference",
-          "[sweep][cpu][light-volume]") {
+          "[sweep][cpu][light-volume][slow]") {
   const ScalarGrid grid = blobGrid();
   for (const Camera& camera : smallCameras(14)) {
     ResolvedScene scene = litScene(ramp(0.7), camera);
