@@ -4,6 +4,7 @@
 // both to the same: { eye, lookAt, up }. From one resolved orbit its axes, centre and radius follow, so that the page
 // knows the camera of the next edit without asking.
 // SPDX-License-Identifier: Apache-2.0
+import { replacingPatch } from "./merge_patch.js";
 import { add, cross, dot, length, normalize, rotate, scale, subtract } from "./vector.js";
 
 const kDegree = Math.PI / 180;
@@ -182,11 +183,10 @@ export const kAxisViews = [
   { key: "6", name: "bottom", azimuth: 0, elevation: -90 },
 ];
 
-/// Returns the patch back to the camera of an earlier scene.
+/// Returns the patch back to the camera of an earlier scene. The picture keeps its size.
 export function cameraBack(camera, earlier) {
-  const { size, ...fields } = earlier;
-  if (isOrbit(camera) === isOrbit(earlier)) return { camera: fields };
-  return { camera: { ...nulls(isOrbit(camera) ? kOrbitFields : kPlacedFields), ...fields } };
+  const { size, ...patch } = replacingPatch(camera, earlier);
+  return { camera: patch };
 }
 
 /// Changes between a perspective and a parallel view of about the same size.

@@ -2,6 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 const kResizeMs = 150;  // a window that is being dragged is asked for when it rests
 const kLeast = 16;      // pixels
+const kRounding = 0.04;
+
+// Returns how large a frame is drawn in a picture. A draft's size is rounded to whole pixels and is stretched by that
+// little; a frame from before the picture got other proportions keeps its own.
+function drawnSize(header, width, height) {
+  const across = width / header.width, down = height / header.height;
+  if (Math.abs(across / down - 1) < kRounding) return [width, height];
+  const factor = Math.min(across, down);
+  return [header.width * factor, header.height * factor];
+}
 
 export class Picture {
   /// @param stage   the element in which the picture lies
@@ -46,7 +56,8 @@ export class Picture {
     const context = canvas.getContext("2d");
     context.clearRect(0, 0, width, height);
     context.imageSmoothingQuality = "high";
-    context.drawImage(image, 0, 0, width, height);
+    const [drawnWidth, drawnHeight] = drawnSize(header, width, height);
+    context.drawImage(image, (width - drawnWidth) / 2, (height - drawnHeight) / 2, drawnWidth, drawnHeight);
     this.shownFrame_ = header.frame;
     Object.assign(canvas.dataset, { frame: header.frame, draft: header.draft, samples: header.samples });
     this.fit_();

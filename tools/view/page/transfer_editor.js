@@ -118,6 +118,8 @@ export class TransferEditor {
     const places = points && this.places_(points);
     const plot = { points, places, chosen: this.chosen, range: this.range(), top: this.top_, logarithmic: this.logarithmic };
     drawTransferPlot(this.canvas, { ...plot, volume: hello.volume });
+    // Where the chosen point is, in CSS pixels of the plot, for tests that drag it.
+    if (places) this.canvas.dataset.chosen = places[this.chosen].map(Math.round).join(" ");
   }
 
   down_(event) {
