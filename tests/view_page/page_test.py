@@ -1,0 +1,358 @@
+#!/usr/bin/env python3
+"""Uses the page of `umbrick view` in headless Chromium as a person would: looks, drags, undoes, clips, saves.
+
+page_test.py ADDRESS [--folder FOLDER] [--screenshots FOLDER]
+ADDRESS is what `umbrick view` prints. FOLDER is where the server was started, and what is saved there is looked for. One
+line is printed for each step. Exit status 0: all steps passed, 1: one failed, 77: there is no Chromium or no selenium.
+"""
+# SPDX-License-Identifier: Apache-2.0
+import argparse
+import os
+import shutil
+import sys
+import time
+
+SKIPPED = 77
+PATIENCE = 60  # seconds for a picture at rest, on a machine that does other things as well
+CHANGED = 0.5  # mean difference of 8-bit channels; JPEG and a new sample of the same picture differ by less
+
+try:
+    from selenium import webdriver
+    from selenium.common.exceptions import (NoSuchElementException, StaleElementReferenceException,
+                                            WebDriverException)
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.chrome.service import Service
+except ImportError:
+    print("skipped: python3-selenium is not installed")
+    sys.exit(SKIPPED)
+
+# The picture as 64 x 64 pixels, RGBA over black.
+PIXELS = """
+const small = new OffscreenCanvas(64, 64), context = small.getContext("2d");
+context.fillRect(0, 0, 64, 64);
+context.drawImage(document.getElementById("picture"), 0, 0, 64, 64);
+return Array.from(context.getImageData(0, 0, 64, 64).data);
+"""
+TYPE = """
+const [input, value] = arguments;
+input.focus();
+input.value = value;
+input.dispatchEvent(new Event("input", {bubbles: true}));
+input.dispatchEvent(new Event("change", {bubbles: true}));
+"""
+
+
+def start_chromium(width, height):
+    browser = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    driver = shutil.which("chromedriver")
+    if not browser or not driver:
+        print("skipped: chromium or chromedriver is not installed")
+        sys.exit(SKIPPED)
+    options = webdriver.ChromeOptions()
+    options.binary_location = browser
+    # A sandbox cannot be set up by root or in most containers, and /dev/shm may be small there.
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
+                     f"--window-size={width},{height}"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service(driver), options=options)
+
+
+class Page:
+    def __init__(self, driver, address, screenshots):
+        self.driver, self.screenshots, self.shots = driver, screenshots, 0
+        driver.get(address)
+
+    def find(self, selector):
+        return self.driver.find_element(By.CSS_SELECTOR, selector)
+
+    def shot(self, name):
+        if self.screenshots:
+            self.shots += 1
+            self.driver.save_screenshot(os.path.join(self.screenshots, f"{self.shots:02d}-{name}.png"))
+
+    def wait(self, what, condition, patience=PATIENCE):
+        until = time.monotonic() + patience
+        while time.monotonic() < until:
+            try:
+                value = condition()
+            except (NoSuchElementException, StaleElementReferenceException):
+                value = None  # what is looked for may come, or is being replaced
+            if value:
+                return value
+            time.sleep(0.05)
+        self.shot("failed")
+        status = self.find("#status").text
+        lines = [line.text for line in self.driver.find_elements(By.CSS_SELECTOR, ".notice")]
+        raise AssertionError(f"{what}: not within {patience} s; the status is '{status}', the notices {lines}")
+
+    def pixels(self):
+        return self.driver.execute_script(PIXELS)
+
+    def frame(self):
+        return int(self.find("#picture").get_attribute("data-frame") or -1)
+
+    def at_rest(self):
+        return (self.find("#picture").get_attribute("data-draft") == "false"
+                and self.find("#status").get_attribute("data-draft") == "false")
+
+    def picture_at_rest(self):
+        """Waits until the server says that the picture is done, and no other one has come for a second."""
+        last, since = None, 0.0
+
+        def settled():
+            nonlocal last, since
+            now = (self.frame(), self.at_rest(), self.find("#status").get_attribute("data-done"))
+            if now != last:
+                last, since = now, time.monotonic()
+            return now[0] >= 0 and now[1:] == (True, "true") and time.monotonic() - since > 1
+        self.wait("a picture that is done", settled)
+        return self.pixels()
+
+    def change(self, what, before):
+        """Waits for a picture at rest that differs from `before`."""
+        def changed():
+            now = self.pixels()
+            return now if self.at_rest() and difference(now, before) > CHANGED else None
+        return self.wait(f"{what} changes the picture", changed)
+
+    def drag(self, element, start, by, button_keys=()):
+        """Drags from a place in CSS pixels from the element's upper left corner."""
+        box = element.rect
+        actions = ActionChains(self.driver, duration=50)
+        for key in button_keys:
+            actions.key_down(key)
+        actions.move_to_element_with_offset(element, start[0] - box["width"] / 2, start[1] - box["height"] / 2)
+        actions.click_and_hold()
+        for _ in range(5):
+            actions.move_by_offset(by[0] // 5, by[1] // 5)
+        actions.release()
+        for key in button_keys:
+            actions.key_up(key)
+        actions.perform()
+
+    def field(self, path):
+        return self.find(f'[data-path="{path}"] input.number').get_attribute("value")
+
+    def labelled(self, label):
+        return self.find(f'[aria-label="{label}"]')
+
+    def unfold(self, title):
+        for summary in self.driver.find_elements(By.CSS_SELECTOR, "#panel summary"):
+            if summary.text == title and summary.find_element(By.XPATH, "..").get_attribute("open") is None:
+                summary.click()
+
+    def press(self, text):
+        for button in self.driver.find_elements(By.TAG_NAME, "button"):
+            if button.text == text:
+                self.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", button)
+                button.click()
+                return
+        raise AssertionError(f"there is no button '{text}'")
+
+    def keys(self, *keys):
+        ActionChains(self.driver).send_keys_to_element(self.find("#picture"), *keys).perform()
+
+
+def difference(a, b):
+    return sum(abs(x - y) for x, y in zip(a, b)) / len(a)
+
+
+def open_page(page):
+    pixels = page.picture_at_rest()
+    assert max(pixels[0::4]) > 20, "the first picture is black"
+    page.shot("opened")
+
+
+def drag_point(page):
+    before = page.picture_at_rest()
+    plot = page.find("#transfer")
+    # The last points are those of what is densest, which is rare; two before, much of the picture depends on a point.
+    plot.send_keys(Keys.END, Keys.PAGE_UP, Keys.PAGE_UP)
+    value = page.labelled("value").get_attribute("value")
+    sigma_t = page.labelled("sigma_t").get_attribute("value")
+    x, y = map(int, plot.get_attribute("data-chosen").split())
+    page.drag(plot, (x, y), (10, 100 if y < plot.rect["height"] / 2 else -100))
+    assert page.labelled("sigma_t").get_attribute("value") != sigma_t, "the point has not moved"
+    page.change("a dragged point", before)
+    page.shot("dragged")
+    page.find("#undo").click()
+    page.wait("undo brings the point back", lambda: page.labelled("value").get_attribute("value") == value
+              and page.labelled("sigma_t").get_attribute("value") == sigma_t)
+    page.wait("undo brings the picture back", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
+    page.find("#redo").click()
+    page.wait("redo moves the point again", lambda: page.labelled("sigma_t").get_attribute("value") != sigma_t)
+    page.find("#undo").click()
+    page.wait("undo once more", lambda: page.labelled("sigma_t").get_attribute("value") == sigma_t)
+
+
+def add_and_remove_point(page):
+    plot = page.find("#transfer")
+
+    def count():
+        return int(page.find("#panel p[aria-live]").text.split()[-1])
+    points = count()
+    plot.send_keys(Keys.HOME, "n")
+    page.wait("a point more", lambda: count() == points + 1)
+    plot.send_keys(Keys.DELETE)
+    page.wait("the point is gone", lambda: count() == points)
+
+
+def move_camera(page):
+    before = page.picture_at_rest()
+    picture = page.find("#picture")
+    middle = (picture.rect["width"] // 2, picture.rect["height"] // 2)
+    page.unfold("Camera")
+    azimuth = page.field("camera.azimuth")
+    page.drag(picture, middle, (100, 20))
+    page.wait("the azimuth changes", lambda: page.field("camera.azimuth") != azimuth)
+    turned = page.change("turning", before)
+    pan = page.field("camera.pan")
+    page.drag(picture, middle, (50, 0), [Keys.SHIFT])
+    page.wait("the pan changes", lambda: page.field("camera.pan") != pan)
+    page.change("panning", turned)
+    page.keys("1")
+    page.wait("key 1 looks at the front", lambda: page.field("camera.azimuth") == "0")
+    page.keys("w")
+    page.wait("flying places the eye", lambda: page.find('[data-path="camera.eye"]').is_displayed())
+    page.shot("flown")
+    page.keys("r")
+    page.wait("R goes back", lambda: page.find('[data-path="camera.azimuth"]').is_displayed()
+              and page.field("camera.azimuth") == azimuth)
+    page.wait("the first picture again", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
+
+
+def zoom(page):
+    before = page.picture_at_rest()
+    page.driver.execute_script(
+        "document.getElementById('picture').dispatchEvent(new WheelEvent('wheel', {deltaY: -200, cancelable: true,"
+        " clientX: 200, clientY: 200}))")
+    page.change("the wheel", before)
+    page.keys("r")
+    page.wait("R zooms back", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
+
+
+def clip(page):
+    before = page.picture_at_rest()
+    page.unfold("Clipping")
+    page.driver.find_element(By.XPATH, "//label[text()='clip box']/..//input").click()
+    start = page.labelled("x from")
+    page.wait("the box's faces appear", start.is_displayed)
+    end = float(page.labelled("x to").get_attribute("value"))
+    page.driver.execute_script(TYPE, start, str(end / 2))
+    page.change("the clip box", before)
+    page.shot("clipped")
+    page.find("#undo").click()
+    page.find("#undo").click()
+    page.wait("undo takes the box away", lambda: not start.is_displayed())
+    page.wait("the whole again", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
+
+
+def light(page):
+    before = page.picture_at_rest()
+    page.unfold("Light")
+    page.press("Add a light")
+    page.wait("a ball appears", lambda: page.driver.find_elements(By.CSS_SELECTOR, ".ball"))
+    lit = page.change("a light", before)
+    ball = page.find(".ball")
+    page.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", ball)
+    page.drag(ball, (52, 52), (-30, 10))
+    page.change("another direction", lit)
+    page.shot("lit")
+    page.press("Remove light")
+    page.wait("no ball is left", lambda: not page.driver.find_elements(By.CSS_SELECTOR, ".ball"))
+
+
+def probe(page):
+    ActionChains(page.driver).move_to_element(page.find("#picture")).perform()
+    page.wait("the pointer's value", lambda: page.find("#probe").text.startswith(("value", "nothing")))
+
+
+def pause(page):
+    page.keys(" ")
+    page.wait("paused", lambda: page.find("#pause").text == "Go on")
+    page.keys(" ")
+    page.wait("going on", lambda: page.find("#pause").text == "Pause")
+
+
+def save(page, folder):
+    page.unfold("Save and share")
+    for button, name in (("Save picture", "picture.png"), ("Save scene", "scene.json")):
+        page.press(button)
+        page.wait(f"{name} is saved", lambda: any(
+            line.text.startswith("Saved") and name in line.text
+            for line in page.driver.find_elements(By.CSS_SELECTOR, ".notice")))
+        if folder:
+            path = os.path.join(folder, name)
+            assert os.path.isfile(path) and os.path.getsize(path) > 0, f"{path} is not there"
+
+
+def refuse(page):
+    """An edit that the server refuses is said in one line, and the page shows again what the server has."""
+    page.unfold("Sampling")
+    spacing = page.field("sampling.spacing")
+    page.driver.execute_script(TYPE, page.find('[data-path="sampling.spacing"] input.number'), "-1")
+    page.wait("an error's line", lambda: page.driver.find_elements(By.CSS_SELECTOR, ".notice.error"))
+    page.find("#picture").click()
+    page.wait("the value before", lambda: page.field("sampling.spacing") == spacing)
+    page.find(".notice.error button").click()
+
+
+def help_list(page):
+    page.keys("?")
+    page.wait("the list of keys", lambda: page.find("dialog.help").is_displayed())
+    page.shot("keys")
+    ActionChains(page.driver).send_keys(Keys.ESCAPE).perform()
+    page.wait("it closes", lambda: not page.find("dialog.help").is_displayed())
+
+
+def narrow(page):
+    """The page fits a small window and a phone: nothing has to be scrolled sideways."""
+    for width, height in ((1024, 640), (500, 900)):
+        page.driver.set_window_size(width, height)
+        page.wait("the picture takes the window's size", lambda: page.find("#picture").rect["width"] <= width)
+        page.picture_at_rest()
+        assert page.driver.execute_script("return document.documentElement.scrollWidth <= innerWidth"), f"{width} x {height}"
+        page.shot(f"{width}x{height}")
+
+
+def no_console_errors(page):
+    # A refused edit is no error of the page and is not in the console.
+    errors = [entry["message"] for entry in page.driver.get_log("browser") if entry["level"] == "SEVERE"]
+    assert not errors, errors
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("address")
+    parser.add_argument("--folder")
+    parser.add_argument("--screenshots")
+    arguments = parser.parse_args()
+    try:
+        driver = start_chromium(1280, 800)
+    except WebDriverException as error:
+        print(f"skipped: Chromium does not start: {error.msg.splitlines()[0]}")
+        return SKIPPED
+    steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, light, probe, pause,
+             lambda page: save(page, arguments.folder), refuse, help_list, narrow, no_console_errors]
+    try:
+        page = Page(driver, arguments.address, arguments.screenshots)
+        for step in steps:
+            name = "save" if step.__name__ == "<lambda>" else step.__name__
+            began = time.monotonic()
+            try:
+                step(page)
+            except (AssertionError, WebDriverException) as error:
+                page.shot("failed")
+                print(f"failed: {name}: {str(error).splitlines()[0]}")
+                return 1
+            print(f"passed: {name} ({time.monotonic() - began:.1f} s)", flush=True)
+    finally:
+        driver.quit()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

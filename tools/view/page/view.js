@@ -1,0 +1,111 @@
+// The page of `umbrick view`: connects what the server says with what is shown, and what is done with what is sent.
+// SPDX-License-Identifier: Apache-2.0
+import { Connection } from "./connection.js";
+import { EditPacer } from "./edit_pacer.js";
+import { helpDialog } from "./help_dialog.js";
+import { Keys } from "./keys.js";
+import { Notices } from "./notices.js";
+import { drawScaleBar, drawTriad } from "./overlay.js";
+import { buildPanels } from "./panels.js";
+import { Picture } from "./picture.js";
+import { PictureInput } from "./picture_input.js";
+import { Session } from "./session.js";
+import { probeWords, statusWords } from "./words.js";
+
+const at = (id) => document.getElementById(id);
+const notices = new Notices(at("notices"));
+const problem = (text) => notices.error(text);
+
+const send = (message) => connection.send(message);
+const pacer = new EditPacer(send, (step) => requestAnimationFrame(step), () => performance.now());
+const session = new Session(send, pacer);
+const picture = new Picture(at("stage"), at("picture"), session, problem);
+new PictureInput(picture, session);
+
+const help = helpDialog();
+document.body.append(help);
+let paused = false, panels = null;
+const actions = {
+  undo: () => session.command({ type: "undo" }),
+  redo: () => session.command({ type: "redo" }),
+  reset: () => session.command({ type: "reset" }),
+  pause: () => session.command({ type: paused ? "resume" : "pause" }),
+  help: () => (help.open ? help.close() : help.showModal()),
+};
+const keys = new Keys(session, actions);
+for (const [name, action] of Object.entries(actions)) at(name).addEventListener("click", action);
+at("turntable").addEventListener("click", () => keys.turn(!keys.turning));
+session.on("turntable", (on) => at("turntable").setAttribute("aria-pressed", on));
+
+let greeting = "";
+session.on("hello", (hello) => {
+  const { volume, version } = hello;
+  // After a lost connection the same server greets in the same words. Another volume needs another page.
+  const words = JSON.stringify(hello);
+  if (greeting && words !== greeting) location.reload();
+  greeting = words;
+  document.title = `${volume.file.split("/").at(-1)} - Umbrick`;
+  at("program").title = `Umbrick ${version}`;
+});
+session.on("scene", ({ canUndo, canRedo }) => {
+  at("undo").disabled = !canUndo;
+  at("redo").disabled = !canRedo;
+});
+session.on("change", () => {
+  if (!session.hello) return;
+  if (!panels) {
+    panels = buildPanels(at("panel"), session, picture, notices);
+    session.emit("change");
+    picture.askForWindowSize();
+    return;
+  }
+  panels.update();
+  const view = session.view();
+  drawTriad(at("axes"), view.axes);
+  drawScaleBar(at("scale"), view, at("picture").clientHeight);
+});
+session.on("status", (status) => {
+  paused = status.paused;
+  at("pause").textContent = paused ? "Go on" : "Pause";
+  at("status").textContent = statusWords(status);
+  Object.assign(at("status").dataset, { draft: status.draft, done: status.done, samples: status.samples });
+});
+session.on("probe", (probe) => (at("probe").textContent = probeWords(probe, session.hello?.volume.unit)));
+session.on("probeLeft", () => (at("probe").textContent = ""));
+session.on("saved", ({ path }) => notices.note(`Saved ${path}`));
+session.on("note", ({ text }) => notices.note(text));
+session.on("error", ({ message }) => problem(message));
+
+let countdown = 0;
+const showLost = (seconds) => {
+  clearInterval(countdown);
+  const until = performance.now() + 1000 * seconds;
+  const say = () => {
+    const left = Math.max(0, Math.ceil((until - performance.now()) / 1000));
+    at("lost-text").textContent = `The connection to the server is lost. Next try in ${left} s.`;
+  };
+  say();
+  countdown = setInterval(say, 500);
+  at("lost").hidden = false;
+};
+
+const connection = new Connection({
+  message: (message) => session.receive(message),
+  frame: async (frame) => {
+    await picture.show(frame);
+    send({ type: "shown", frame: frame.header.frame });
+    pacer.pictureShown();
+  },
+  opened: () => {
+    clearInterval(countdown);
+    at("lost").hidden = true;
+    pacer.reset();
+    picture.forget();
+  },
+  lost: (seconds) => {
+    keys.turn(false);
+    showLost(seconds);
+  },
+  problem,
+});
+at("retry").addEventListener("click", () => connection.retryNow());
