@@ -28,5 +28,6 @@ Command addReference(CLI::App& app);
 Command addRender(CLI::App& app);
 Command addStudy(CLI::App& app);
 Command addTf(CLI::App& app);
+Command addView(CLI::App& app);
 
 }  // namespace umbrick::tools

@@ -62,7 +62,7 @@ int runProgram(int argc, char** argv) {
       [](const CLI::App*, const CLI::Error& error) { return std::string("umbrick: ") + error.what() + "\n"; });
   const std::vector<Command> commands{
       addConvert(app), addInfo(app),  addRender(app), addReference(app),
-      addCompare(app), addCheck(app), addStudy(app),  addTf(app),
+      addCompare(app), addCheck(app), addStudy(app),  addTf(app),   addView(app),
   };
   try {
     std::vector<std::string> arguments(argv + 1, argv + argc);

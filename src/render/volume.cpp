@@ -63,9 +63,14 @@ TransferFunction inUnit(const TransferFunction& transfer, std::string_view unit)
 ResolvedScene Volume::resolve(const Scene& scene) const {
   Scene complete = scene;
   complete.transfer = scene.transfer ? fitted(*scene.transfer, *this) : suggestTransfer(*this).transfer;
+  return resolve(complete, scene.orbit ? visibleBounds(*complete.transfer) : worldBounds_);
+}
+
+ResolvedScene Volume::resolve(const Scene& scene, const Box& seen) const {
+  Scene complete = scene;
+  if (!scene.transfer) complete.transfer = suggestTransfer(*this).transfer;
   if (scene.orbit) complete.orbit = settledOrbit(*scene.orbit, orientation_);
-  const Box bounds = scene.orbit ? visibleBounds(*complete.transfer) : worldBounds_;
-  ResolvedScene resolved = resolveScene(complete, bounds, indexToWorld_);
+  ResolvedScene resolved = resolveScene(complete, seen, indexToWorld_);
   resolved.bricks.interior = brickInterior(resolved, indexToWorld_, worldBounds_);
   return resolved;
 }

@@ -57,6 +57,9 @@ class Volume {
   /// transfer function shows, the edge of its bricks.
   /// @throw InvalidArgument  as resolveScene and brickInterior
   ResolvedScene resolve(const Scene& scene) const;
+  /// The same, with an orbit around a box, so that the camera stays where the transfer function changes.
+  /// @param seen  world units, see visibleBounds()
+  ResolvedScene resolve(const Scene& scene, const Box& seen) const;
 
   /// Cuts the bricks that a scene needs, see requiredBricks(). @throw InvalidArgument, IoError  as brickGrid
   std::unique_ptr<Bricks> cut(const ResolvedScene& scene) const;

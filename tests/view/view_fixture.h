@@ -1,0 +1,81 @@
+// A small volume and a page of it, without a browser.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/test_grids.h"
+#include "view/viewer.h"
+
+namespace umbrick::view {
+
+inline std::shared_ptr<const Volume> testVolume() {
+  return std::make_shared<const Volume>(makeDense({20, 18, 16}, {3, -7, 1}), "dense");
+}
+
+inline Scene testScene() {
+  Scene scene;
+  scene.transfer = TransferFunction({{0.3, {{0.9, 0.5, 0.2}, 0}}, {1, {{0.2, 0.6, 0.9}, 0.4}}});
+  scene.orbit = Orbit{0.4, 0.3};
+  scene.camera.width = 40;
+  scene.camera.height = 30;
+  scene.model = Model::cone;
+  scene.method = Method::lightVolume;
+  scene.occlusion.ordinates.directions = 6;
+  return scene;
+}
+
+/// A page that notes down what it is sent.
+class NotingClient final : public ViewClient {
+ public:
+  void text(const std::string& message) override {
+    const std::lock_guard lock(mutex_);
+    texts_.push_back(nlohmann::ordered_json::parse(message));
+    changed_.notify_all();
+  }
+  void frame(const std::shared_ptr<const ViewFrame>& frame) override {
+    const std::lock_guard lock(mutex_);
+    frames_.push_back(frame);
+    changed_.notify_all();
+  }
+  /// Waits for a message that a test accepts and takes it and all before it away; null where none comes.
+  nlohmann::ordered_json take(const std::function<bool(const nlohmann::ordered_json&)>& accepts) {
+    std::unique_lock lock(mutex_);
+    nlohmann::ordered_json found;
+    changed_.wait_for(lock, std::chrono::minutes(2), [&] {
+      while (!texts_.empty()) {
+        nlohmann::ordered_json text = std::move(texts_.front());
+        texts_.erase(texts_.begin());
+        if (!accepts(text)) continue;
+        found = std::move(text);
+        return true;
+      }
+      return false;
+    });
+    return found;
+  }
+  nlohmann::ordered_json take(const std::string& type) {
+    return take([&](const auto& text) { return text["type"] == type; });
+  }
+  /// Waits until the picture is done.
+  nlohmann::ordered_json takeDone() {
+    return take([](const auto& text) { return text["type"] == "status" && text["done"] == true; });
+  }
+  std::vector<std::shared_ptr<const ViewFrame>> frames() {
+    const std::lock_guard lock(mutex_);
+    return frames_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<nlohmann::ordered_json> texts_;
+  std::vector<std::shared_ptr<const ViewFrame>> frames_;
+};
+
+}  // namespace umbrick::view

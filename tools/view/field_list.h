@@ -1,0 +1,12 @@
+// The table of scene fields, as a page reads it.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json.hpp>
+
+namespace umbrick::view {
+
+/// Returns a list of {"path", "group", "help", "kind", "choices", "low", "high", "unit", "default"}. A kind is number,
+/// integer, flag, choice, vector (of two or three numbers), colour (that may be null) or size.
+nlohmann::ordered_json fieldList();
+
+}  // namespace umbrick::view

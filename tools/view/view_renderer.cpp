@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view/view_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "umbrick/atlas/resident_volume.h"
+#include "umbrick/core/camera.h"
+#include "umbrick/core/error.h"
+#include "umbrick/core/short_number.h"
+#include "umbrick/core/stopwatch.h"
+#include "umbrick/scene/capabilities.h"
+#include "umbrick/shade/prepare.h"
+#include "view/frame_encoder.h"
+
+namespace umbrick::view {
+namespace {
+
+constexpr int kDraftQuality = 80;    // of JPEG
+constexpr double kLeastScale = 0.2;  // of the edges of a draft
+
+// Returns the scene as a draft shows it: smaller, and with fewer directions of light.
+ResolvedScene draftOf(const ResolvedScene& scene, double scale, int directions) {
+  ResolvedScene draft = scene;
+  draft.camera.width = std::max(1, static_cast<int>(std::lround(scene.camera.width * scale)));
+  draft.camera.height = std::max(1, static_cast<int>(std::lround(scene.camera.height * scale)));
+  draft.sampling.pixelSamples = 1;
+  if (directions > 0) draft.occlusion.ordinates.directions = std::min(directions, draft.occlusion.ordinates.directions);
+  return draft;
+}
+
+// Tells whether pictures of a scene can be averaged, see renderProgressive().
+bool canAverage(const ResolvedScene& scene) {
+  const std::optional<Method> method = occlusionMethod(scene);
+  return !method || (traitsOf(scene.model).directions && traitsOf(*method).directions);
+}
+
+// What a renderer and its bricks are made for: another one needs them anew.
+struct MadeFor {
+  Technique technique;
+  std::optional<Method> method;
+  Model model;
+  bool gradients;
+  BrickSettings bricks;
+  bool operator==(const MadeFor&) const = default;
+};
+MadeFor madeFor(const ResolvedScene& scene) {
+  return {scene.technique, occlusionMethod(scene), scene.model, scene.transfer.is2d(), scene.bricks};
+}
+
+}  // namespace
+
+// What draws: an engine with the volume cut for it.
+struct ViewRenderer::Drawer {
+  MadeFor key;
+  Engine engine;
+  std::unique_ptr<Bricks> bricks;
+  std::unique_ptr<ResidentVolume> resident;
+  std::unique_ptr<Renderer> renderer;
+};
+
+ViewRenderer::ViewRenderer(std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals,
+                           ViewSink sink)
+    : volume_(std::move(volume)), engine_(engine), goals_(goals), sink_(std::move(sink)), thread_([this] { run(); }) {}
+
+ViewRenderer::~ViewRenderer() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void ViewRenderer::show(const ResolvedScene& scene, bool moving) {
+  const std::lock_guard lock(mutex_);
+  scene_ = scene;
+  moving_ = moving;
+  ++wanted_;
+  changed_.notify_all();
+}
+
+void ViewRenderer::rest() {
+  const std::lock_guard lock(mutex_);
+  moving_ = false;
+  changed_.notify_all();
+}
+
+void ViewRenderer::pause(bool paused) {
+  const std::lock_guard lock(mutex_);
+  paused_ = paused;
+  tasks_.emplace_back([this, paused] {
+    lastStatus_.paused = paused;
+    tell(lastStatus_);
+  });
+  changed_.notify_all();
+}
+
+void ViewRenderer::repeat() {
+  const std::lock_guard lock(mutex_);
+  tasks_.emplace_back([this] {
+    if (!lastFrame_) return;
+    sink_.frame(lastFrame_);
+    sink_.status(lastStatus_);
+  });
+  changed_.notify_all();
+}
+
+void ViewRenderer::probe(int x, int y, std::function<void(const ViewProbe&)> done) {
+  const std::lock_guard lock(mutex_);
+  tasks_.emplace_back([this, x, y, done = std::move(done)] { answer(x, y, done); });
+  changed_.notify_all();
+}
+
+void ViewRenderer::drawWhole(const ResolvedScene& scene, std::function<void(const Picture&, const std::string&)> done,
+                             std::function<void(const std::string&)> failed) {
+  const std::lock_guard lock(mutex_);
+  tasks_.emplace_back([this, scene, done = std::move(done), failed = std::move(failed)] {
+    try {
+      interrupt_ = [this] {
+        if (stop_) throw Obsolete{};
+      };
+      Picture picture = rendererFor(scene).render();
+      done(picture, drawer_->engine.description);
+    } catch (const Error& error) {
+      failed(error.what());
+    }
+  });
+  changed_.notify_all();
+}
+
+void ViewRenderer::run() {
+  std::unique_lock lock(mutex_);
+  while (!stop_) {
+    const std::uint64_t version = wanted_;
+    std::function<void()> work;
+    if (!tasks_.empty()) {
+      work = std::move(tasks_.front());
+      tasks_.pop_front();
+    } else if (scene_ && drawn_ != version) {
+      if (drawn_ == done_) begun_ = std::chrono::steady_clock::now();
+      work = [this, scene = *scene_, version] {
+        drawn_ = version;
+        draft(scene);
+      };
+    } else if (scene_ && done_ != version && !moving_ && !paused_) {
+      work = [this, scene = *scene_, version] { refine(scene, version); };
+    } else {
+      changed_.wait(lock);
+      continue;
+    }
+    lock.unlock();
+    try {
+      work();
+    } catch (const Obsolete&) {
+      // Another picture is wanted by now.
+    } catch (const std::exception& error) {
+      done_ = version;  // the same picture would fail again
+      sink_.error(error.what());
+    }
+    lock.lock();
+  }
+  lock.unlock();
+  drawer_.reset();  // contexts end where they are current
+}
+
+Renderer& ViewRenderer::rendererFor(const ResolvedScene& scene) {
+  const auto make = [&] {
+    drawer_.reset();
+    auto made = std::make_unique<Drawer>(Drawer{madeFor(scene), chooseEngine(scene, engine_), {}, {}, {}});
+    RenderOptions options;
+    options.visibilityAndDepth = true;
+    options.countFragments = false;
+    options.progress = [this](double) {
+      if (interrupt_) interrupt_();
+    };
+    ResolvedScene decided = scene;
+    decided.technique = made->engine.technique;
+    if (made->engine.context) {
+      made->bricks = volume_->cutForRefinement(decided);
+      made->resident =
+          std::make_unique<ResidentVolume>(*made->engine.context, *made->bricks, atlasOptions(decided, *made->bricks));
+      made->renderer = makeRenderer(*made->resident, decided, options);
+    } else {
+      made->bricks = volume_->cutForCpu(decided);
+      made->renderer = makeRenderer(*made->bricks, decided, options);
+    }
+    drawer_ = std::move(made);
+    sink_.engine(drawer_->engine.description + ", " + techniqueName(drawer_->engine.technique));
+  };
+  if (!drawer_ || drawer_->key != madeFor(scene)) make();
+  ResolvedScene decided = scene;
+  decided.technique = drawer_->engine.technique;
+  if (!drawer_->renderer->sampling(decided)) make();  // slabs that reach beyond the apron need other bricks
+  drawer_->renderer->setScene(decided);
+  return *drawer_->renderer;
+}
+
+void ViewRenderer::draft(const ResolvedScene& scene) {
+  const std::uint64_t version = drawn_;
+  const Stopwatch watch;
+  // A draft that takes far too long gives way to the next one.
+  interrupt_ = [this, &watch, version] {
+    if (stop_ || (wanted_ != version && watch.elapsedMs() > 4 * goals_.draftMs)) throw Obsolete{};
+  };
+  const ResolvedScene drafted = draftOf(scene, draftScale_, draftDirections_);
+  Renderer& renderer = rendererFor(drafted);
+  const Stopwatch drawing;
+  try {
+    last_ = renderer.render();
+  } catch (const Obsolete&) {
+    draftScale_ = std::max(kLeastScale, draftScale_ / 2);
+    if (drafted.occlusion.ordinates.directions > 4) draftDirections_ = drafted.occlusion.ordinates.directions / 2;
+    throw;
+  }
+  lastScene_ = drafted;
+  const double ms = drawing.elapsedMs(), light = last_.stats.lightMs, picture = std::max(1.0, ms - light);
+  // Half of the time at most is for light. The time of a picture goes with its pixels; it is followed with some delay,
+  // so that one slow picture does not make all coarse.
+  if (light > 0.6 * goals_.draftMs && drafted.occlusion.ordinates.directions > 4)
+    draftDirections_ = std::max(4, drafted.occlusion.ordinates.directions / 2);
+  else if (light > 0 && light < 0.2 * goals_.draftMs && draftDirections_ > 0)
+    draftDirections_ = 2 * draftDirections_;
+  const double left = std::max(0.3 * goals_.draftMs, goals_.draftMs - light);
+  draftScale_ = std::clamp(draftScale_ * std::pow(left / picture, 0.35), kLeastScale, 1.0);
+  send(last_, true, 0);
+  ViewStatus status;
+  status.draft = true;
+  status.ms = ms;
+  status.text = "draft";
+  tell(status);
+}
+
+void ViewRenderer::refine(const ResolvedScene& scene, std::uint64_t version) {
+  interrupt_ = [this, version] {
+    if (obsolete(version)) throw Obsolete{};
+  };
+  const auto since = [this] {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun_).count();
+  };
+  Renderer& renderer = rendererFor(scene);
+  last_ = renderer.render();
+  lastScene_ = scene;
+  send(last_, false, 1);
+  ViewStatus status;
+  status.samples = scene.sampling.pixelSamples;
+  status.ms = since();
+  status.text = "1 sample";
+  tell(status);
+  if (!canAverage(scene)) {
+    status.done = true;
+    status.text = "done";
+    done_ = version;
+    tell(status);
+    return;
+  }
+  bool paused = false;
+  renderProgressive(renderer, {.passes = goals_.mostSamples}, [&](const ProgressivePicture& picture) {
+    if (obsolete(version)) throw Obsolete{};
+    {
+      const std::lock_guard lock(mutex_);
+      paused = paused_;
+    }
+    const double samples = picture.error.statistical, total = picture.error.total();
+    // More samples do not help where what is left is not theirs.
+    const bool enough =
+        picture.passes >= kStreams &&
+        (total <= goals_.targetError || samples <= goals_.targetError / 2 || samples <= picture.error.systematic / 4);
+    const bool done = enough || picture.passes >= goals_.mostSamples;
+    const bool power = (picture.passes & (picture.passes - 1)) == 0;
+    last_ = picture.picture;
+    if ((power && picture.passes > 1) || done || paused) send(last_, false, picture.passes);
+    status.samples = picture.passes;
+    if (std::isfinite(total)) status.error = picture.error;
+    status.ms = since();
+    status.done = done;
+    const std::string error = std::isfinite(total) ? "error " + shortNumber(total, 2) : "";
+    status.text = done ? "done" + (error.empty() ? error : ": " + error)
+                       : std::to_string(picture.passes) + " samples" + (error.empty() ? error : ", " + error);
+    if (done && total > goals_.targetError && picture.error.systematic > samples)
+      status.text += " (a smaller spacing lowers it)";
+    if (done) done_ = version;
+    tell(status);
+    return !done && !paused;
+  });
+}
+
+void ViewRenderer::send(const Picture& picture, bool draft, int samples) {
+  auto frame = std::make_shared<ViewFrame>();
+  frame->width = picture.colour.width;
+  frame->height = picture.colour.height;
+  frame->draft = draft;
+  frame->samples = samples;
+  frame->mime = draft ? "image/jpeg" : "image/png";
+  frame->bytes = draft ? encodeJpeg(picture.colour, kDraftQuality) : encodePng(picture.colour);
+  lastFrame_ = frame;
+  sink_.frame(lastFrame_);
+}
+
+void ViewRenderer::tell(ViewStatus status) {
+  {
+    const std::lock_guard lock(mutex_);
+    status.paused = paused_;
+  }
+  lastStatus_ = status;
+  sink_.status(lastStatus_);
+}
+
+void ViewRenderer::answer(int x, int y, const std::function<void(const ViewProbe&)>& done) {
+  ViewProbe probe{x, y, {}, 0};
+  glm::dvec2 size(0);
+  {
+    const std::lock_guard lock(mutex_);
+    if (scene_) size = {scene_->camera.width, scene_->camera.height};
+  }
+  if (lastScene_ && !last_.depth.pixels.empty() && size.x > 0) {
+    const Camera& camera = lastScene_->camera;
+    // The present picture may be a draft of another size.
+    const glm::dvec2 place((x + 0.5) / size.x, 1 - (y + 0.5) / size.y);
+    const int px = static_cast<int>(std::floor(place.x * camera.width));
+    const int py = static_cast<int>(std::floor(place.y * camera.height));
+    if (px >= 0 && py >= 0 && px < last_.depth.width && py < last_.depth.height) {
+      const double depth = *last_.depth.at(px, py);
+      if (std::isfinite(depth)) {
+        const CameraFrame frame = cameraFrame(camera);
+        const glm::dvec2 p = screenPlane(camera).halfExtent * (2.0 * place - 1.0);
+        const double scale = camera.projection == Projection::perspective ? depth : 1;
+        probe.depth = depth;
+        probe.world = camera.eye + depth * frame.forward + scale * (p.x * frame.right + p.y * frame.up);
+      }
+    }
+  }
+  done(probe);
+}
+
+}  // namespace umbrick::view

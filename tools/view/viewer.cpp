@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view/viewer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "umbrick/core/error.h"
+#include "umbrick/core/pending_file.h"
+#include "umbrick/core/printable.h"
+#include "umbrick/grid/value_survey.h"
+#include "umbrick/image/exr.h"
+#include "umbrick/image/png.h"
+#include "umbrick/render/suggest_transfer.h"
+#include "view/field_list.h"
+#include "view/sample_grid.h"
+
+namespace umbrick::view {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr int kDeepest = 32;  // levels of objects and lists in a message
+
+Json vectorOf(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+Json numberOrNull(double number) { return std::isfinite(number) ? Json(number) : Json(); }
+
+// A line on what went wrong, for one page.
+std::string errorText(const std::string& message) { return Json{{"type", "error"}, {"message", message}}.dump(); }
+
+Json aboutVolume(const Volume& volume) {
+  const ValueSurvey survey = surveyValues(volume.grid());
+  const IndexBox box = volume.grid().activeBox();
+  const Box bounds = volume.worldBounds();
+  return {{"file", asUtf8(volume.source().file.filename().string())},
+          {"grid", asUtf8(volume.source().grid)},
+          {"unit", asUtf8(volume.valueUnit())},
+          {"dims", {box.max.x - box.min.x + 1, box.max.y - box.min.y + 1, box.max.z - box.min.z + 1}},
+          {"voxels", survey.voxels},
+          {"min", survey.value.min},
+          {"max", survey.value.max},
+          {"low", survey.low},
+          {"high", survey.high},
+          {"histogram", survey.histogram},
+          {"bounds", {vectorOf(bounds.min), vectorOf(bounds.max)}}};
+}
+
+template <class Value>
+Value field(const Json& message, const char* name) {
+  try {
+    return message.at(name).get<Value>();
+  } catch (const nlohmann::json::exception&) {
+    throw InvalidArgument(std::string("message: ") + name + " is missing or of another kind");
+  }
+}
+
+}  // namespace
+
+Json parseMessage(std::string_view text) {
+  if (text.size() > kMostMessageBytes)
+    throw InvalidArgument("message: longer than " + std::to_string(kMostMessageBytes));
+  const auto shallow = [](int depth, nlohmann::detail::parse_event_t, const Json&) {
+    if (depth > kDeepest) throw InvalidArgument("message: nested more than " + std::to_string(kDeepest) + " deep");
+    return true;
+  };
+  Json message;
+  try {
+    message = Json::parse(text, shallow);
+  } catch (const nlohmann::json::exception&) {
+    throw InvalidArgument("message: is no JSON");
+  }
+  if (!message.is_object() || !message.contains("type") || !message["type"].is_string())
+    throw InvalidArgument("message: has no type");
+  return message;
+}
+
+Viewer::Viewer(Scene scene, std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals,
+               fs::path folder)
+    : state_(std::move(scene), volume), folder_(std::move(folder)), about_(aboutVolume(*volume)) {
+  renderer_ = std::make_unique<ViewRenderer>(std::move(volume), engine, goals, sink());
+}
+
+Viewer::~Viewer() { renderer_.reset(); }
+
+ViewSink Viewer::sink() {
+  const auto each = [this](const auto& call) {
+    std::vector<std::shared_ptr<ViewClient>> clients;
+    {
+      const std::lock_guard lock(mutex_);
+      clients = clients_;
+    }
+    for (const auto& client : clients) call(*client);
+  };
+  ViewSink sink;
+  sink.frame = [each](const std::shared_ptr<const ViewFrame>& frame) {
+    each([&](ViewClient& client) { client.frame(frame); });
+  };
+  sink.status = [each](const ViewStatus& status) {
+    const bool known = status.error.has_value();
+    const std::string text = Json{
+        {"type", "status"},
+        {"samples", status.samples},
+        {"standardError", known ? numberOrNull(status.error->statistical) : Json()},
+        {"systematicError", known ? numberOrNull(status.error->systematic) : Json()},
+        {"error", known ? numberOrNull(status.error->total()) : Json()},
+        {"ms", status.ms},
+        {"draft", status.draft},
+        {"done", status.done},
+        {"paused", status.paused},
+        {"text", status.text}}.dump();
+    each([&](ViewClient& client) { client.text(text); });
+  };
+  sink.error = [each](const std::string& line) {
+    const std::string text = errorText(asUtf8(line));
+    each([&](ViewClient& client) { client.text(text); });
+  };
+  sink.engine = [this, each](const std::string& engine) {
+    {
+      const std::lock_guard lock(mutex_);
+      engine_ = engine;
+    }
+    const std::string text = Json{{"type", "engine"}, {"text", engine}}.dump();
+    each([&](ViewClient& client) { client.text(text); });
+  };
+  return sink;
+}
+
+Json Viewer::hello() const {
+  return {{"type", "hello"},  {"version", UMBRICK_VERSION},   {"engine", engine_},
+          {"volume", about_}, {"presets", transferPresets()}, {"fields", fieldList()}};
+}
+
+// A scene of the state, and how to make its picture without this program's window.
+Json Viewer::sceneMessage() const {
+  const Camera& camera = state_.resolved().camera;
+  const std::string command =
+      "cat > scene.json <<'END'\n" + printScene(state_.placed()) + "\nEND\numbrick render scene.json -o picture.png";
+  return {{"type", "scene"},
+          {"scene", state_.json()},
+          {"canUndo", state_.canUndo()},
+          {"canRedo", state_.canRedo()},
+          {"command", command},
+          {"camera",
+           {{"eye", vectorOf(camera.eye)},
+            {"lookAt", vectorOf(camera.lookAt)},
+            {"up", vectorOf(camera.up)},
+            {"viewHeight", camera.viewHeight}}}};
+}
+
+void Viewer::toAll(const Json& message) {
+  const std::string text = message.dump();
+  for (const auto& client : clients_) client->text(text);
+}
+
+void Viewer::join(const std::shared_ptr<ViewClient>& client) {
+  const std::lock_guard lock(mutex_);
+  const bool first = clients_.empty();
+  clients_.push_back(client);
+  client->text(hello().dump());
+  client->text(sceneMessage().dump());
+  if (first) {
+    renderer_->pause(false);
+    renderer_->show(state_.resolved(), false);
+  }
+  renderer_->repeat();
+}
+
+void Viewer::leave(const ViewClient& client) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(clients_, [&](const auto& one) { return one.get() == &client; });
+  // Nobody looks: what is drawn now would be for nothing.
+  renderer_->pause(clients_.empty());
+}
+
+void Viewer::show(bool moving) {
+  toAll(sceneMessage());
+  renderer_->show(state_.resolved(), moving);
+}
+
+void Viewer::message(std::string_view text, const std::shared_ptr<ViewClient>& from) {
+  try {
+    const Json message = parseMessage(text);
+    const auto type = message["type"].get<std::string>();
+    const std::lock_guard lock(mutex_);
+    if (type == "edit") {
+      const auto step = message.contains("step") ? field<std::string>(message, "step") : std::string();
+      const bool moving = message.contains("moving") && field<bool>(message, "moving");
+      state_.edit(field<Json>(message, "patch"), step);
+      show(moving);
+    } else if (type == "undo") {
+      state_.undo();
+      show(false);
+    } else if (type == "redo") {
+      state_.redo();
+      show(false);
+    } else if (type == "reset") {
+      state_.reset();
+      show(false);
+    } else if (type == "rest") {
+      renderer_->rest();
+    } else if (type == "pause" || type == "resume") {
+      renderer_->pause(type == "pause");
+    } else if (type == "probe") {
+      probe(message, from);
+    } else if (type == "save") {
+      save(message, from);
+    } else {
+      throw InvalidArgument("message: no type '" + printable(type.substr(0, 40)) + "'");
+    }
+  } catch (const Error& error) {
+    from->text(errorText(asUtf8(error.what())));
+  }
+}
+
+Json Viewer::probed(const ViewProbe& probe) const {
+  const auto value = probe.world ? sampleAt(state_.volume().grid(), *probe.world) : std::nullopt;
+  return {{"type", "probe"},
+          {"x", probe.x},
+          {"y", probe.y},
+          {"value", value ? numberOrNull(*value) : Json()},
+          {"world", probe.world ? vectorOf(*probe.world) : Json()},
+          {"depth", probe.world ? Json(probe.depth) : Json()}};
+}
+
+void Viewer::probe(const Json& message, const std::shared_ptr<ViewClient>& from) {
+  const std::weak_ptr<ViewClient> waiting = from;
+  const int x = field<int>(message, "x"), y = field<int>(message, "y");
+  renderer_->probe(x, y, [this, waiting](const ViewProbe& probe) {
+    if (const auto client = waiting.lock()) client->text(probed(probe).dump());
+  });
+}
+
+// A page names a file in the folder and nothing else: no other folder, nothing hidden, nothing that is there already.
+fs::path Viewer::place(const std::string& name, const std::vector<std::string>& endings) const {
+  constexpr std::size_t kLongest = 100;
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.' || c == ' '; };
+  const std::string ending = fs::path(name).extension().string();
+  if (name.empty() || name.size() > kLongest || name.front() == '.' ||
+      !std::all_of(name.begin(), name.end(), allowed) ||
+      std::find(endings.begin(), endings.end(), ending) == endings.end()) {
+    std::string list;
+    for (const std::string& one : endings) list += (list.empty() ? "" : " or ") + one;
+    throw InvalidArgument("save: '" + printable(name.substr(0, kLongest)) +
+                          "' is no name of letters, digits, -, _ and . that ends in " + list);
+  }
+  const fs::path path = folder_ / name;
+  if (fs::symlink_status(path).type() != fs::file_type::not_found)
+    throw InvalidArgument("save: " + name + " is there already");
+  return path;
+}
+
+void Viewer::save(const Json& message, const std::shared_ptr<ViewClient>& from) {
+  const auto what = field<std::string>(message, "what"), name = field<std::string>(message, "name");
+  const auto saved = [](const fs::path& path) {
+    return Json{{"type", "saved"}, {"path", asUtf8(path.string())}}.dump();
+  };
+  if (what == "scene") {
+    const fs::path path = place(name, {".json"});
+    writeTextFile(path, printScene(state_.placed()) + "\n");
+    from->text(saved(path));
+    return;
+  }
+  if (what != "picture") throw InvalidArgument("save: what is a picture or a scene");
+  const fs::path path = place(name, {".png", ".exr"});
+  Json patch = Json::object();
+  if (message.contains("size")) patch["camera"]["size"] = message["size"];
+  if (message.contains("samples")) patch["sampling"]["pixelSamples"] = message["samples"];
+  // The picture may have another size than the page's.
+  ViewState other(state_.placed(), state_.share());
+  other.edit(patch);
+  const Scene scene = other.scene();
+  const std::weak_ptr<ViewClient> waiting = from;
+  const auto tell = [waiting](const std::string& text) {
+    if (const auto client = waiting.lock()) client->text(text);
+  };
+  renderer_->drawWhole(
+      other.resolved(),
+      [path, scene, tell, saved](const Picture& picture, const std::string& engine) {
+        const std::map<std::string, std::string> metadata{
+            {"umbrick.scene", printScene(scene)}, {"umbrick.renderer", engine}, {"umbrick.version", UMBRICK_VERSION}};
+        if (path.extension() == ".png")
+          writePng(path, picture.colour, {.metadata = metadata});
+        else
+          writeExr(path, {{"", picture.colour}}, {.pixel = ExrPixel::half, .metadata = metadata});
+        tell(saved(path));
+      },
+      [tell](const std::string& line) { tell(errorText(asUtf8(line))); });
+}
+
+}  // namespace umbrick::view

@@ -1,0 +1,77 @@
+// What pages and the program say to each other, without the network: messages of pages change the scene, and pictures
+// and states go to all of them.
+//
+// Messages are JSON texts. From a page:
+//   {"type": "edit", "patch": {...}, "moving": bool, "step": "..."}   see ViewState::edit(); moving: more follows soon
+//   {"type": "rest"}  {"type": "undo"}  {"type": "redo"}  {"type": "reset"}  {"type": "pause"}  {"type": "resume"}
+//   {"type": "shown", "frame": n}                a frame is on the screen: the next one may be sent
+//   {"type": "probe", "x": px, "y": px}          from the upper left of a picture of the scene's size
+//   {"type": "save", "what": "picture" | "scene", "name": "...", "size": [w, h], "samples": n}
+// To pages: hello, scene, status, probe, saved, note, error; and frames, which are binary: four bytes with the length
+// of a JSON text, little-endian, that text, and the bytes of an image.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "view/view_renderer.h"
+#include "view/view_state.h"
+
+namespace umbrick::view {
+
+/// Longest message of a page, bytes. A transfer function of some ten thousand points is shorter.
+inline constexpr std::size_t kMostMessageBytes = 1 << 20;
+
+/// A page that is connected. Its functions may be called by any thread.
+class ViewClient {
+ public:
+  virtual ~ViewClient() = default;
+  virtual void text(const std::string& message) = 0;
+  /// Takes a frame. One that is not sent before the next one comes is dropped.
+  virtual void frame(const std::shared_ptr<const ViewFrame>& frame) = 0;
+};
+
+/// Reads a message of a page. @throw InvalidArgument  no object with a type, or too deeply nested
+nlohmann::ordered_json parseMessage(std::string_view text);
+
+class Viewer {
+ public:
+  /// @param scene   with a transfer function, as openScene() completes it
+  /// @param folder  where pictures and scenes are saved
+  Viewer(Scene scene, std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals,
+         std::filesystem::path folder);
+  ~Viewer();
+
+  void join(const std::shared_ptr<ViewClient>& client);
+  void leave(const ViewClient& client);
+  /// Does what a message asks for. What is wrong with it is said to the page that sent it.
+  void message(std::string_view text, const std::shared_ptr<ViewClient>& from);
+
+ private:
+  using Json = nlohmann::ordered_json;
+  void toAll(const Json& message);
+  Json hello() const;
+  Json sceneMessage() const;
+  void show(bool moving);
+  void probe(const Json& message, const std::shared_ptr<ViewClient>& from);
+  void save(const Json& message, const std::shared_ptr<ViewClient>& from);
+  Json probed(const ViewProbe& probe) const;
+  std::filesystem::path place(const std::string& name, const std::vector<std::string>& endings) const;
+  ViewSink sink();
+
+  mutable std::mutex mutex_;  // of what follows, up to clients_
+  ViewState state_;
+  std::string engine_;
+  std::vector<std::shared_ptr<ViewClient>> clients_;
+  std::filesystem::path folder_;
+  Json about_;  // what hello says of the volume
+  std::unique_ptr<ViewRenderer> renderer_;
+};
+
+}  // namespace umbrick::view
