@@ -174,7 +174,7 @@ def drag_point(page):
     value = page.labelled("value").get_attribute("value")
     sigma_t = page.labelled("sigma_t").get_attribute("value")
     x, y = map(int, plot.get_attribute("data-chosen").split())
-    page.drag(plot, (x, y), (10, 100 if y < plot.rect["height"] / 2 else -100))
+    page.drag(plot, (x, y), (0, 155 - y if y < 130 else 20 - y))  # to the foot of the plot, or to its top
     assert page.labelled("sigma_t").get_attribute("value") != sigma_t, "the point has not moved"
     page.change("a dragged point", before)
     page.shot("dragged")

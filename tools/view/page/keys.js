@@ -1,53 +1,66 @@
 // Keys of the page, in one table that also makes the list of keys.
 // SPDX-License-Identifier: Apache-2.0
-import { cameraBack, flyBy, kAxisViews, orbitBy, orbitTo, toggleProjection, turnBy, widenBy } from "./camera.js";
-import { length, subtract } from "./vector.js";
+import {cameraBack, flyBy, kAxisViews, orbitBy, orbitTo, toggleProjection, turnBy, widenBy} from "./camera.js";
+import {length, subtract} from "./vector.js";
 
-const kTurnPerSecond = 30;  // degrees, of the turntable
+const kTurnPerSecond = 30;   // degrees, of the turntable
 const kFlyPerSecond = 0.25;  // diagonals of the volume
 const kFastFlight = 4;
 const kWiden = 1.1;
 
 const kFlight = {
-  w: [0, 0, 1], s: [0, 0, -1],
-  a: [-1, 0, 0], d: [1, 0, 0],
-  e: [0, 1, 0], q: [0, -1, 0],
+  w: [0, 0, 1],
+  s: [0, 0, -1],
+  a: [-1, 0, 0],
+  d: [1, 0, 0],
+  e: [0, 1, 0],
+  q: [0, -1, 0],
 };
 
 /// What the list of keys says.
 export const kKeyList = [
-  ["Picture", [
-    ["drag", "turn around the volume"],
-    ["Shift + drag, middle drag", "move the picture"],
-    ["wheel", "zoom to the pointer"],
-    ["right drag", "roll around the centre"],
-    ["Alt + drag", "look about from where the eye is"],
-    ["one finger; two fingers", "turn; pinch and move"],
-    ["W A S D, Q E", "fly forward, left, back, right, down and up; with Shift faster"],
-    ["arrow keys", "turn by 5 degrees; with Shift by 1"],
-    [kAxisViews.map((view) => view.key).join(" "), kAxisViews.map((view) => view.name).join(", ")],
-    ["R", "back to the first view"],
-    ["O", "parallel or perspective view"],
-    ["+  -", "field of view"],
-    ["T", "turntable, until T or a drag"],
-  ]],
-  ["Everywhere", [
-    ["Ctrl Z, Ctrl Y", "undo, redo"],
-    ["Space", "pause, go on"],
-    ["?", "this list"],
-  ]],
-  ["Transfer function", [
-    ["drag a point", "value and sigma_t"],
-    ["double click, N", "add a point"],
-    ["right click, Delete", "remove a point"],
-    ["Shift + drag", "move the whole function along the values"],
-    ["wheel; drag beside points", "zoom on the values; move along them"],
-    ["arrow keys; with Shift", "move the chosen point; finely"],
-    ["Page up, Page down", "choose the point before, after"],
-  ]],
+  [
+    "Picture",
+    [
+      ["drag", "turn around the volume"],
+      ["Shift + drag, middle drag", "move the picture"],
+      ["wheel", "zoom to the pointer"],
+      ["right drag", "roll around the centre"],
+      ["Alt + drag", "look about from where the eye is"],
+      ["one finger; two fingers", "turn; pinch and move"],
+      ["W A S D, Q E", "fly forward, left, back, right, down and up; with Shift faster"],
+      ["arrow keys", "turn by 5 degrees; with Shift by 1"],
+      [kAxisViews.map((view) => view.key).join(" "), kAxisViews.map((view) => view.name).join(", ")],
+      ["R", "back to the first view"],
+      ["O", "parallel or perspective view"],
+      ["+  -", "field of view"],
+      ["T", "turntable, until T or a drag"],
+    ]
+  ],
+  [
+    "Everywhere",
+    [
+      ["Ctrl Z, Ctrl Y", "undo, redo"],
+      ["Space", "pause, go on"],
+      ["?", "this list"],
+    ]
+  ],
+  [
+    "Transfer function",
+    [
+      ["drag a point", "value and sigma_t"],
+      ["double click, N", "add a point"],
+      ["right click, Delete", "remove a point"],
+      ["Shift + drag", "move the whole function along the values"],
+      ["wheel; drag beside points", "zoom on the values; move along them"],
+      ["arrow keys; with Shift", "move the chosen point; finely"],
+      ["Page up, Page down", "choose the point before, after"],
+    ]
+  ],
 ];
 
-const isText = (target) => target.closest?.("input:not([type=range]):not([type=checkbox]), textarea, select, dialog") !== null;
+const isText = (target) =>
+    target.closest?.("input:not([type=range]):not([type=checkbox]), textarea, select, dialog") !== null;
 
 export class Keys {
   /// @param actions  undo(), redo(), pause(), help()
@@ -80,7 +93,8 @@ export class Keys {
     if (kFlight[key]) return this.fly_(key, event.shiftKey);
     const view = this.session_.view();
     const found = kAxisViews.find((axisView) => axisView.key === key);
-    if (found) return this.move_(orbitTo(view.camera, { azimuth: found.azimuth, elevation: found.elevation, pan: [0, 0] }));
+    if (found)
+      return this.move_(orbitTo(view.camera, { azimuth: found.azimuth, elevation: found.elevation, pan: [0, 0] }));
     if (key.startsWith("Arrow") && !onControl) return this.arrow_(key, event.shiftKey, view);
     switch (key) {
       case " ":

@@ -1,16 +1,16 @@
 // The page of `umbrick view`: connects what the server says with what is shown, and what is done with what is sent.
 // SPDX-License-Identifier: Apache-2.0
-import { Connection } from "./connection.js";
-import { EditPacer } from "./edit_pacer.js";
-import { helpDialog } from "./help_dialog.js";
-import { Keys } from "./keys.js";
-import { Notices } from "./notices.js";
-import { drawScaleBar, drawTriad } from "./overlay.js";
-import { buildPanels } from "./panels.js";
-import { Picture } from "./picture.js";
-import { PictureInput } from "./picture_input.js";
-import { Session } from "./session.js";
-import { probeWords, statusWords } from "./words.js";
+import {Connection} from "./connection.js";
+import {EditPacer} from "./edit_pacer.js";
+import {helpDialog} from "./help_dialog.js";
+import {Keys} from "./keys.js";
+import {Notices} from "./notices.js";
+import {drawScaleBar, drawTriad} from "./overlay.js";
+import {buildPanels} from "./panels.js";
+import {Picture} from "./picture.js";
+import {PictureInput} from "./picture_input.js";
+import {Session} from "./session.js";
+import {probeWords, statusWords} from "./words.js";
 
 const at = (id) => document.getElementById(id);
 const notices = new Notices(at("notices"));
