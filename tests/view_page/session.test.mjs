@@ -76,6 +76,12 @@ test("A drag's edits have one step, and two drags have two", () => {
   assert.notEqual(steps[1], steps[2]);
 });
 
+test("A click without a move sends nothing", () => {
+  const { session, sent } = opened();
+  session.drag("test").end();
+  assert.equal(sent.length, 0);
+});
+
 test("A preset keeps the function shown until the server says what it is", () => {
   const { session, sent } = opened();
   session.edit({ transfer: "ct-bone" });

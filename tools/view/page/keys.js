@@ -6,6 +6,7 @@ import {length, subtract} from "./vector.js";
 const kTurnPerSecond = 30;   // degrees, of the turntable
 const kFlyPerSecond = 0.25;  // diagonals of the volume
 const kFastFlight = 4;
+const kTapSeconds = 0.05;  // of flight, for a key that is only tapped
 const kWiden = 1.1;
 
 const kFlight = {
@@ -139,19 +140,23 @@ export class Keys {
     if (this.flight_) return true;
     this.session_.emit("cameraTouched");
     this.flight_ = this.session_.drag("fly");
+    this.flyFor_(kTapSeconds);
     this.animate_((seconds) => {
-      if (this.held_.size === 0) {
-        this.flight_.end();
-        this.flight_ = null;
-        return false;
-      }
-      const { bounds } = this.session_.hello.volume;
-      const far = seconds * kFlyPerSecond * length(subtract(bounds[1], bounds[0])) * (this.fast_ ? kFastFlight : 1);
-      const move = [0, 1, 2].map((i) => [...this.held_].reduce((sum, held) => sum + kFlight[held][i] * far, 0));
-      const { camera, resolved } = this.session_.view();
-      this.flight_.edit(flyBy(camera, resolved, move));
-      return true;
+      if (this.held_.size > 0) return this.flyFor_(seconds);
+      this.flight_.end();
+      this.flight_ = null;
+      return false;
     });
+    return true;
+  }
+
+  // Flies the way that the held keys make together.
+  flyFor_(seconds) {
+    const { bounds } = this.session_.hello.volume;
+    const far = seconds * kFlyPerSecond * length(subtract(bounds[1], bounds[0])) * (this.fast_ ? kFastFlight : 1);
+    const move = [0, 1, 2].map((i) => [...this.held_].reduce((sum, held) => sum + kFlight[held][i] * far, 0));
+    const { camera, resolved } = this.session_.view();
+    this.flight_.edit(flyBy(camera, resolved, move));
     return true;
   }
 

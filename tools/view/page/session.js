@@ -63,12 +63,15 @@ export class Session {
   /// Begins a drag: its edits are drawn as drafts and undone together.
   drag(name) {
     const step = this.newStep(name);
+    let edited = false;
     return {
       edit: (patch) => {
+        edited = true;
         this.moving_ = true;
         this.apply_(patch, step, true);
       },
       end: () => {
+        if (!edited) return;  // a click without a move
         this.moving_ = false;
         this.pacer_.rest();
         if (this.doubtful_) this.takeServed_();

@@ -86,8 +86,8 @@ export function transferPanel(session, problem) {
   const oneDimension = element("div", {}, point, windowRow, scales, logarithmic.node);
   const lattice = element("p", {
     className: "quiet",
-    textContent:
-        "This is a function of value (to the right) and gradient magnitude (up). It is shown, not edited; a preset or Auto takes its place."
+    textContent: "This is a function of value (to the right) and gradient magnitude (up). It is shown, not edited. " +
+        "A preset or Auto takes its place."
   });
 
   function update() {
