@@ -61,6 +61,8 @@ function planeControls(session, index) {
     },
     drag: () => dragOf(session, "plane", (d) => toPatch([...planes()[index].slice(0, 3), d])),
   });
+  const sliderId = newId();
+  slider.node.id = sliderId;
   const buttons = element(
       "div", { className: "buttons" }, button("Other side", () => session.edit(toPatch(flipped(planes()[index])))),
       button("Remove plane", () => session.edit(planesPatch(planes().filter((_, i) => i !== index)))));
@@ -68,7 +70,7 @@ function planeControls(session, index) {
   return {
     node: element(
         "fieldset", {}, element("legend", { textContent: `Plane ${index + 1}` }),
-        row("a b c d", help, id, numbers.node), row("place", "moves the plane along its normal", newId(), slider.node),
+        row("a b c d", help, id, numbers.node), row("place", "moves the plane along its normal", sliderId, slider.node),
         buttons),
     update: () => {
       numbers.update(planes()[index]);

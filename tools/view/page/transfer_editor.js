@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {movedRange, shareOfSigma, sigmaOfShare, sigmaTop, wholeRange, zoomedRange} from "./plot_axes.js";
 import {pointsOf, pointsPatch, shifted, unitOffset, withAdded, withoutPoint, withPoint} from "./transfer.js";
-import {drawLattice, drawTransferPlot, plotArea} from "./transfer_plot.js";
+import {drawLattice, drawTransferPlot, isOver, plotArea} from "./transfer_plot.js";
 
 const kGrip = 14;    // pixels around a point in which it is taken
 const kStep = 0.01;  // of the axis, by an arrow key
@@ -98,6 +98,7 @@ export class TransferEditor {
     const { x, y } = this.at_(event);
     let best = -1, nearest = kGrip;
     this.places_(this.points).forEach(([px, py], i) => {
+      if (!isOver(this.area_(), [px, py])) return;
       const distance = Math.hypot(px - x, py - y) - (i === this.chosen ? 0.5 : 0);
       if (distance < nearest) [best, nearest] = [i, distance];
     });

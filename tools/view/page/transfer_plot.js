@@ -66,8 +66,12 @@ function drawFunction(context, area, points, range, top, logarithmic) {
   context.stroke(curve);
 }
 
-function drawPoints(context, places, points, chosen) {
+/// Returns whether a place lies over the part of the axis that is shown.
+export const isOver = (area, [x]) => x > area.left - 1 && x < area.left + area.width + 1;
+
+function drawPoints(context, area, places, points, chosen) {
   places.forEach(([x, y], i) => {
+    if (!isOver(area, [x, y])) return;
     context.beginPath();
     context.arc(x, y, i === chosen ? 7 : 5.5, 0, 2 * Math.PI);
     context.fillStyle = hexOfLinear(points[i].albedo);
@@ -95,7 +99,7 @@ export function drawTransferPlot(canvas, plot) {
   context.restore();
   context.fillStyle = kColours.grid;
   context.fillRect(area.left, area.top + area.height, area.width, 1);
-  if (plot.points) drawPoints(context, plot.places, plot.points, plot.chosen);
+  if (plot.points) drawPoints(context, area, plot.places, plot.points, plot.chosen);
 }
 
 /// Draws a function of value (to the right) and gradient magnitude (up) as a map: colours by sigma_t.
