@@ -39,7 +39,8 @@ function drawNumbers(context, area, range) {
   for (const value of ticks(range[0], range[1], Math.max(2, area.width / 70))) {
     const x = area.left + ((value - range[0]) / (range[1] - range[0])) * area.width;
     context.fillRect(x, area.top + area.height + kBand + 2, 1, 4);
-    context.fillText(shortNumber(value), x, area.top + area.height + kFoot);
+    const text = shortNumber(value), half = context.measureText(text).width / 2;
+    if (x + half < area.left + area.width + kMargin) context.fillText(text, x, area.top + area.height + kFoot);
   }
 }
 
