@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import test from "node:test";
+
 import * as camera from "../../tools/view/page/camera.js";
-import { applyPatch } from "../../tools/view/page/merge_patch.js";
-import { add, cross, dot, length, scale, subtract } from "../../tools/view/page/vector.js";
+import {applyPatch} from "../../tools/view/page/merge_patch.js";
+import {add, cross, dot, length, scale, subtract} from "../../tools/view/page/vector.js";
 
 const kDegree = Math.PI / 180;
 const kNear = 1e-9;  // rounding of some tens of operations on numbers of some hundreds, in double precision
@@ -14,21 +15,42 @@ const near = (a, b, within = kNear) => {
   list.forEach((x, i) => assert.ok(Math.abs(x - other[i]) < within, `${a} is not near ${b}`));
 };
 
-const frame = { up: [0, 0, -1], front: [0, -1, 0], centre: [98, 102, 72], radius: 180 };
-const orbit = { projection: "perspective", azimuth: 30, elevation: 15, upAxis: "auto", frontAxis: "auto", zoom: 1.5,
-  pan: [0.1, -0.2], fov: 27, near: 0, size: [640, 400] };
-const parallel = { ...orbit, projection: "orthographic", size: [400, 640] };
+const frame = {
+  up: [0, 0, -1],
+  front: [0, -1, 0],
+  centre: [98, 102, 72],
+  radius: 180
+};
+const orbit = {
+  projection: "perspective",
+  azimuth: 30,
+  elevation: 15,
+  upAxis: "auto",
+  frontAxis: "auto",
+  zoom: 1.5,
+  pan: [0.1, -0.2],
+  fov: 27,
+  near: 0,
+  size: [640, 400]
+};
+const parallel = {
+  ...orbit,
+  projection: "orthographic",
+  size: [400, 640]
+};
 // A camera that is placed where an orbit's is.
 const placed = (base) => applyPatch({ camera: base }, camera.rollBy(base, camera.resolveCamera(base, frame), 0)).camera;
-const kCameras = [["orbit", orbit], ["parallel orbit", parallel], ["placed", placed(orbit)], ["placed parallel", placed(parallel)]];
+const kCameras =
+    [["orbit", orbit], ["parallel orbit", parallel], ["placed", placed(orbit)], ["placed parallel", placed(parallel)]];
 const resolve = (base) => camera.resolveCamera(base, frame);
 const patched = (base, patch) => applyPatch({ camera: base }, patch).camera;
 
 // Returns where a point of the world is in the picture: from the centre to the right and up, in heights.
 function project(base, point) {
   const resolved = resolve(base), axes = camera.viewAxes(resolved), offset = subtract(point, resolved.eye);
-  const height = base.projection === "perspective"
-    ? 2 * Math.tan(0.5 * resolved.fov * kDegree) * dot(offset, axes.forward) : resolved.viewHeight;
+  const height = base.projection === "perspective" ?
+      2 * Math.tan(0.5 * resolved.fov * kDegree) * dot(offset, axes.forward) :
+      resolved.viewHeight;
   return [dot(offset, axes.right) / height, dot(offset, axes.up) / height];
 }
 // The point of the world at a place of the picture, at the depth of the target.
@@ -39,9 +61,10 @@ function targetPoint(base, [x, y]) {
 
 // The numbers are what `umbrick render --stats` of the bundled head says of --azimuth 30 --elevation 15 --zoom 1.02.
 test("An orbit resolves to the library's camera", () => {
-  const base = { ...orbit, pan: [0, 0], zoom: 1.02, fov: 30, size: [400, 400] };
+  const base = {...orbit, pan: [0, 0], zoom: 1.02, fov: 30, size: [400, 400] };
   const radius = 0.5 * Math.hypot(229.5 - 5.4, 229.5 + 21.6, 139.5 - 1.5);
-  const resolved = camera.resolveCamera(base, { up: [0, 0, 1], front: [0, -1, 0], centre: [112.05, 125.55, 69], radius });
+  const resolved =
+      camera.resolveCamera(base, { up: [0, 0, 1], front: [0, -1, 0], centre: [112.05, 125.55, 69], radius });
   near(resolved.fov, 29.43754240768321, 1e-9);
   near(resolved.up, [-0.12940952255126034, 0.2241438680420134, 0.9659258262890683]);
   const towards = scale(subtract(resolved.eye, resolved.lookAt), 1 / length(subtract(resolved.eye, resolved.lookAt)));
@@ -50,7 +73,7 @@ test("An orbit resolves to the library's camera", () => {
 });
 
 test("The frame of an orbit is found from the camera that it resolves to", () => {
-  for (const base of [orbit, parallel, { ...orbit, elevation: -90, size: [300, 700] }]) {
+  for (const base of [orbit, parallel, {...orbit, elevation: -90, size: [300, 700] }]) {
     const found = camera.orbitFrame(base, resolve(base));
     for (const name of ["up", "front", "centre", "radius"]) near(found[name], frame[name], 1e-7);
   }
@@ -99,7 +122,7 @@ test("Turning keeps the distance to the target, and elevation ends at the poles"
     near(length(subtract(turned.eye, turned.lookAt)), length(subtract(resolved.eye, resolved.lookAt)), 1e-7);
   }
   assert.equal(camera.orbitBy(orbit, resolve(orbit), 0, 3).camera.elevation, 90);
-  assert.equal(camera.orbitBy({ ...orbit, azimuth: -170 }, resolve(orbit), 0.1, 0).camera.azimuth, 172);
+  assert.equal(camera.orbitBy({...orbit, azimuth: -170 }, resolve(orbit), 0.1, 0).camera.azimuth, 172);
 });
 
 test("Looking about keeps the eye, and the view follows the pointer", () => {
@@ -139,8 +162,8 @@ test("A placed camera keeps its size in the picture when the projection changes"
 test("The way back to the first camera leaves no field of the present one but the size", () => {
   for (const [, base] of kCameras)
     for (const [, first] of kCameras) {
-      const now = { ...base, size: [123, 45] };
-      assert.deepEqual(patched(now, camera.cameraBack(now, first)), { ...first, size: [123, 45] });
+      const now = {...base, size: [123, 45] };
+      assert.deepEqual(patched(now, camera.cameraBack(now, first)), {...first, size: [123, 45] });
     }
 });
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import test from "node:test";
-import { EditPacer } from "../../tools/view/page/edit_pacer.js";
+
+import {EditPacer} from "../../tools/view/page/edit_pacer.js";
 
 // A pacer with a clock and animation frames that the test moves on.
 function bench() {

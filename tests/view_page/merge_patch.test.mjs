@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import test from "node:test";
-import { applyPatch, composePatches, patchOf, replacingPatch, valueAt } from "../../tools/view/page/merge_patch.js";
+
+import {applyPatch, composePatches, patchOf, replacingPatch, valueAt} from "../../tools/view/page/merge_patch.js";
 
 // All examples of RFC 7396, appendix A.
 const kExamples = [

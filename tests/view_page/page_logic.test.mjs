@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import test from "node:test";
+
 import * as clip from "../../tools/view/page/clip.js";
 import * as colour from "../../tools/view/page/colour.js";
 import * as fields from "../../tools/view/page/fields.js";
-import { parseFrame } from "../../tools/view/page/frame_message.js";
+import {parseFrame} from "../../tools/view/page/frame_message.js";
 import * as lights from "../../tools/view/page/lights.js";
-import { applyPatch } from "../../tools/view/page/merge_patch.js";
-import { retryDelayMs } from "../../tools/view/page/retry.js";
+import {applyPatch} from "../../tools/view/page/merge_patch.js";
+import {retryDelayMs} from "../../tools/view/page/retry.js";
 import * as words from "../../tools/view/page/words.js";
 
 test("Every colour of 8 bits comes back from linear light", () => {
@@ -38,7 +39,7 @@ test("A light brings the model that looks at it, and the last one takes it away"
 test("The model lights gets a source where there is none, and keeps those that are there", () => {
   const scene = { model: "cone", method: "ordinates", light: {} };
   assert.equal(lights.completed({ model: "lights" }, scene, [0, 0, 1]).light.sources.length, 1);
-  const lit = { ...scene, light: { sources: [{ type: "environment" }] } };
+  const lit = {...scene, light: { sources: [{ type: "environment" }] } };
   assert.deepEqual(lights.completed({ model: "lights" }, lit, [0, 0, 1]), { model: "lights" });
   assert.deepEqual(lights.completed({ sampling: { spacing: 1 } }, scene, [0, 0, 1]), { sampling: { spacing: 1 } });
 });
@@ -93,7 +94,8 @@ test("Fields that the scene has no use for are hidden", () => {
 
 test("Groups keep the order of the table", () => {
   const table = [{ path: "a", group: "Camera" }, { path: "b", group: "Light" }, { path: "c", group: "Camera" }];
-  assert.deepEqual(fields.grouped(table).map(({ name, fields: list }) => [name, list.length]), [["Camera", 2], ["Light", 1]]);
+  assert.deepEqual(
+      fields.grouped(table).map(({ name, fields: list }) => [name, list.length]), [["Camera", 2], ["Light", 1]]);
   assert.equal(fields.labelOf({ path: "occlusion.perspectiveCorrection" }), "perspective correction");
 });
 
@@ -115,7 +117,7 @@ test("Numbers are read with point or comma, and nothing else is a number", () =>
 });
 
 test("A frame is header and bytes, and one that is cut short is refused", () => {
-  const text = new TextEncoder().encode('{"frame":7,"mime":"image/png"}');
+  const text = new TextEncoder().encode("{\"frame\":7,\"mime\":\"image/png\"}");
   const message = new Uint8Array(4 + text.length + 2);
   new DataView(message.buffer).setUint32(0, text.length, true);
   message.set(text, 4);
@@ -134,11 +136,11 @@ test("Waits between tries grow and end at 15 seconds", () => {
 test("The state of a picture is said in few words", () => {
   const status = { samples: 8, error: 0.00612, draft: false, done: false, paused: false, text: "" };
   assert.equal(words.statusWords(status), "8 samples, error 0.0061");
-  assert.equal(words.statusWords({ ...status, samples: 1, error: null }), "1 sample");
-  assert.equal(words.statusWords({ ...status, draft: true }), "draft");
-  assert.equal(words.statusWords({ ...status, done: true }), "done: error 0.0061");
-  assert.equal(words.statusWords({ ...status, paused: true }), "paused: 8 samples, error 0.0061");
-  assert.equal(words.statusWords({ ...status, text: "done: error 0.004" }), "done: error 0.004");
+  assert.equal(words.statusWords({...status, samples: 1, error: null }), "1 sample");
+  assert.equal(words.statusWords({...status, draft: true }), "draft");
+  assert.equal(words.statusWords({...status, done: true }), "done: error 0.0061");
+  assert.equal(words.statusWords({...status, paused: true }), "paused: 8 samples, error 0.0061");
+  assert.equal(words.statusWords({...status, text: "done: error 0.004" }), "done: error 0.004");
 });
 
 test("A probe says value, unit, place and depth, or that there is nothing", () => {
@@ -150,7 +152,8 @@ test("A probe says value, unit, place and depth, or that there is nothing", () =
 test("The chart begins anew with each picture", () => {
   const at = (ms, samples, error, draft = false) => ({ ms, samples, error, draft });
   let history = [];
-  for (const status of [at(100, 1, null), at(200, 2, 0.1), at(400, 4, 0.05), at(450, 4, 0.05)]) history = words.withErrorPoint(history, status);
+  for (const status of [at(100, 1, null), at(200, 2, 0.1), at(400, 4, 0.05), at(450, 4, 0.05)])
+    history = words.withErrorPoint(history, status);
   assert.deepEqual(history.map((point) => point.samples), [2, 4]);
   assert.deepEqual(words.withErrorPoint(history, at(90, 1, 0.3)).map((point) => point.samples), [1]);
   assert.deepEqual(words.withErrorPoint(history, at(500, 1, null, true)), []);

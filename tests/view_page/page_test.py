@@ -2,8 +2,8 @@
 """Uses the page of `umbrick view` in headless Chromium as a person would: looks, drags, undoes, clips, saves.
 
 page_test.py ADDRESS [--folder FOLDER] [--screenshots FOLDER]
-ADDRESS is what `umbrick view` prints. FOLDER is where the server was started, and what is saved there is looked for. One
-line is printed for each step. Exit status 0: all steps passed, 1: one failed, 77: there is no Chromium or no selenium.
+ADDRESS is what `umbrick view` prints. FOLDER is where the server was started, where saved files are looked for. One line
+is printed for each step. Exit status 0: all steps passed, 1: one failed, 77: there is no Chromium or no selenium.
 """
 # SPDX-License-Identifier: Apache-2.0
 import argparse
@@ -14,7 +14,9 @@ import time
 
 SKIPPED = 77
 PATIENCE = 60  # seconds for a picture at rest, on a machine that does other things as well
-CHANGED = 0.5  # mean difference of 8-bit channels; JPEG and a new sample of the same picture differ by less
+# Root mean square difference of 8-bit channels, over means of some hundred pixels. Two pictures of one scene with errors
+# of 0.01 differ by some tenths; a change that is seen anywhere in the picture makes one or more.
+CHANGED = 1.0
 
 try:
     from selenium import webdriver
@@ -115,8 +117,9 @@ class Page:
         """Waits for a picture at rest that differs from `before`."""
         def changed():
             now = self.pixels()
-            return now if self.at_rest() and difference(now, before) > CHANGED else None
-        return self.wait(f"{what} changes the picture", changed)
+            return self.at_rest() and difference(now, before) > CHANGED
+        self.wait(f"{what} changes the picture", changed)
+        return self.picture_at_rest()
 
     def drag(self, element, start, by, button_keys=()):
         """Drags from a place in CSS pixels from the element's upper left corner."""
@@ -157,7 +160,8 @@ class Page:
 
 
 def difference(a, b):
-    return sum(abs(x - y) for x, y in zip(a, b)) / len(a)
+    """Of red, green and blue; the pixels' alpha is that of the small picture, which is opaque."""
+    return (sum((x - y) ** 2 for x, y in zip(a, b)) / (len(a) * 3 / 4)) ** 0.5
 
 
 def open_page(page):
@@ -174,7 +178,7 @@ def drag_point(page):
     value = page.labelled("value").get_attribute("value")
     sigma_t = page.labelled("sigma_t").get_attribute("value")
     x, y = map(int, plot.get_attribute("data-chosen").split())
-    page.drag(plot, (x, y), (10, 100 if y < plot.rect["height"] / 2 else -100))
+    page.drag(plot, (x, y), (0, 155 - y if y < 130 else 20 - y))  # to the foot of the plot, or to its top
     assert page.labelled("sigma_t").get_attribute("value") != sigma_t, "the point has not moved"
     page.change("a dragged point", before)
     page.shot("dragged")
@@ -314,7 +318,8 @@ def narrow(page):
         page.driver.set_window_size(width, height)
         page.wait("the picture takes the window's size", lambda: page.find("#picture").rect["width"] <= width)
         page.picture_at_rest()
-        assert page.driver.execute_script("return document.documentElement.scrollWidth <= innerWidth"), f"{width} x {height}"
+        fits = page.driver.execute_script("return document.documentElement.scrollWidth <= innerWidth")
+        assert fits, f"a window of {width} x {height} has to be scrolled sideways"
         page.shot(f"{width}x{height}")
 
 
@@ -338,7 +343,11 @@ def main():
     steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, light, probe, pause,
              lambda page: save(page, arguments.folder), refuse, help_list, narrow, no_console_errors]
     try:
-        page = Page(driver, arguments.address, arguments.screenshots)
+        try:
+            page = Page(driver, arguments.address, arguments.screenshots)
+        except WebDriverException as error:
+            print(f"failed: {arguments.address} cannot be opened: {error.msg.splitlines()[0]}")
+            return 1
         for step in steps:
             name = "save" if step.__name__ == "<lambda>" else step.__name__
             began = time.monotonic()

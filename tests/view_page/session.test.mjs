@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import test from "node:test";
-import { resolveCamera } from "../../tools/view/page/camera.js";
-import { EditPacer } from "../../tools/view/page/edit_pacer.js";
-import { Session } from "../../tools/view/page/session.js";
 
-const frame = { up: [0, 0, 1], front: [0, -1, 0], centre: [1, 2, 3], radius: 10 };
-const scene = { camera: { projection: "perspective", azimuth: 0, elevation: 0, zoom: 1, pan: [0, 0], fov: 30, size: [100, 100] },
-  transfer: { points: [{ value: 0, albedo: [1, 1, 1], sigma_t: 1 }] }, sampling: { spacing: 1 } };
-const message = (of) => ({ type: "scene", scene: of, canUndo: false, canRedo: false, command: "", camera: resolveCamera(of.camera, frame) });
+import {resolveCamera} from "../../tools/view/page/camera.js";
+import {EditPacer} from "../../tools/view/page/edit_pacer.js";
+import {Session} from "../../tools/view/page/session.js";
+
+const frame = {
+  up: [0, 0, 1],
+  front: [0, -1, 0],
+  centre: [1, 2, 3],
+  radius: 10
+};
+const scene = {
+  camera: { projection: "perspective", azimuth: 0, elevation: 0, zoom: 1, pan: [0, 0], fov: 30, size: [100, 100] },
+  transfer: { points: [{ value: 0, albedo: [1, 1, 1], sigma_t: 1 }] },
+  sampling: { spacing: 1 }
+};
+const message = (of) => (
+    { type: "scene", scene: of, canUndo: false, canRedo: false, command: "", camera: resolveCamera(of.camera, frame) });
 
 function opened() {
   const sent = [];
@@ -31,10 +41,10 @@ test("While something is dragged, older scenes of the server do not pull it back
   const drag = session.drag("test");
   drag.edit({ sampling: { spacing: 2 } });
   drag.edit({ sampling: { spacing: 3 } });
-  session.receive(message({ ...scene, sampling: { spacing: 2 } }));
+  session.receive(message({...scene, sampling: { spacing: 2 } }));
   assert.equal(session.scene.sampling.spacing, 3);
   drag.end();
-  session.receive(message({ ...scene, sampling: { spacing: 3.5 } }));
+  session.receive(message({...scene, sampling: { spacing: 3.5 } }));
   assert.equal(session.scene.sampling.spacing, 3.5);
 });
 
@@ -64,6 +74,12 @@ test("A drag's edits have one step, and two drags have two", () => {
   assert.equal(steps.length, 3);
   assert.equal(steps[0], steps[1]);
   assert.notEqual(steps[1], steps[2]);
+});
+
+test("A click without a move sends nothing", () => {
+  const { session, sent } = opened();
+  session.drag("test").end();
+  assert.equal(sent.length, 0);
 });
 
 test("A preset keeps the function shown until the server says what it is", () => {

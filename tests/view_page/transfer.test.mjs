@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import test from "node:test";
-import { applyPatch } from "../../tools/view/page/merge_patch.js";
+
+import {applyPatch} from "../../tools/view/page/merge_patch.js";
 import * as axes from "../../tools/view/page/plot_axes.js";
 import * as transfer from "../../tools/view/page/transfer.js";
 
@@ -61,9 +62,10 @@ test("The patch of points replaces a lattice as a whole and keeps the unit", () 
 });
 
 test("A file of ParaView becomes the function as it is, one of ours replaces it, others are refused", () => {
-  assert.deepEqual(transfer.loadedPatch({ points }, '[{"RGBPoints": []}]'), { transfer: [{ RGBPoints: [] }] });
-  assert.deepEqual(transfer.loadedPatch({ unit: "HU", points }, '{"points": []}'), { transfer: { unit: null, points: [] } });
-  assert.throws(() => transfer.loadedPatch({ points }, '{"camera": {}}'), /neither/);
+  assert.deepEqual(transfer.loadedPatch({ points }, "[{\"RGBPoints\": []}]"), { transfer: [{ RGBPoints: [] }] });
+  assert.deepEqual(
+      transfer.loadedPatch({ unit: "HU", points }, "{\"points\": []}"), { transfer: { unit: null, points: [] } });
+  assert.throws(() => transfer.loadedPatch({ points }, "{\"camera\": {}}"), /neither/);
   assert.throws(() => transfer.loadedPatch({ points }, "nonsense"), SyntaxError);
 });
 

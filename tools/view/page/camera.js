@@ -4,8 +4,8 @@
 // both to the same: { eye, lookAt, up }. From one resolved orbit its axes, centre and radius follow, so that the page
 // knows the camera of the next edit without asking.
 // SPDX-License-Identifier: Apache-2.0
-import { replacingPatch } from "./merge_patch.js";
-import { add, cross, dot, length, normalize, rotate, scale, subtract } from "./vector.js";
+import {replacingPatch} from "./merge_patch.js";
+import {add, cross, dot, length, normalize, rotate, scale, subtract} from "./vector.js";
 
 const kDegree = Math.PI / 180;
 const kOrbitFields = ["azimuth", "elevation", "upAxis", "frontAxis", "zoom", "pan"];
@@ -91,9 +91,11 @@ const orbitPatch = (fields) => ({ camera: fields });
 function placedPatch(camera, resolved) {
   const { eye, lookAt, up, fov, viewHeight } = resolved;
   const placed = { eye, lookAt, up };
-  if (isPerspective(camera)) placed.fov = fov;
-  else placed.viewHeight = viewHeight;
-  return { camera: isOrbit(camera) ? { ...nulls(kOrbitFields), ...placed } : placed };
+  if (isPerspective(camera))
+    placed.fov = fov;
+  else
+    placed.viewHeight = viewHeight;
+  return { camera: isOrbit(camera) ? {...nulls(kOrbitFields), ...placed } : placed };
 }
 
 /// Turns the camera around its target. dx and dy are in heights of the picture, to the right and down.
@@ -105,7 +107,7 @@ export function orbitBy(camera, resolved, dx, dy) {
   const axes = viewAxes(resolved);
   const turn = (v) => rotate(rotate(v, axes.up, -Math.PI * dx), axes.right, -Math.PI * dy);
   const offset = turn(subtract(resolved.eye, resolved.lookAt));
-  return placedPatch(camera, { ...resolved, eye: add(resolved.lookAt, offset), up: turn(axes.up) });
+  return placedPatch(camera, {...resolved, eye: add(resolved.lookAt, offset), up: turn(axes.up) });
 }
 
 /// Turns the view around the eye, as one who looks about.
@@ -113,7 +115,7 @@ export function lookBy(camera, resolved, dx, dy) {
   const axes = viewAxes(resolved);
   const turn = (v) => rotate(rotate(v, axes.up, dx * resolved.fov * kDegree), axes.right, dy * resolved.fov * kDegree);
   const lookAt = add(resolved.eye, turn(subtract(resolved.lookAt, resolved.eye)));
-  return placedPatch(camera, { ...resolved, lookAt, up: turn(axes.up) });
+  return placedPatch(camera, {...resolved, lookAt, up: turn(axes.up) });
 }
 
 /// Moves the thing in the picture by dx to the right and dy down, in heights of the picture.
@@ -121,7 +123,7 @@ export function panBy(camera, resolved, dx, dy) {
   if (isOrbit(camera)) return orbitPatch({ pan: [camera.pan[0] + dx, camera.pan[1] - dy] });
   const axes = viewAxes(resolved), height = heightAtTarget(camera, resolved);
   const shift = add(scale(axes.right, -dx * height), scale(axes.up, dy * height));
-  return placedPatch(camera, { ...resolved, eye: add(resolved.eye, shift), lookAt: add(resolved.lookAt, shift) });
+  return placedPatch(camera, {...resolved, eye: add(resolved.eye, shift), lookAt: add(resolved.lookAt, shift) });
 }
 
 /// Makes things `factor` times larger around the point (x, y) of the picture, which stays where it is.
@@ -136,7 +138,7 @@ export function zoomBy(camera, resolved, factor, x, y) {
   const point = add(resolved.lookAt, add(scale(axes.right, x * height), scale(axes.up, y * height)));
   const towards = (from) => add(point, scale(subtract(from, point), 1 / factor));
   if (isPerspective(camera))
-    return placedPatch(camera, { ...resolved, eye: towards(resolved.eye), lookAt: towards(resolved.lookAt) });
+    return placedPatch(camera, {...resolved, eye: towards(resolved.eye), lookAt: towards(resolved.lookAt) });
   const shift = subtract(towards(resolved.lookAt), resolved.lookAt);
   return placedPatch(camera, {
     ...resolved,
@@ -149,7 +151,7 @@ export function zoomBy(camera, resolved, factor, x, y) {
 /// Turns the picture around its centre, counter-clockwise, by an angle in radians.
 export function rollBy(camera, resolved, angle) {
   const axes = viewAxes(resolved);
-  return placedPatch(camera, { ...resolved, up: rotate(axes.up, axes.forward, angle) });
+  return placedPatch(camera, {...resolved, up: rotate(axes.up, axes.forward, angle) });
 }
 
 /// Moves the eye and its target along the view's axes: [right, up, forward], in world units. In a parallel view,
@@ -157,30 +159,28 @@ export function rollBy(camera, resolved, angle) {
 export function flyBy(camera, resolved, [right, up, forward]) {
   const axes = viewAxes(resolved);
   const step = add(add(scale(axes.right, right), scale(axes.up, up)), scale(axes.forward, forward));
-  const moved = { ...resolved, eye: add(resolved.eye, step), lookAt: add(resolved.lookAt, step) };
+  const moved = {...resolved, eye: add(resolved.eye, step), lookAt: add(resolved.lookAt, step) };
   if (!isPerspective(camera)) moved.viewHeight = resolved.viewHeight * Math.exp(-forward / resolved.viewHeight);
   return placedPatch(camera, moved);
 }
 
 /// Goes on turning by an angle in degrees, as a turntable does.
-export function turnBy(camera, resolved, degrees) {
-  return orbitBy(camera, resolved, -degrees / 180, 0);
-}
+export function turnBy(camera, resolved, degrees) { return orbitBy(camera, resolved, -degrees / 180, 0); }
 
 /// Looks along an axis, or back to an orbit whatever the camera was.
 export function orbitTo(camera, fields) {
   const whole = { azimuth: 0, elevation: 0, zoom: 1, pan: [0, 0], ...fields };
-  return orbitPatch(isOrbit(camera) ? fields : { ...nulls(kPlacedFields), ...whole });
+  return orbitPatch(isOrbit(camera) ? fields : {...nulls(kPlacedFields), ...whole });
 }
 
 /// The views of the keys 1 to 6. Left and right are those of one who looks at the front.
 export const kAxisViews = [
-  { key: "1", name: "front", azimuth: 0, elevation: 0 },
-  { key: "2", name: "back", azimuth: 180, elevation: 0 },
-  { key: "3", name: "left", azimuth: -90, elevation: 0 },
-  { key: "4", name: "right", azimuth: 90, elevation: 0 },
-  { key: "5", name: "top", azimuth: 0, elevation: 90 },
-  { key: "6", name: "bottom", azimuth: 0, elevation: -90 },
+  {key: "1", name: "front", azimuth: 0, elevation: 0},
+  {key: "2", name: "back", azimuth: 180, elevation: 0},
+  {key: "3", name: "left", azimuth: -90, elevation: 0},
+  {key: "4", name: "right", azimuth: 90, elevation: 0},
+  {key: "5", name: "top", azimuth: 0, elevation: 90},
+  {key: "6", name: "bottom", azimuth: 0, elevation: -90},
 ];
 
 /// Returns the patch back to the camera of an earlier scene. The picture keeps its size.
@@ -194,7 +194,8 @@ export function toggleProjection(camera, resolved) {
   const parallel = isPerspective(camera);
   const fields = { projection: parallel ? "orthographic" : "perspective" };
   if (!isOrbit(camera)) {
-    if (parallel) fields.viewHeight = heightAtTarget(camera, resolved);
+    if (parallel)
+      fields.viewHeight = heightAtTarget(camera, resolved);
     else {
       // The eye moves to where the field of view shows the same height at the target.
       const axes = viewAxes(resolved);
@@ -206,14 +207,10 @@ export function toggleProjection(camera, resolved) {
 }
 
 /// Changes the field of view by a factor, within what makes a useful picture.
-export function widenBy(camera, factor) {
-  return { camera: { fov: clamp(camera.fov * factor, 2, 150) } };
-}
+export function widenBy(camera, factor) { return { camera: { fov: clamp(camera.fov * factor, 2, 150) } }; }
 
 /// Returns the camera's vector of a direction of the world: [right, up, towards the viewer].
-export function toView(axes, world) {
-  return [dot(world, axes.right), dot(world, axes.up), -dot(world, axes.forward)];
-}
+export function toView(axes, world) { return [dot(world, axes.right), dot(world, axes.up), -dot(world, axes.forward)]; }
 /// Returns the direction of the world of a vector [right, up, towards the viewer].
 export function toWorld(axes, view) {
   return add(add(scale(axes.right, view[0]), scale(axes.up, view[1])), scale(axes.forward, -view[2]));

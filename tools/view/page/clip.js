@@ -1,6 +1,6 @@
 // Clip box and clip planes of a scene, as merge patches. A plane [a, b, c, d] keeps a x + b y + c z + d >= 0.
 // SPDX-License-Identifier: Apache-2.0
-import { dot, scale } from "./vector.js";
+import {dot, scale} from "./vector.js";
 
 export const boxOf = (scene) => scene.clip?.box ?? null;
 export const planesOf = (scene) => scene.clip?.planes ?? [];
@@ -13,8 +13,8 @@ export function withFace(box, axis, end, value) {
   return box.map((corner, i) => (i === end ? corner.map((x, a) => (a === axis ? held : x)) : corner));
 }
 
-export const boxPatch = (box) => ({ clip: { box } });
-export const planesPatch = (planes) => ({ clip: { planes: planes.length > 0 ? planes : null } });
+export const boxPatch = (box) => ({clip: {box}});
+export const planesPatch = (planes) => ({clip: {planes: planes.length > 0 ? planes : null}});
 
 /// Returns a plane through a point that cuts away what is nearer to the viewer.
 export function facingPlane(forward, point) {

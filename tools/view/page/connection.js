@@ -1,7 +1,7 @@
 // The WebSocket to the server. A connection that is lost is tried again, after longer and longer waits.
 // SPDX-License-Identifier: Apache-2.0
-import { parseFrame } from "./frame_message.js";
-import { retryDelayMs } from "./retry.js";
+import {parseFrame} from "./frame_message.js";
+import {retryDelayMs} from "./retry.js";
 
 export class Connection {
   /// @param handlers  message(object), frame({ header, bytes }), opened(), lost(seconds until the next try),
@@ -43,8 +43,10 @@ export class Connection {
 
   receive_(data) {
     try {
-      if (typeof data === "string") this.handlers_.message(JSON.parse(data));
-      else this.handlers_.frame(parseFrame(data));
+      if (typeof data === "string")
+        this.handlers_.message(JSON.parse(data));
+      else
+        this.handlers_.frame(parseFrame(data));
     } catch (error) {
       console.error(error);
       this.handlers_.problem(`a message of the server could not be used: ${error.message}`);

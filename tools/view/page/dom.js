@@ -2,14 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 const kSvg = "http://www.w3.org/2000/svg";
 
-/// element("button", { textContent: "Undo", onclick: f, "aria-label": "..." }, ...children). Names with a dash and those
-/// in `attributes` become attributes, the others properties.
+/// element("button", { textContent: "Undo", onclick: f, "aria-label": "..." }, ...children). Names with a dash and
+/// those in `attributes` become attributes, the others properties.
 export function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
-    if (name.includes("-") || name === "role" || name === "for") made.setAttribute(name, value);
-    else if (name === "dataset") Object.assign(made.dataset, value);
-    else made[name] = value;
+    if (name.includes("-") || name === "role" || name === "for")
+      made.setAttribute(name, value);
+    else if (name === "dataset")
+      Object.assign(made.dataset, value);
+    else
+      made[name] = value;
   }
   made.append(...children);
   return made;
@@ -23,7 +26,7 @@ export function svg(tag, attributes = {}, ...children) {
 }
 
 export const button = (text, onclick, title = "") =>
-  element("button", { type: "button", textContent: text, onclick, title });
+    element("button", {type: "button", textContent: text, onclick, title});
 
 /// A section that folds.
 export function section(title, open, ...children) {

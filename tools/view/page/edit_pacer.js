@@ -1,7 +1,7 @@
-// Decides when edits are sent, so that a slow renderer or connection is never flooded: at most one message per animation
-// frame, and none while more than two edits wait for a picture. Edits that have to wait are joined into one.
+// Decides when edits are sent, so that a slow renderer or connection is never flooded: at most one message per
+// animation frame, and none while more than two edits wait for a picture. Edits that have to wait are joined into one.
 // SPDX-License-Identifier: Apache-2.0
-import { composePatches } from "./merge_patch.js";
+import {composePatches} from "./merge_patch.js";
 
 const kMostWithoutPicture = 2;
 /// An edit may change no pixel, and then no picture follows. After so many milliseconds the next edit is sent anyway.
@@ -31,12 +31,14 @@ export class EditPacer {
     const waiting = this.pending_;
     if (waiting) {
       const joined = waiting.step === step && !this.restWaits_ ? composePatches(waiting.patch, patch) : undefined;
-      if (joined !== undefined) this.pending_ = { patch: joined, step, moving };
+      if (joined !== undefined)
+        this.pending_ = { patch: joined, step, moving };
       else {
         this.flush();
         this.pending_ = { patch, step, moving };
       }
-    } else this.pending_ = { patch, step, moving };
+    } else
+      this.pending_ = { patch, step, moving };
     this.sendIfDue_();
   }
 
@@ -63,8 +65,10 @@ export class EditPacer {
 
   sendIfDue_() {
     const late = this.now_() - this.lastSent_ > kPatienceMs;
-    if (!this.sentThisFrame_ && (this.withoutPicture_ < kMostWithoutPicture || late)) this.sendPending_();
-    else this.tryNextFrame_();
+    if (!this.sentThisFrame_ && (this.withoutPicture_ < kMostWithoutPicture || late))
+      this.sendPending_();
+    else
+      this.tryNextFrame_();
   }
 
   sendPending_() {

@@ -1,9 +1,9 @@
 // Controls of scene fields as the server's table lists them, so that a new field appears without a change here.
 // SPDX-License-Identifier: Apache-2.0
-import { choiceRow, flagRow, numberRow, row, textRow, vectorInput } from "./controls.js";
-import { element, newId } from "./dom.js";
-import { isShown, labelOf, sliderOf } from "./fields.js";
-import { patchOf, valueAt } from "./merge_patch.js";
+import {choiceRow, flagRow, numberRow, row, textRow, vectorInput} from "./controls.js";
+import {element, newId} from "./dom.js";
+import {isShown, labelOf, sliderOf} from "./fields.js";
+import {patchOf, valueAt} from "./merge_patch.js";
 
 const kAxes = ["x", "y", "z", "w"];
 
@@ -26,7 +26,17 @@ function controlOf(field, session) {
   switch (field.kind) {
     case "number":
     case "integer":
-      return numberRow({ label, help, unit, whole: field.kind === "integer", low, high, mapping: sliderOf(field), session, toPatch });
+      return numberRow({
+        label,
+        help,
+        unit,
+        whole: field.kind === "integer",
+        low,
+        high,
+        mapping: sliderOf(field),
+        session,
+        toPatch
+      });
     case "flag":
       return flagRow({ label, help, commit });
     case "vector":

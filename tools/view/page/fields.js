@@ -1,6 +1,6 @@
 // What kind of control a scene field gets, from the server's table of fields.
 // SPDX-License-Identifier: Apache-2.0
-import { valueAt } from "./merge_patch.js";
+import {valueAt} from "./merge_patch.js";
 
 /// Fields that a panel of their own shows.
 export const kOwnPanel = new Set(["light.ambient", "light.background"]);
@@ -34,8 +34,9 @@ export function sliderOf(field) {
   const end = whole ? high : high - (high - low) / 1000;
   const rounded = (x) => (whole ? Math.round(x) : Number(x.toPrecision(4)));
   const toValue = (place) =>
-    rounded(logarithmic ? low * (end / low) ** (place / 1000) : low + (end - low) * (place / 1000));
-  const toPlace = (value) => 1000 * (logarithmic ? Math.log(value / low) / Math.log(end / low) : (value - low) / (end - low));
+      rounded(logarithmic ? low * (end / low) ** (place / 1000) : low + (end - low) * (place / 1000));
+  const toPlace = (value) =>
+      1000 * (logarithmic ? Math.log(value / low) / Math.log(end / low) : (value - low) / (end - low));
   return { toValue, toPlace };
 }
 

@@ -1,12 +1,21 @@
 // The list of keys.
 // SPDX-License-Identifier: Apache-2.0
-import { element } from "./dom.js";
-import { kKeyList } from "./keys.js";
+import {element} from "./dom.js";
+import {kKeyList} from "./keys.js";
+
+function keyRows(rows) {
+  const list = element("dl");
+  for (const [keys, meaning] of rows)
+    list.append(element("dt", { textContent: keys }), element("dd", { textContent: meaning }));
+  return list;
+}
 
 export function helpDialog() {
-  const parts = kKeyList.map(([title, rows]) =>
-    element("section", {}, element("h3", { textContent: title }),
-      element("dl", {}, ...rows.flatMap(([keys, meaning]) => [element("dt", { textContent: keys }), element("dd", { textContent: meaning })]))));
-  return element("dialog", { className: "help", "aria-label": "Keys and gestures" }, element("h2", { textContent: "Keys and gestures" }), ...parts,
-    element("form", { method: "dialog" }, element("button", { textContent: "Close" })));
+  const sections = element("div");
+  for (const [title, rows] of kKeyList)
+    sections.append(element("section", {}, element("h3", { textContent: title }), keyRows(rows)));
+  // The button stands above the list: it gets the focus, and what has the focus is scrolled to.
+  return element(
+      "dialog", { className: "help", "aria-label": "Keys and gestures" },
+      element("form", { method: "dialog" }, element("button", { textContent: "Close" })), sections);
 }

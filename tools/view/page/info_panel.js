@@ -1,9 +1,9 @@
 // What is known of the volume and of the program.
 // SPDX-License-Identifier: Apache-2.0
-import { element, section } from "./dom.js";
-import { shortNumber } from "./words.js";
+import {element, section} from "./dom.js";
+import {shortNumber} from "./words.js";
 
-export function infoPanel({ volume, version, engine }) {
+export function infoPanel({volume, version, engine}) {
   const vector = (v) => v.map((x) => shortNumber(x, 6)).join(", ");
   const facts = [
     ["file", volume.file],
@@ -14,6 +14,8 @@ export function infoPanel({ volume, version, engine }) {
     ["drawn by", engine],
     ["Umbrick", version],
   ];
-  const rows = facts.filter(([, fact]) => fact).flatMap(([name, fact]) => [element("dt", { textContent: name }), element("dd", { textContent: fact })]);
+  const rows =
+      facts.filter(([, fact]) => fact)
+          .flatMap(([name, fact]) => [element("dt", { textContent: name }), element("dd", { textContent: fact })]);
   return section("Volume", false, element("dl", {}, ...rows));
 }

@@ -1,53 +1,67 @@
 // Keys of the page, in one table that also makes the list of keys.
 // SPDX-License-Identifier: Apache-2.0
-import { cameraBack, flyBy, kAxisViews, orbitBy, orbitTo, toggleProjection, turnBy, widenBy } from "./camera.js";
-import { length, subtract } from "./vector.js";
+import {cameraBack, flyBy, kAxisViews, orbitBy, orbitTo, toggleProjection, turnBy, widenBy} from "./camera.js";
+import {length, subtract} from "./vector.js";
 
-const kTurnPerSecond = 30;  // degrees, of the turntable
+const kTurnPerSecond = 30;   // degrees, of the turntable
 const kFlyPerSecond = 0.25;  // diagonals of the volume
 const kFastFlight = 4;
+const kTapSeconds = 0.05;  // of flight, for a key that is only tapped
 const kWiden = 1.1;
 
 const kFlight = {
-  w: [0, 0, 1], s: [0, 0, -1],
-  a: [-1, 0, 0], d: [1, 0, 0],
-  e: [0, 1, 0], q: [0, -1, 0],
+  w: [0, 0, 1],
+  s: [0, 0, -1],
+  a: [-1, 0, 0],
+  d: [1, 0, 0],
+  e: [0, 1, 0],
+  q: [0, -1, 0],
 };
 
 /// What the list of keys says.
 export const kKeyList = [
-  ["Picture", [
-    ["drag", "turn around the volume"],
-    ["Shift + drag, middle drag", "move the picture"],
-    ["wheel", "zoom to the pointer"],
-    ["right drag", "roll around the centre"],
-    ["Alt + drag", "look about from where the eye is"],
-    ["one finger; two fingers", "turn; pinch and move"],
-    ["W A S D, Q E", "fly forward, left, back, right, down and up; with Shift faster"],
-    ["arrow keys", "turn by 5 degrees; with Shift by 1"],
-    [kAxisViews.map((view) => view.key).join(" "), kAxisViews.map((view) => view.name).join(", ")],
-    ["R", "back to the first view"],
-    ["O", "parallel or perspective view"],
-    ["+  -", "field of view"],
-    ["T", "turntable, until T or a drag"],
-  ]],
-  ["Everywhere", [
-    ["Ctrl Z, Ctrl Y", "undo, redo"],
-    ["Space", "pause, go on"],
-    ["?", "this list"],
-  ]],
-  ["Transfer function", [
-    ["drag a point", "value and sigma_t"],
-    ["double click, N", "add a point"],
-    ["right click, Delete", "remove a point"],
-    ["Shift + drag", "move the whole function along the values"],
-    ["wheel; drag beside points", "zoom on the values; move along them"],
-    ["arrow keys; with Shift", "move the chosen point; finely"],
-    ["Page up, Page down", "choose the point before, after"],
-  ]],
+  [
+    "Picture",
+    [
+      ["drag", "turn around the volume"],
+      ["Shift + drag, middle drag", "move the picture"],
+      ["wheel", "zoom to the pointer"],
+      ["right drag", "roll around the centre"],
+      ["Alt + drag", "look about from where the eye is"],
+      ["one finger; two fingers", "turn; pinch and move"],
+      ["W A S D, Q E", "fly forward, left, back, right, down and up; with Shift faster"],
+      ["arrow keys", "turn by 5 degrees; with Shift by 1"],
+      [kAxisViews.map((view) => view.key).join(" "), kAxisViews.map((view) => view.name).join(", ")],
+      ["R", "back to the first view"],
+      ["O", "parallel or perspective view"],
+      ["+  -", "field of view"],
+      ["T", "turntable, until T or a drag"],
+    ]
+  ],
+  [
+    "Everywhere",
+    [
+      ["Ctrl Z, Ctrl Y", "undo, redo"],
+      ["Space", "pause, go on"],
+      ["?", "this list"],
+    ]
+  ],
+  [
+    "Transfer function",
+    [
+      ["drag a point", "value and sigma_t"],
+      ["double click, N", "add a point"],
+      ["right click, Delete", "remove a point"],
+      ["Shift + drag", "move the whole function along the values"],
+      ["wheel; drag beside points", "zoom on the values; move along them"],
+      ["arrow keys; with Shift", "move the chosen point; finely"],
+      ["Page up, Page down", "choose the point before, after"],
+    ]
+  ],
 ];
 
-const isText = (target) => target.closest?.("input:not([type=range]):not([type=checkbox]), textarea, select, dialog") !== null;
+const isText = (target) =>
+    target.closest?.("input:not([type=range]):not([type=checkbox]), textarea, select, dialog") !== null;
 
 export class Keys {
   /// @param actions  undo(), redo(), pause(), help()
@@ -80,7 +94,8 @@ export class Keys {
     if (kFlight[key]) return this.fly_(key, event.shiftKey);
     const view = this.session_.view();
     const found = kAxisViews.find((axisView) => axisView.key === key);
-    if (found) return this.move_(orbitTo(view.camera, { azimuth: found.azimuth, elevation: found.elevation, pan: [0, 0] }));
+    if (found)
+      return this.move_(orbitTo(view.camera, { azimuth: found.azimuth, elevation: found.elevation, pan: [0, 0] }));
     if (key.startsWith("Arrow") && !onControl) return this.arrow_(key, event.shiftKey, view);
     switch (key) {
       case " ":
@@ -125,19 +140,23 @@ export class Keys {
     if (this.flight_) return true;
     this.session_.emit("cameraTouched");
     this.flight_ = this.session_.drag("fly");
+    this.flyFor_(kTapSeconds);
     this.animate_((seconds) => {
-      if (this.held_.size === 0) {
-        this.flight_.end();
-        this.flight_ = null;
-        return false;
-      }
-      const { bounds } = this.session_.hello.volume;
-      const far = seconds * kFlyPerSecond * length(subtract(bounds[1], bounds[0])) * (this.fast_ ? kFastFlight : 1);
-      const move = [0, 1, 2].map((i) => [...this.held_].reduce((sum, held) => sum + kFlight[held][i] * far, 0));
-      const { camera, resolved } = this.session_.view();
-      this.flight_.edit(flyBy(camera, resolved, move));
-      return true;
+      if (this.held_.size > 0) return this.flyFor_(seconds);
+      this.flight_.end();
+      this.flight_ = null;
+      return false;
     });
+    return true;
+  }
+
+  // Flies the way that the held keys make together.
+  flyFor_(seconds) {
+    const { bounds } = this.session_.hello.volume;
+    const far = seconds * kFlyPerSecond * length(subtract(bounds[1], bounds[0])) * (this.fast_ ? kFastFlight : 1);
+    const move = [0, 1, 2].map((i) => [...this.held_].reduce((sum, held) => sum + kFlight[held][i] * far, 0));
+    const { camera, resolved } = this.session_.view();
+    this.flight_.edit(flyBy(camera, resolved, move));
     return true;
   }
 

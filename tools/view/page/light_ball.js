@@ -1,7 +1,7 @@
 // A ball on which the direction of a light is dragged, seen from where the viewer is.
 // SPDX-License-Identifier: Apache-2.0
-import { svg } from "./dom.js";
-import { directionOnBall, placeOnBall } from "./lights.js";
+import {svg} from "./dom.js";
+import {directionOnBall, placeOnBall} from "./lights.js";
 
 const kRadius = 44;  // of a drawing of 100 x 100
 const kKeyStep = 0.1;
@@ -9,10 +9,16 @@ const kKeyStep = 0.1;
 /// @param drag  begins a drag and returns { edit(direction in the view), end() }
 export function lightBall(drag) {
   const mark = svg("circle", { r: 5, class: "mark" });
-  const node = svg("svg", {
-    viewBox: "-50 -50 100 100", class: "ball", tabindex: 0, role: "slider",
-    "aria-label": "Direction of the light: drag, or arrow keys; B puts it behind the volume and back", "aria-valuetext": "",
-  }, svg("circle", { r: kRadius, class: "sphere" }), mark);
+  const node =
+      svg("svg", {
+        viewBox: "-50 -50 100 100",
+        class: "ball",
+        tabindex: 0,
+        role: "slider",
+        "aria-label": "Direction of the light: drag, or arrow keys; B puts it behind the volume and back",
+        "aria-valuetext": "",
+      },
+          svg("circle", { r: kRadius, class: "sphere" }), mark);
   let direction = [0, 0, 1], current = null;
 
   const place = (event) => {
@@ -35,7 +41,8 @@ export function lightBall(drag) {
     });
   node.addEventListener("keydown", (event) => {
     const { x, y, behind } = placeOnBall(direction);
-    const [dx, dy] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
+    const [dx, dy] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ??
+        [0, 0];
     const turned = event.key === "b" || event.key === "B";
     if (dx === 0 && dy === 0 && !turned) return;
     event.preventDefault();
@@ -52,7 +59,8 @@ export function lightBall(drag) {
       mark.setAttribute("cx", x * kRadius);
       mark.setAttribute("cy", -y * kRadius);
       node.classList.toggle("behind", behind);
-      node.setAttribute("aria-valuetext", `${x.toFixed(2)} to the right, ${y.toFixed(2)} up, ${behind ? "behind" : "in front"}`);
+      node.setAttribute(
+          "aria-valuetext", `${x.toFixed(2)} to the right, ${y.toFixed(2)} up, ${behind ? "behind" : "in front"}`);
     },
   };
 }

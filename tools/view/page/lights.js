@@ -1,6 +1,6 @@
 // Light sources of a scene, as merge patches, and the ball by which a direction is chosen.
 // SPDX-License-Identifier: Apache-2.0
-import { normalize } from "./vector.js";
+import {normalize} from "./vector.js";
 
 /// A new source: a lamp of five degrees to the upper right of the viewer, in the world's frame.
 export function newSource(axis) {
@@ -22,16 +22,16 @@ export function removeSource(scene, index) {
 }
 
 export function changeSource(scene, index, fields) {
-  return { light: { sources: sourcesOf(scene).map((source, i) => (i === index ? { ...source, ...fields } : source)) } };
+  return { light: { sources: sourcesOf(scene).map((source, i) => (i === index ? {...source, ...fields } : source)) } };
 }
 
 /// Adds to a patch what its model cannot be without: `lights` needs a source, and dos knows the cone alone.
 /// @param axis  of the source that is made up where the scene has none, in the world
 export function completed(patch, scene, axis) {
   const model = patch.model ?? scene.model, method = patch.method ?? scene.method;
-  const result = { ...patch };
+  const result = {...patch };
   if (model === "lights" && (patch.light?.sources ?? sourcesOf(scene)).length === 0)
-    result.light = { ...result.light, sources: [newSource(axis)] };
+    result.light = {...result.light, sources: [newSource(axis)] };
   if (patch.model && patch.model !== "cone" && method === "dos") result.method = "light-volume";
   return result;
 }

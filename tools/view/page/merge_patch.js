@@ -7,10 +7,12 @@ const isObject = (value) => value !== null && typeof value === "object" && !Arra
 /// Returns what a patch makes of a value. Neither of the two is changed.
 export function applyPatch(target, patch) {
   if (!isObject(patch)) return patch;
-  const result = isObject(target) ? { ...target } : {};
+  const result = isObject(target) ? {...target } : {};
   for (const [key, value] of Object.entries(patch)) {
-    if (value === null) delete result[key];
-    else result[key] = applyPatch(result[key], value);
+    if (value === null)
+      delete result[key];
+    else
+      result[key] = applyPatch(result[key], value);
   }
   return result;
 }
@@ -20,7 +22,7 @@ export function applyPatch(target, patch) {
 export function composePatches(first, second) {
   if (!isObject(second)) return second;
   if (!isObject(first)) return undefined;
-  const result = { ...first };
+  const result = {...first };
   for (const [key, value] of Object.entries(second)) {
     if (!(key in result)) {
       result[key] = value;
@@ -34,9 +36,7 @@ export function composePatches(first, second) {
 }
 
 /// Returns the patch {"a": {"b": value}} of the path "a.b".
-export function patchOf(path, value) {
-  return path.split(".").reduceRight((inner, key) => ({ [key]: inner }), value);
-}
+export function patchOf(path, value) { return path.split(".").reduceRight((inner, key) => ({ [key]: inner }), value); }
 
 /// Returns the field of a path, or undefined where the object has none.
 export function valueAt(object, path) {
@@ -47,5 +47,5 @@ export function valueAt(object, path) {
 export function replacingPatch(current, next) {
   if (!isObject(current) || !isObject(next)) return next;
   const removed = Object.keys(current).filter((key) => !(key in next));
-  return { ...Object.fromEntries(removed.map((key) => [key, null])), ...next };
+  return {...Object.fromEntries(removed.map((key) => [key, null])), ...next };
 }

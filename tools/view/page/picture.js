@@ -45,9 +45,7 @@ export class Picture {
   }
 
   /// A new connection counts its frames anew.
-  forget() {
-    this.shownFrame_ = -1;
-  }
+  forget() { this.shownFrame_ = -1; }
 
   draw_(image, header) {
     const { canvas } = this;

@@ -1,7 +1,7 @@
 // Pointers on the picture: drags orbit, pan, roll and look about, the wheel zooms, two fingers pinch; a pointer that
 // only hovers asks what lies under it.
 // SPDX-License-Identifier: Apache-2.0
-import { lookBy, orbitBy, panBy, rollBy, zoomBy } from "./camera.js";
+import {lookBy, orbitBy, panBy, rollBy, zoomBy} from "./camera.js";
 
 const kWheelRestMs = 250;  // a wheel has no end; it rests after so long
 const kProbeMs = 100;
@@ -26,7 +26,10 @@ export class PictureInput {
     this.pointers_.set(event.pointerId, this.picture_.place(event));
     this.session_.emit("cameraTouched");
     this.drag_ ??= this.session_.drag("camera");
-    this.kind_ = event.button === 2 ? "roll" : event.button === 1 || event.shiftKey ? "pan" : event.altKey ? "look" : "orbit";
+    this.kind_ = event.button === 2          ? "roll" :
+        event.button === 1 || event.shiftKey ? "pan" :
+        event.altKey                         ? "look" :
+                                               "orbit";
   }
 
   up_(event) {
@@ -45,8 +48,10 @@ export class PictureInput {
     }
     const middleBefore = this.middle_();
     this.pointers_.set(event.pointerId, place);
-    if (this.pointers_.size === 1) this.dragTo_(before, place);
-    else this.pinch_(middleBefore, this.middle_());
+    if (this.pointers_.size === 1)
+      this.dragTo_(before, place);
+    else
+      this.pinch_(middleBefore, this.middle_());
   }
 
   // The camera's move from one place of the pointer to the next.

@@ -1,5 +1,5 @@
-// The two axes of the transfer function's plot: values to the right, which can be zoomed, and sigma_t upwards, linear or
-// logarithmic. Positions are shares of the plot, 0 to 1.
+// The two axes of the transfer function's plot: values to the right, which can be zoomed, and sigma_t upwards, linear
+// or logarithmic. Positions are shares of the plot, 0 to 1.
 // SPDX-License-Identifier: Apache-2.0
 const clamp = (x, low, high) => Math.min(high, Math.max(low, x));
 

@@ -1,7 +1,7 @@
 // Saves pictures and scenes into the folder in which the server was started, and copies command and link.
 // SPDX-License-Identifier: Apache-2.0
-import { numberInput, row, textRow, vectorInput } from "./controls.js";
-import { button, element, newId, section } from "./dom.js";
+import {numberInput, row, textRow, vectorInput} from "./controls.js";
+import {button, element, newId, section} from "./dom.js";
 
 /// Copies a text; where the browser does not let pages do so, shows it ready to be copied by hand.
 async function copy(text, what, note) {
@@ -10,8 +10,9 @@ async function copy(text, what, note) {
     note(`The ${what} has been copied.`);
   } catch {
     const area = element("textarea", { value: text, readOnly: true, rows: 6, "aria-label": what });
-    const dialog = element("dialog", {}, element("p", { textContent: `Copy the ${what} from here (Ctrl C):` }), area,
-      element("form", { method: "dialog" }, element("button", { textContent: "Close" })));
+    const dialog = element(
+        "dialog", {}, element("p", { textContent: `Copy the ${what} from here (Ctrl C):` }), area,
+        element("form", { method: "dialog" }, element("button", { textContent: "Close" })));
     dialog.addEventListener("close", () => dialog.remove());
     document.body.append(dialog);
     dialog.showModal();
@@ -22,29 +23,45 @@ async function copy(text, what, note) {
 /// Returns { node, update() }.
 export function savePanel(session, note) {
   let name = "picture.png", sceneName = "scene.json", samples = 16, size = null;
-  const file = textRow({ label: "file", help: ".png or .exr, in the folder in which the server was started", commit: (value) => (name = value) });
-  const sizeInput = vectorInput({ label: "size", names: ["width", "height"], whole: true, commit: (value) => sizeInput.update((size = value)) });
+  const file = textRow({
+    label: "file",
+    help: ".png or .exr, in the folder in which the server was started",
+    commit: (value) => (name = value)
+  });
+  const sizeInput = vectorInput(
+      { label: "size", names: ["width", "height"], whole: true, commit: (value) => sizeInput.update((size = value)) });
   const sizeId = newId();
   sizeInput.node.querySelector("input").id = sizeId;
-  const samplesInput = numberInput({ label: "samples", whole: true, low: 1, commit: (value) => samplesInput.update((samples = Math.max(1, value))) });
+  const samplesInput = numberInput({
+    label: "samples",
+    whole: true,
+    low: 1,
+    commit: (value) => samplesInput.update((samples = Math.max(1, value)))
+  });
   const samplesId = newId();
   samplesInput.node.id = samplesId;
-  const sceneFile = textRow({ label: "scene file", help: ".json, which umbrick render reads", commit: (value) => (sceneName = value) });
+  const sceneFile = textRow(
+      { label: "scene file", help: ".json, which umbrick render reads", commit: (value) => (sceneName = value) });
   const save = (message) => session.command({ type: "save", ...message });
   file.update(name);
   sceneFile.update(sceneName);
   samplesInput.update(samples);
   return {
-    node: section("Save and share", false, file.node,
-      row("size", "of the saved picture, pixels", sizeId, sizeInput.node),
-      row("samples", "that are averaged", samplesId, samplesInput.node),
-      element("div", { className: "buttons" },
-        button("Save picture", () => save({ what: "picture", name, size: size ?? session.scene.camera.size, samples }))),
-      sceneFile.node,
-      element("div", { className: "buttons" },
-        button("Save scene", () => save({ what: "scene", name: sceneName, size: session.scene.camera.size, samples })),
-        button("Copy command", () => copy(session.served.command, "command", note), "that makes this picture"),
-        button("Copy link", () => copy(location.href, "link", note), "to this page, while the server runs"))),
+    node: section(
+        "Save and share", false, file.node, row("size", "of the saved picture, pixels", sizeId, sizeInput.node),
+        row("samples", "that are averaged", samplesId, samplesInput.node),
+        element(
+            "div", { className: "buttons" },
+            button(
+                "Save picture",
+                () => save({ what: "picture", name, size: size ?? session.scene.camera.size, samples }))),
+        sceneFile.node,
+        element(
+            "div", { className: "buttons" },
+            button(
+                "Save scene", () => save({ what: "scene", name: sceneName, size: session.scene.camera.size, samples })),
+            button("Copy command", () => copy(session.served.command, "command", note), "that makes this picture"),
+            button("Copy link", () => copy(location.href, "link", note), "to this page, while the server runs"))),
     update: () => sizeInput.update(size ?? session.scene.camera.size),
   };
 }

@@ -1,8 +1,8 @@
 // What the page knows of the server: its greeting and the scene, which is the state of everything shown. Edits are
 // applied here at once and sent on, so that controls follow the hand; the server's scene is taken over at rest.
 // SPDX-License-Identifier: Apache-2.0
-import { isOrbit, orbitFrame, resolveCamera, viewAxes } from "./camera.js";
-import { applyPatch } from "./merge_patch.js";
+import {isOrbit, orbitFrame, resolveCamera, viewAxes} from "./camera.js";
+import {applyPatch} from "./merge_patch.js";
 
 export class Session {
   /// @param send   sends a message that is no edit
@@ -19,9 +19,7 @@ export class Session {
     this.doubtful_ = false;
   }
 
-  on(event, listener) {
-    (this.listeners_[event] ??= []).push(listener);
-  }
+  on(event, listener) { (this.listeners_[event] ??= []).push(listener); }
   emit(event, value) {
     for (const listener of this.listeners_[event] ?? []) listener(value);
   }
@@ -60,19 +58,20 @@ export class Session {
   }
 
   /// Changes the scene by one edit.
-  edit(patch, step = this.newStep("edit")) {
-    this.apply_(patch, step, false);
-  }
+  edit(patch, step = this.newStep("edit")) { this.apply_(patch, step, false); }
 
   /// Begins a drag: its edits are drawn as drafts and undone together.
   drag(name) {
     const step = this.newStep(name);
+    let edited = false;
     return {
       edit: (patch) => {
+        edited = true;
         this.moving_ = true;
         this.apply_(patch, step, true);
       },
       end: () => {
+        if (!edited) return;  // a click without a move
         this.moving_ = false;
         this.pacer_.rest();
         if (this.doubtful_) this.takeServed_();
@@ -82,7 +81,7 @@ export class Session {
 
   apply_(patch, step, moving) {
     if (!this.scene) return;
-    const local = { ...patch };
+    const local = {...patch };
     // What a preset or a file stands for is known when the server has read it.
     if (typeof local.transfer === "string" || Array.isArray(local.transfer)) delete local.transfer;
     this.scene = applyPatch(this.scene, local);
@@ -99,15 +98,14 @@ export class Session {
   }
 
   /// Asks what lies at a pixel. It is no command, since edits need not go first.
-  probe(x, y) {
-    this.send_({ type: "probe", x, y });
-  }
+  probe(x, y) { this.send_({ type: "probe", x, y }); }
 
   /// Returns the scene's camera, where it stands now, and its axes; null before the first scene.
   view() {
     if (!this.scene) return null;
     const camera = this.scene.camera;
-    const resolved = isOrbit(camera) && !this.orbitFrame_ ? this.served.camera : resolveCamera(camera, this.orbitFrame_);
+    const resolved =
+        isOrbit(camera) && !this.orbitFrame_ ? this.served.camera : resolveCamera(camera, this.orbitFrame_);
     return { camera, resolved, axes: viewAxes(resolved) };
   }
 }

@@ -1,7 +1,7 @@
-// Edits of a transfer function: a list of points { value, albedo, sigma_t } whose values ascend. Each edit returns a new
-// list. Two equal values make a step, so that a point may be moved up to its neighbour but not past it.
+// Edits of a transfer function: a list of points { value, albedo, sigma_t } whose values ascend. Each edit returns a
+// new list. Two equal values make a step, so that a point may be moved up to its neighbour but not past it.
 // SPDX-License-Identifier: Apache-2.0
-import { replacingPatch } from "./merge_patch.js";
+import {replacingPatch} from "./merge_patch.js";
 
 const clamp = (x, low, high) => Math.min(high, Math.max(low, x));
 
@@ -23,7 +23,7 @@ export function mediumAt(points, value) {
 
 /// Changes fields of one point. The value stays between those of its neighbours.
 export function withPoint(points, index, fields) {
-  const changed = { ...points[index], ...fields };
+  const changed = {...points[index], ...fields };
   changed.value = clamp(changed.value, points[index - 1]?.value ?? -Infinity, points[index + 1]?.value ?? Infinity);
   changed.sigma_t = Math.max(0, changed.sigma_t);
   return points.map((point, i) => (i === index ? changed : point));
@@ -42,16 +42,17 @@ export function withoutPoint(points, index) {
 }
 
 /// Moves all points along the axis of values.
-export const shifted = (points, by) => points.map((point) => ({ ...point, value: point.value + by }));
+export const shifted = (points, by) => points.map((point) => ({...point, value: point.value + by}));
 
 /// Multiplies the extinction of all points.
-export const scaled = (points, factor) => points.map((point) => ({ ...point, sigma_t: point.sigma_t * factor }));
+export const scaled = (points, factor) => points.map((point) => ({...point, sigma_t: point.sigma_t * factor}));
 
-/// Stretches the function to the window from low to high, as the option --window. Points of one value move to its middle.
+/// Stretches the function to the window from low to high, as the option --window. Points of one value move to its
+/// middle.
 export function windowed(points, low, high) {
   const first = points[0].value, last = points.at(-1).value;
   const place = (value) => (last > first ? low + ((value - first) / (last - first)) * (high - low) : (low + high) / 2);
-  return points.map((point) => ({ ...point, value: place(point.value) }));
+  return points.map((point) => ({...point, value: place(point.value) }));
 }
 
 /// Returns what has to be added to values of a function to get values of the grid: functions for CT are written in HU
@@ -66,10 +67,10 @@ export function unitOffset(functionUnit, gridUnit) {
 export function pointsPatch(transfer, points) {
   const short = (x) => Number(x.toPrecision(9));
   const written = points.map(({ value, albedo, sigma_t }) => ({
-    value: short(value),
-    albedo: albedo.map((c) => clamp(short(c), 0, 1)),
-    sigma_t: short(sigma_t),
-  }));
+                               value: short(value),
+                               albedo: albedo.map((c) => clamp(short(c), 0, 1)),
+                               sigma_t: short(sigma_t),
+                             }));
   const next = { points: written };
   if (transfer?.unit) next.unit = transfer.unit;
   return { transfer: replacingPatch(transfer, next) };

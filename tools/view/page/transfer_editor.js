@@ -1,18 +1,19 @@
 // The plot in which a transfer function is edited by pointer and keys. Values are the grid's; a function in another
 // unit is moved to them and back.
 // SPDX-License-Identifier: Apache-2.0
-import { movedRange, shareOfSigma, sigmaOfShare, sigmaTop, wholeRange, zoomedRange } from "./plot_axes.js";
-import { pointsOf, pointsPatch, shifted, unitOffset, withAdded, withoutPoint, withPoint } from "./transfer.js";
-import { drawLattice, drawTransferPlot, plotArea } from "./transfer_plot.js";
+import {movedRange, shareOfSigma, sigmaOfShare, sigmaTop, wholeRange, zoomedRange} from "./plot_axes.js";
+import {pointsOf, pointsPatch, shifted, unitOffset, withAdded, withoutPoint, withPoint} from "./transfer.js";
+import {drawLattice, drawTransferPlot, isOver, plotArea} from "./transfer_plot.js";
 
-const kGrip = 14;      // pixels around a point in which it is taken
-const kStep = 0.01;    // of the axis, by an arrow key
+const kGrip = 14;    // pixels around a point in which it is taken
+const kStep = 0.01;  // of the axis, by an arrow key
 const kFineStep = 0.001;
 
 export class TransferEditor {
   /// @param onChosen  called when another point is chosen or the function has changed
   constructor(canvas, session, onChosen) {
-    Object.assign(this, { canvas, session_: session, onChosen_: onChosen, chosen: 0, logarithmic: false, range_: null });
+    Object.assign(
+        this, { canvas, session_: session, onChosen_: onChosen, chosen: 0, logarithmic: false, range_: null });
     canvas.addEventListener("pointerdown", (event) => this.down_(event));
     canvas.addEventListener("pointermove", (event) => this.drag_?.move(event));
     for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => this.up_());
@@ -30,9 +31,7 @@ export class TransferEditor {
     return points && shifted(points, this.offset_());
   }
   /// Returns the patch of points in values of the grid.
-  patch(points) {
-    return pointsPatch(this.session_.scene.transfer, shifted(points, -this.offset_()));
-  }
+  patch(points) { return pointsPatch(this.session_.scene.transfer, shifted(points, -this.offset_())); }
   setLogarithmic(on) {
     this.logarithmic = on;
     this.draw();
@@ -48,7 +47,7 @@ export class TransferEditor {
   }
   /// Adds a point in the middle between the chosen one and the next, on the curve.
   addBeside() {
-    const points = this.points, a = points[this.chosen], b = points[this.chosen + 1] ?? { ...a, value: this.range()[1] };
+    const points = this.points, a = points[this.chosen], b = points[this.chosen + 1] ?? {...a, value: this.range()[1] };
     this.insert_((a.value + b.value) / 2, (a.sigma_t + b.sigma_t) / 2);
   }
   removeChosen() {
@@ -57,16 +56,12 @@ export class TransferEditor {
     this.choose(Math.min(this.chosen, points.length - 2));
   }
 
-  offset_() {
-    return unitOffset(this.session_.scene.transfer.unit ?? "", this.session_.hello.volume.unit ?? "");
-  }
+  offset_() { return unitOffset(this.session_.scene.transfer.unit ?? "", this.session_.hello.volume.unit ?? ""); }
   whole_() {
     const { low, high } = this.session_.hello.volume;
     return wholeRange(low, high, this.points);
   }
-  range() {
-    return this.range_ ?? this.drag_?.whole ?? this.whole_();
-  }
+  range() { return this.range_ ?? this.drag_?.whole ?? this.whole_(); }
 
   changed_() {
     const count = this.points?.length ?? 0;
@@ -77,14 +72,13 @@ export class TransferEditor {
     this.onChosen_();
   }
 
-  area_() {
-    return plotArea(this.canvas.clientWidth, this.canvas.clientHeight);
-  }
+  area_() { return plotArea(this.canvas.clientWidth, this.canvas.clientHeight); }
   places_(points) {
     const area = this.area_(), [low, high] = this.range();
-    return points.map((point) => [
-      area.left + ((point.value - low) / (high - low)) * area.width,
-      area.top + area.height * (1 - shareOfSigma(point.sigma_t, this.top_, this.logarithmic)),
+    return points.map(
+        (point) =>
+            [area.left + ((point.value - low) / (high - low)) * area.width,
+             area.top + area.height * (1 - shareOfSigma(point.sigma_t, this.top_, this.logarithmic)),
     ]);
   }
   // Returns value and sigma_t at a pointer.
@@ -92,7 +86,8 @@ export class TransferEditor {
     const box = this.canvas.getBoundingClientRect(), area = this.area_(), [low, high] = this.range();
     const x = event.clientX - box.left, y = event.clientY - box.top;
     return {
-      x, y,
+      x,
+      y,
       value: low + ((x - area.left) / area.width) * (high - low),
       sigma_t: sigmaOfShare(1 - (y - area.top) / area.height, this.top_, this.logarithmic),
     };
@@ -103,6 +98,7 @@ export class TransferEditor {
     const { x, y } = this.at_(event);
     let best = -1, nearest = kGrip;
     this.places_(this.points).forEach(([px, py], i) => {
+      if (!isOver(this.area_(), [px, py])) return;
       const distance = Math.hypot(px - x, py - y) - (i === this.chosen ? 0.5 : 0);
       if (distance < nearest) [best, nearest] = [i, distance];
     });
@@ -116,8 +112,15 @@ export class TransferEditor {
     const points = this.points;
     this.top_ ??= points ? sigmaTop(points) : 1;
     const places = points && this.places_(points);
-    const plot = { points, places, chosen: this.chosen, range: this.range(), top: this.top_, logarithmic: this.logarithmic };
-    drawTransferPlot(this.canvas, { ...plot, volume: hello.volume });
+    const plot = {
+      points,
+      places,
+      chosen: this.chosen,
+      range: this.range(),
+      top: this.top_,
+      logarithmic: this.logarithmic
+    };
+    drawTransferPlot(this.canvas, {...plot, volume: hello.volume });
     // Where the chosen point is, in CSS pixels of the plot, for tests that drag it.
     if (places) this.canvas.dataset.chosen = places[this.chosen].map(Math.round).join(" ");
   }
@@ -128,9 +131,12 @@ export class TransferEditor {
     this.canvas.focus();
     this.canvas.setPointerCapture(event.pointerId);
     const index = this.pointAt_(event), start = this.at_(event), points = this.points, whole = this.whole_();
-    if (event.shiftKey) this.drag_ = this.windowDrag_(points, start);
-    else if (index >= 0) this.drag_ = this.pointDrag_(points, index, start);
-    else this.drag_ = this.rangeDrag_(start);
+    if (event.shiftKey)
+      this.drag_ = this.windowDrag_(points, start);
+    else if (index >= 0)
+      this.drag_ = this.pointDrag_(points, index, start);
+    else
+      this.drag_ = this.rangeDrag_(start);
     this.drag_.whole = whole;
     if (index >= 0) this.choose(index);
   }
@@ -146,7 +152,8 @@ export class TransferEditor {
     const [px, py] = this.places_(points)[index];
     const moved = { clientX: px - start.x, clientY: py - start.y };
     return this.editing_("point", (event) => {
-      const { value, sigma_t } = this.at_({ clientX: event.clientX + moved.clientX, clientY: event.clientY + moved.clientY });
+      const { value, sigma_t } =
+          this.at_({ clientX: event.clientX + moved.clientX, clientY: event.clientY + moved.clientY });
       return withPoint(points, index, { value, sigma_t });
     });
   }
@@ -203,11 +210,16 @@ export class TransferEditor {
     const step = event.shiftKey ? kFineStep : kStep, [low, high] = this.range();
     const move = (right, up) => this.moveChosen_(right * step * (high - low), up * step);
     const actions = {
-      ArrowLeft: () => move(-1, 0), ArrowRight: () => move(1, 0),
-      ArrowUp: () => move(0, 1), ArrowDown: () => move(0, -1),
-      PageUp: () => this.choose(this.chosen - 1), PageDown: () => this.choose(this.chosen + 1),
-      Home: () => this.choose(0), End: () => this.choose(Infinity),
-      Delete: () => this.removeChosen(), Backspace: () => this.removeChosen(),
+      ArrowLeft: () => move(-1, 0),
+      ArrowRight: () => move(1, 0),
+      ArrowUp: () => move(0, 1),
+      ArrowDown: () => move(0, -1),
+      PageUp: () => this.choose(this.chosen - 1),
+      PageDown: () => this.choose(this.chosen + 1),
+      Home: () => this.choose(0),
+      End: () => this.choose(Infinity),
+      Delete: () => this.removeChosen(),
+      Backspace: () => this.removeChosen(),
       n: () => this.addBeside(),
     };
     const action = actions[event.key];

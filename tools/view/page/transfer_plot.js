@@ -1,19 +1,25 @@
 // Draws a transfer function over the histogram of the volume's values: bars of log counts, the curve of sigma_t filled
 // with the colours that it scatters, and its points.
 // SPDX-License-Identifier: Apache-2.0
-import { hexOfLinear } from "./colour.js";
-import { shareOfSigma, ticks } from "./plot_axes.js";
-import { mediumAt } from "./transfer.js";
-import { shortNumber } from "./words.js";
+import {hexOfLinear} from "./colour.js";
+import {shareOfSigma, ticks} from "./plot_axes.js";
+import {mediumAt} from "./transfer.js";
+import {shortNumber} from "./words.js";
 
-const kColours = { bars: "#454c5a", grid: "#363c47", text: "#aeb5c1", curve: "#f2f4f8", chosen: "#ffb347" };
+const kColours = {
+  bars: "#454c5a",
+  grid: "#363c47",
+  text: "#aeb5c1",
+  curve: "#f2f4f8",
+  chosen: "#ffb347"
+};
 const kFoot = 30;    // pixels below the plot for the colours and the numbers
 const kBand = 8;     // of them for the colours
 const kMargin = 10;  // at the other sides, so that points at the ends can be gripped
 
 /// Returns the plot's place in a canvas of so many CSS pixels.
 export const plotArea = (width, height) =>
-  ({ left: kMargin, top: kMargin, width: width - 2 * kMargin, height: height - kMargin - kFoot });
+    ({left: kMargin, top: kMargin, width: width - 2 * kMargin, height: height - kMargin - kFoot});
 
 function drawBars(context, area, { histogram, low, high }, range) {
   const most = Math.log1p(Math.max(...histogram)), width = (high - low) / histogram.length;
@@ -33,7 +39,8 @@ function drawNumbers(context, area, range) {
   for (const value of ticks(range[0], range[1], Math.max(2, area.width / 70))) {
     const x = area.left + ((value - range[0]) / (range[1] - range[0])) * area.width;
     context.fillRect(x, area.top + area.height + kBand + 2, 1, 4);
-    context.fillText(shortNumber(value), x, area.top + area.height + kFoot);
+    const text = shortNumber(value), half = context.measureText(text).width / 2;
+    if (x + half < area.left + area.width + kMargin) context.fillText(text, x, area.top + area.height + kFoot);
   }
 }
 
@@ -52,14 +59,20 @@ function drawFunction(context, area, points, range, top, logarithmic) {
     context.fillRect(area.left + i, foot - height, 1, height);
     context.globalAlpha = 1;
     context.fillRect(area.left + i, foot + 2, 1, kBand - 2);
-    if (i === 0) curve.moveTo(area.left, foot - height);
-    else curve.lineTo(area.left + i, foot - height);
+    if (i === 0)
+      curve.moveTo(area.left, foot - height);
+    else
+      curve.lineTo(area.left + i, foot - height);
   }
   context.stroke(curve);
 }
 
-function drawPoints(context, places, points, chosen) {
+/// Returns whether a place lies over the part of the axis that is shown.
+export const isOver = (area, [x]) => x > area.left - 1 && x < area.left + area.width + 1;
+
+function drawPoints(context, area, places, points, chosen) {
   places.forEach(([x, y], i) => {
+    if (!isOver(area, [x, y])) return;
     context.beginPath();
     context.arc(x, y, i === chosen ? 7 : 5.5, 0, 2 * Math.PI);
     context.fillStyle = hexOfLinear(points[i].albedo);
@@ -87,11 +100,11 @@ export function drawTransferPlot(canvas, plot) {
   context.restore();
   context.fillStyle = kColours.grid;
   context.fillRect(area.left, area.top + area.height, area.width, 1);
-  if (plot.points) drawPoints(context, plot.places, plot.points, plot.chosen);
+  if (plot.points) drawPoints(context, area, plot.places, plot.points, plot.chosen);
 }
 
 /// Draws a function of value (to the right) and gradient magnitude (up) as a map: colours by sigma_t.
-export function drawLattice(canvas, { values, gradients, albedo, sigma_t }) {
+export function drawLattice(canvas, {values, gradients, albedo, sigma_t}) {
   const width = canvas.clientWidth, height = canvas.clientHeight;
   Object.assign(canvas, { width, height });
   const context = canvas.getContext("2d"), area = plotArea(width, height);

@@ -1,16 +1,16 @@
 // The page of `umbrick view`: connects what the server says with what is shown, and what is done with what is sent.
 // SPDX-License-Identifier: Apache-2.0
-import { Connection } from "./connection.js";
-import { EditPacer } from "./edit_pacer.js";
-import { helpDialog } from "./help_dialog.js";
-import { Keys } from "./keys.js";
-import { Notices } from "./notices.js";
-import { drawScaleBar, drawTriad } from "./overlay.js";
-import { buildPanels } from "./panels.js";
-import { Picture } from "./picture.js";
-import { PictureInput } from "./picture_input.js";
-import { Session } from "./session.js";
-import { probeWords, statusWords } from "./words.js";
+import {Connection} from "./connection.js";
+import {EditPacer} from "./edit_pacer.js";
+import {helpDialog} from "./help_dialog.js";
+import {Keys} from "./keys.js";
+import {Notices} from "./notices.js";
+import {drawScaleBar, drawTriad} from "./overlay.js";
+import {buildPanels} from "./panels.js";
+import {Picture} from "./picture.js";
+import {PictureInput} from "./picture_input.js";
+import {Session} from "./session.js";
+import {probeWords, statusWords} from "./words.js";
 
 const at = (id) => document.getElementById(id);
 const notices = new Notices(at("notices"));
@@ -24,11 +24,14 @@ new PictureInput(picture, session);
 
 const help = helpDialog();
 document.body.append(help);
-let paused = false, panels = null;
+let paused = false, panels = null, sizeWasReset = false;
 const actions = {
   undo: () => session.command({ type: "undo" }),
   redo: () => session.command({ type: "redo" }),
-  reset: () => session.command({ type: "reset" }),
+  reset: () => {
+    session.command({ type: "reset" });
+    sizeWasReset = true;
+  },
   pause: () => session.command({ type: paused ? "resume" : "pause" }),
   help: () => (help.open ? help.close() : help.showModal()),
 };
@@ -50,6 +53,9 @@ session.on("hello", (hello) => {
 session.on("scene", ({ canUndo, canRedo }) => {
   at("undo").disabled = !canUndo;
   at("redo").disabled = !canRedo;
+  // The scene as it was at the start has the size of that time, not the window's.
+  if (sizeWasReset) picture.askForWindowSize();
+  sizeWasReset = false;
 });
 session.on("change", () => {
   if (!session.hello) return;

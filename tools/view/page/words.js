@@ -29,7 +29,7 @@ export function probeWords(probe, unit) {
 }
 
 /// Keeps the errors of the present picture over time. A picture begins anew where its time or samples fall.
-export function withErrorPoint(history, { ms, error, samples, draft }) {
+export function withErrorPoint(history, {ms, error, samples, draft}) {
   const last = history.at(-1);
   const begins = draft || (last && (ms < last.ms || samples < last.samples));
   const kept = begins ? [] : history;
