@@ -11,6 +11,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sweep/stretches-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace umbrick::HWY_NAMESPACE {
 namespace {
@@ -264,6 +266,21 @@ class Accumulator {
     }
   }
 
+  // A piece whose opacity is known, with its albedo.
+  HWY_INLINE void add(const StretchPiece<Floats>& piece, const Arriving& light) {
+    const Lanes d;
+    const Floats gained = hn::Mul(piece.alpha, hn::Sub(hn::Set(d, 1.0f), opacity_));
+    red_ = hn::MulAdd(hn::Mul(gained, light.red), piece.red, red_);
+    green_ = hn::MulAdd(hn::Mul(gained, light.green), piece.green, green_);
+    blue_ = hn::MulAdd(hn::Mul(gained, light.blue), piece.blue, blue_);
+    opacity_ = hn::Add(opacity_, gained);
+    if (rays_.seen) {
+      seen_ = hn::MulAdd(gained, light.power, seen_);
+      depth_ = hn::MulAdd(gained, middle_, depth_);
+    }
+  }
+  HWY_INLINE Floats through() const { return hn::Sub(hn::Set(Lanes(), 1.0f), opacity_); }
+
   HWY_INLINE void store() const {
     const Lanes d;
     hn::StoreU(opacity_, d, rays_.opacity + at_);
@@ -348,6 +365,7 @@ void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const 
         sum.store();
         continue;
       }
+      const Floats exactFrom = from, exactTo = to;
       from = hn::Round(from);
       to = hn::Round(to);
       TableEnd begins = linear.end(d, from), ends = linear.end(d, to);
@@ -358,17 +376,32 @@ void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const 
       linear.addColours(d, begins);
       linear.addColours(d, ends);
       // Where a segment is thick, its front hides its back: it is taken in two or four parts, between which that is
-      // exact. Each ray has its own parts, so that none depends on its neighbours: 1, 1/2 or 1/4 of the segment.
+      // exact. Each ray has its own parts, so that none depends on its neighbours: 1, 1/2 or 1/4 of the segment. Where
+      // even a part may be opaque and of several colours, the table has stretches, over which all is exact.
       const auto ranges = hn::Gt(hn::Abs(hn::Sub(to, from)), one);
-      const auto thick = hn::And(hn::Gt(tau, hn::Set(d, 0.2f)), ranges);
+      const auto thick =
+          table.stretches() ? hn::Gt(tau, hn::Set(d, 0.2f)) : hn::And(hn::Gt(tau, hn::Set(d, 0.2f)), ranges);
       if (hn::AllFalse(d, thick)) {
         const MeanMedium medium{sigma_t, linear.mean(d, all, begins, ends, 1), linear.mean(d, all, begins, ends, 2),
                                 linear.mean(d, all, begins, ends, 3)};
         sum.add(medium, tau, length, arrivingAt(d, segment, front, back, at, middle));
       } else {
-        const auto thicker = hn::And(hn::Gt(tau, hn::Set(d, 1.0f)), ranges);
-        const Floats size = hn::IfThenElse(thicker, hn::Set(d, 0.25f), hn::IfThenElse(thick, half, one));
-        const int parts = hn::AllFalse(d, thicker) ? 2 : 4;
+        auto byParts = hn::And(thick, ranges);
+        if (const StretchTable* const stretches = table.stretches()) {
+          const StretchWalk<Lanes> walk(d, *stretches, table.steps(), exactFrom, exactTo);
+          const auto exactly = hn::And(thick, walk.isShort());
+          byParts = hn::AndNot(exactly, thick);
+          const auto add = [&](const StretchPiece<Floats>& piece) HWY_ATTR {
+            sum.add(piece, arrivingAt(d, segment, front, back, at, between(begin, end, piece.place)));
+            return hn::AllFalse(d, hn::And(exactly, hn::Gt(sum.through(), hn::Set(d, 1e-7f))));
+          };
+          const auto opacityOf = [&](Floats x) HWY_ATTR { return hn::Mul(x, slabFactorOf(d, x)); };
+          if (!hn::AllFalse(d, exactly)) walk.along(length, exactly, opacityOf, add);
+          length = hn::IfThenZeroElse(exactly, length);
+        }
+        const auto thicker = hn::And(hn::Gt(tau, hn::Set(d, 1.0f)), byParts);
+        const Floats size = hn::IfThenElse(thicker, hn::Set(d, 0.25f), hn::IfThenElse(byParts, half, one));
+        const int parts = hn::AllFalse(d, byParts) ? 1 : hn::AllFalse(d, thicker) ? 2 : 4;
         Floats done = zero;
         TableEnd before = begins;
         for (int i = 0; i < parts; ++i) {

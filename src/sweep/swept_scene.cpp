@@ -2,6 +2,7 @@
 #include "sweep/swept_scene.h"
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
 
@@ -13,6 +14,15 @@
 #include "umbrick/scene/lights.h"
 
 namespace umbrick {
+namespace {
+
+double longestVoxelEdge(const glm::dmat4& indexToWorld) {
+  double longest = 0;
+  for (int axis = 0; axis < 3; ++axis) longest = std::max(longest, glm::length(glm::dvec3(indexToWorld[axis])));
+  return longest;
+}
+
+}  // namespace
 
 bool sweptSupports(const SceneSettings& scene) {
   return supports(Method::lightVolume, scene.model) &&
@@ -37,8 +47,11 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
                           technique_ + " reads up to " + std::to_string(kMostVoxels));
   const bool transfer = !before || before->transfer != next.transfer;
   std::optional<MediumTable> table;
-  // What this extinction leaves of light on the way through a thousandth of a voxel is nothing.
-  if (transfer) table.emplace(next.transfer, volume().background, 1e5 / shortestVoxelEdge(volume().indexToWorld));
+  // What the largest extinction leaves of light on the way through a thousandth of a voxel is nothing. A fourth of a
+  // segment, which is the least part that is taken, hides colours from an optical depth of 1 on.
+  if (transfer)
+    table.emplace(next.transfer, volume().background, 1e5 / shortestVoxelEdge(volume().indexToWorld),
+                  4 / longestVoxelEdge(volume().indexToWorld));
   if (transfer || before->bricks.culling != next.bricks.culling || before->bricks.budgetMiB != next.bricks.budgetMiB) {
     const MediumTable& now = table ? *table : *table_;
     const Range background{volume().background, volume().background};
