@@ -49,10 +49,17 @@ class BrickVoxels {
   /// @param volume  outlives this
   explicit BrickVoxels(const Bricks& volume);
 
-  /// Holds the bricks that the function shows and lets others go. Where this throws, nothing has changed.
-  /// @throw InvalidArgument  more than `mostBytes`
-  /// @param culling  false: all bricks are held, and all groups are active
-  void select(const MediumTable& table, bool culling, bool backgroundVisible, std::uint64_t mostBytes);
+  /// Returns the bricks that the function shows, ascending in z, then y, then x.
+  /// @param culling  false: all bricks
+  std::vector<Brick> visible(const MediumTable& table, bool culling, bool backgroundVisible) const;
+  /// Returns what the voxels of bricks take, and of one of several values. Bricks of one value take none.
+  std::uint64_t bytesOf(std::span<const Brick> bricks, const MediumTable& table) const;
+  std::uint64_t bytesEach(const MediumTable& table) const;
+  /// Holds bricks and lets others go. Where this throws, nothing has changed.
+  /// @param wanted    some of those that visible() returns, in its order
+  /// @param culling   false: all groups are active
+  /// @param makeRoom  lets others go first, so that no more is held at any time; they are gone where this throws
+  void hold(std::span<const Brick> wanted, const MediumTable& table, bool culling, bool makeRoom = false);
 
   const Bricks& volume() const { return volume_; }
   VoxelCode code() const { return code_; }
@@ -63,7 +70,7 @@ class BrickVoxels {
   std::vector<PlacedBrick> allBricks() const;
   VoxelBrick& brick(std::size_t i) { return *bricks_[i]; }
   std::uint64_t bytes() const;
-  std::uint64_t loaded() const { return loaded_; }  // bricks that were read for the last selection
+  std::uint64_t loaded() const { return loaded_; }  // bricks that were read by the last hold()
   glm::ivec3 groups() const { return groups_; }
   /// A number that grows whenever the bricks that are held change.
   std::uint64_t generation() const { return generation_; }

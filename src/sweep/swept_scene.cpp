@@ -57,7 +57,16 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
     const Range background{volume().background, volume().background};
     const bool backgroundVisible = !volume().domain.empty() && !now.isTransparent(background, {0, 0});
     const Stopwatch watch;
-    voxels_.select(now, next.bricks.culling, backgroundVisible, next.bricks.budgetMiB << 20);
+    std::vector<Brick> visible = voxels_.visible(now, next.bricks.culling, backgroundVisible);
+    const std::uint64_t most = next.bricks.budgetMiB << 20, each = voxels_.bytesEach(now);
+    const std::uint64_t needed = voxels_.bytesOf(visible, now);
+    if (needed > 0 && each > most)
+      throw InvalidArgument("bricks.budgetMiB: the voxels of one brick take " + std::to_string((each >> 20) + 1) +
+                            " MiB, more than " + std::to_string(most >> 20) + " MiB");
+    const bool inBands = needed > most;
+    voxels_.hold(inBands ? std::span<const Brick>() : visible, now, next.bricks.culling);
+    visible_ = std::move(visible);
+    inBands_ = inBands;
     backgroundVisible_ = backgroundVisible;
     loadMs_ += watch.elapsedMs();
     loaded_ += voxels_.loaded();
@@ -75,9 +84,10 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
   lights_ = 0;
   whole_ = glm::vec3(1);
   if (occlusionMethod(scene) == Method::lightVolume) {
-    light_.update(voxels_, scene,
+    light_.update(visible_, volume().layout, scene,
                   sample.lights.empty() ? lightDirections(scene, scene.occlusion.ordinates.directions) : sample.lights,
                   planes_);
+    if (!inBands_) light_.store(voxels_);
     stats.lightMs = light_.ms();
     stats.directions = light_.stats().directions;
     stats.windowUpdates = light_.stats().updates;
@@ -87,8 +97,32 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
   if (scene.camera.projection == Projection::orthographic) planes_.push_back(frontPlane(scene, volume()));
   stats.geometryMs = watch.elapsedMs() - stats.lightMs;
   stats.bricks = volume().bricks.size();
-  stats.visibleBricks = stats.brickSlots = voxels_.bricks().size();
+  stats.visibleBricks = stats.brickSlots = visible_.size();
   stats.textureBytes = voxels_.bytes();
+}
+
+void SweptScene::drawInBands(const ResolvedScene& scene, int rows, int multiple,
+                             const std::function<RowSpan(const Brick& brick)>& rowsOf,
+                             const std::function<void(int begin, int end)>& draw, RenderStats& stats) {
+  if (!inBands_) {
+    draw(0, rows);
+    return;
+  }
+  std::vector<RowSpan> spans;
+  for (const Brick& brick : visible_) spans.push_back(rowsOf(brick));
+  for (const RowBand& band :
+       cutBands(spans, rows, multiple, voxels_.bytesEach(*table_), scene.bricks.budgetMiB << 20)) {
+    const Stopwatch watch;
+    std::vector<Brick> needed;
+    for (std::size_t i = 0; i < spans.size(); ++i)
+      if (spans[i].meets(band.begin, band.end)) needed.push_back(visible_[i]);
+    voxels_.hold(needed, *table_, scene.bricks.culling, true);
+    if (lights_ > 0) light_.store(voxels_);
+    stats.uploadMs += watch.elapsedMs();
+    stats.uploadedBricks += voxels_.loaded();
+    stats.textureBytes = std::max(stats.textureBytes, voxels_.bytes());
+    draw(band.begin, band.end);
+  }
 }
 
 SweptFrame SweptScene::frame(const ResolvedScene& scene, bool aux) const {
@@ -107,9 +141,9 @@ SweptFrame SweptScene::frame(const ResolvedScene& scene, bool aux) const {
 
 Box SweptScene::visibleBox() const {
   Box box{glm::dvec3(std::numeric_limits<double>::infinity()), glm::dvec3(-std::numeric_limits<double>::infinity())};
-  for (const auto& brick : voxels_.bricks()) {
-    box.min = glm::min(box.min, glm::dvec3(brick->origin) - 1.0);
-    box.max = glm::max(box.max, glm::dvec3(brick->origin + volume().layout.interior));
+  for (const Brick& brick : visible_) {
+    box.min = glm::min(box.min, glm::dvec3(brick.origin) - 1.0);
+    box.max = glm::max(box.max, glm::dvec3(brick.origin + volume().layout.interior));
   }
   return box;
 }

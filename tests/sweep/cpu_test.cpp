@@ -222,5 +222,6 @@ TEST_CASE("What techniques on the CPU cannot render is refused in one line", "[s
                                                                name + " renders emission, cone, ambient and lights");
   scene.model = Model::emission;
   scene.bricks.budgetMiB = 0;
-  CHECK_THROWS_WITH(renderedOnCpu(technique, grid, scene), Catch::Contains("bricks.budgetMiB: the voxels of "));
+  CHECK_THROWS_WITH(renderedOnCpu(technique, grid, scene),
+                    Catch::Contains("bricks.budgetMiB: the voxels of one brick take "));
 }
