@@ -206,12 +206,13 @@ void RowReader::readBrick(const RowBrick& at, const Place& place, std::int64_t f
   if (!brick.voxels) {
     std::fill_n(values, count, static_cast<float>(table_.stepsOf(brick.value.min)));
   } else {
-    const bool whole = voxels_.code() != VoxelCode::f32;
+    const bool whole = !isFloat(voxels_.code());
     rows.bias = whole ? 0 : static_cast<float>(table_.origin());
     rows.factor = static_cast<float>(table_.perUnit());
     rows.first = static_cast<float>(whole ? table_.stepsOf(voxels_.offset()) : table_.first());
     if (voxels_.code() == VoxelCode::u8) blendFrom(BrickVoxels::codes<std::uint8_t>(brick), VoxelCode::u8, values);
     if (voxels_.code() == VoxelCode::u16) blendFrom(BrickVoxels::codes<std::uint16_t>(brick), VoxelCode::u16, values);
+    if (voxels_.code() == VoxelCode::f16) blendFrom(BrickVoxels::codes<HalfCode>(brick), VoxelCode::f16, values);
     if (voxels_.code() == VoxelCode::f32) blendFrom(BrickVoxels::codes<float>(brick), VoxelCode::f32, values);
   }
   if (has(1) && brick.gradients) {

@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 #include <limits>
 #include <map>
 #include <string>
 #include <tuple>
+#include <type_traits>
 
 #include "umbrick/core/error.h"
 #include "umbrick/core/memory.h"
@@ -20,14 +22,23 @@ namespace {
 
 std::tuple<int, int, int> orderOf(const glm::ivec3& origin) { return {origin.z, origin.y, origin.x}; }
 
-std::size_t bytesOf(VoxelCode code) { return code == VoxelCode::u8 ? 1 : code == VoxelCode::u16 ? 2 : sizeof(float); }
+template <class Code>
+Code codeOf(float value) {
+  if constexpr (std::is_same_v<Code, HalfCode>)
+    return {glm::packHalf1x16(value)};  // exact, as all voxels are halves
+  else
+    return static_cast<Code>(value);
+}
+
+std::size_t bytesOf(VoxelCode code) { return code == VoxelCode::u8 ? 1 : code == VoxelCode::f32 ? sizeof(float) : 2; }
 
 }  // namespace
 
 BrickVoxels::BrickVoxels(const Bricks& volume) : volume_(volume) {
   if (volume.exactFormat == VoxelFormat::unorm8) code_ = VoxelCode::u8;
   if (volume.exactFormat == VoxelFormat::unorm16) code_ = VoxelCode::u16;
-  if (code_ != VoxelCode::f32) offset_ = volume.value.min;
+  if (volume.exactFormat == VoxelFormat::half) code_ = VoxelCode::f16;
+  if (!isFloat(code_)) offset_ = volume.value.min;
   groups_ = (volume.layout.interior + kGroup - 1) / kGroup;
 }
 
@@ -126,6 +137,7 @@ void BrickVoxels::load(VoxelBrick& brick, std::vector<float>& values) const {
   findRanges(brick, values);
   if (code_ == VoxelCode::u8) store<std::uint8_t>(brick, values);
   if (code_ == VoxelCode::u16) store<std::uint16_t>(brick, values);
+  if (code_ == VoxelCode::f16) store<HalfCode>(brick, values);
   if (code_ == VoxelCode::f32) store<float>(brick, values);
 }
 
@@ -135,7 +147,7 @@ void BrickVoxels::store(VoxelBrick& brick, std::span<const float> values) const 
   brick.voxels = std::make_unique_for_overwrite<std::byte[]>((values.size() + kPadding) * sizeof(Code));
   auto* const codes = reinterpret_cast<Code*>(brick.voxels.get());
   const auto offset = static_cast<float>(offset_);
-  for (std::size_t i = 0; i < values.size(); ++i) codes[i] = static_cast<Code>(values[i] - offset);
+  for (std::size_t i = 0; i < values.size(); ++i) codes[i] = codeOf<Code>(values[i] - offset);
 }
 
 void BrickVoxels::findRanges(VoxelBrick& brick, std::span<const float> values) const {

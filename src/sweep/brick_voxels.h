@@ -16,8 +16,15 @@ namespace umbrick {
 /// A row or a slice this near to voxels lies on them.
 inline constexpr double kOnVoxels = 1e-9;
 
-/// How a voxel is stored.
-enum class VoxelCode { u8, u16, f32 };
+/// How a voxel is stored: as a whole number above the least one, or as a float of 16 or 32 bits.
+enum class VoxelCode { u8, u16, f16, f32 };
+inline bool isFloat(VoxelCode code) { return code == VoxelCode::f16 || code == VoxelCode::f32; }
+
+/// A 16-bit float of a voxel.
+struct HalfCode {
+  std::uint16_t bits = 0;
+};
+static_assert(sizeof(HalfCode) == 2);
 
 /// The voxels of one brick with its apron, x fastest, and what is known of them.
 struct VoxelBrick {
@@ -63,7 +70,7 @@ class BrickVoxels {
 
   const Bricks& volume() const { return volume_; }
   VoxelCode code() const { return code_; }
-  /// value = offset() + code
+  /// value = offset() + code; floats are values by themselves
   double offset() const { return offset_; }
   std::span<const std::unique_ptr<VoxelBrick>> bricks() const { return bricks_; }
   /// Returns those and all others of the volume, of which no more than a value is known.

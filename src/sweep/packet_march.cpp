@@ -319,7 +319,7 @@ void PacketMarch::sample(double n, int side) {
     share = 0;
   }
   slice.n = share < kOnVoxels ? 0 : static_cast<float>(share);
-  const bool codes = voxels.code() != VoxelCode::f32;
+  const bool codes = !isFloat(voxels.code());
   slice.bias = codes ? 0 : static_cast<float>(table.origin());
   slice.factor = static_cast<float>(table.perUnit());
   slice.first = static_cast<float>(codes ? table.stepsOf(voxels.offset()) : table.first());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/row_kernels.h"
 
+#include <glm/gtc/packing.hpp>
+
 #include "umbrick/sweep/instructions.h"
 
 // Highway compiles what lies between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each set of instructions, by
@@ -32,10 +34,21 @@ HWY_INLINE Floats loadCodes(Lanes d, const std::uint16_t* from) {
   const hn::Rebind<std::uint16_t, Lanes> narrow;
   return hn::ConvertTo(d, hn::PromoteTo(Numbers(), hn::LoadU(narrow, from)));
 }
+HWY_INLINE Floats loadCodes(Lanes d, const HalfCode* from) {
+  const hn::Rebind<hwy::float16_t, Lanes> narrow;
+  const hn::Rebind<std::uint16_t, Lanes> bits;
+  return hn::PromoteTo(d, hn::BitCast(narrow, hn::LoadU(bits, &from->bits)));
+}
 HWY_INLINE Floats loadCodes(Lanes d, const float* from) { return hn::LoadU(d, from); }
 
 // As a + share (b - a): equal voxels give their value to the last bit.
 HWY_INLINE Floats between(Floats a, Floats b, Floats share) { return hn::MulAdd(share, hn::Sub(b, a), a); }
+
+template <class Code>
+HWY_INLINE float codeOf(Code code) {
+  return static_cast<float>(code);
+}
+HWY_INLINE float codeOf(HalfCode code) { return glm::unpackHalf1x16(code.bits); }
 
 template <class Code>
 void blend(const VoxelRows& rows, int count, float* out) {
@@ -48,9 +61,9 @@ void blend(const VoxelRows& rows, int count, float* out) {
   if (rows.stride != 1) {
     for (int i = 0; i < count; ++i) {
       const std::ptrdiff_t at = i * rows.stride;
-      float value = static_cast<float>(a[at]) + rows.v * (static_cast<float>(b[at]) - static_cast<float>(a[at]));
+      float value = codeOf(a[at]) + rows.v * (codeOf(b[at]) - codeOf(a[at]));
       if (rows.n > 0) {
-        const float next = static_cast<float>(c[at]) + rows.v * (static_cast<float>(e[at]) - static_cast<float>(c[at]));
+        const float next = codeOf(c[at]) + rows.v * (codeOf(e[at]) - codeOf(c[at]));
         value += rows.n * (next - value);
       }
       out[i] = (value - rows.bias) * rows.factor + rows.first;
@@ -71,6 +84,7 @@ void blend(const VoxelRows& rows, int count, float* out) {
 void blendRowsOf(VoxelCode code, const VoxelRows& rows, int count, float* out) {
   if (code == VoxelCode::u8) blend<std::uint8_t>(rows, count, out);
   if (code == VoxelCode::u16) blend<std::uint16_t>(rows, count, out);
+  if (code == VoxelCode::f16) blend<HalfCode>(rows, count, out);
   if (code == VoxelCode::f32) blend<float>(rows, count, out);
 }
 

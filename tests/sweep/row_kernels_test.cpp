@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/test_grids.h"
+#include "sweep/packet_kernels.h"
 #include "umbrick/sweep/instructions.h"
 
 using namespace umbrick;
@@ -81,6 +82,49 @@ TEST_CASE("Rows of voxels are interpolated, whatever their type and their distan
     checkBlend<std::uint8_t>(VoxelCode::u8, 255);
     checkBlend<std::uint16_t>(VoxelCode::u16, 65535);
     checkBlend<float>(VoxelCode::f32, 1000);
+  });
+}
+
+// All but infinite ones and NaN, those below 2^-14 too.
+TEST_CASE("Voxels of 16-bit floats are themselves to the last bit", "[sweep]") {
+  std::vector<HalfCode> codes;
+  std::vector<float> values;
+  for (std::uint32_t bits = 0; bits < 0x10000; ++bits) {
+    if ((bits & 0x7c00) == 0x7c00) continue;
+    codes.push_back({static_cast<std::uint16_t>(bits)});
+    const double size = bits & 0x7c00 ? std::ldexp(1024 + (bits & 0x3ff), static_cast<int>(bits >> 10 & 31) - 25)
+                                      : std::ldexp(bits & 0x3ff, -24);
+    values.push_back(static_cast<float>(bits & 0x8000 ? -size : size));
+  }
+  const auto count = static_cast<int>(codes.size());
+  codes.resize(codes.size() + kRowPadding);
+  forBothInstructions([&] {
+    VoxelRows from;
+    from.rows = {codes.data(), codes.data(), codes.data(), codes.data()};
+    std::vector<float> out(codes.size());
+    blendRows(VoxelCode::f16, from, count, out.data());
+    CHECK(std::equal(values.begin(), values.end(), out.begin()));
+    // The same as rays gather them, and along another axis.
+    for (const std::ptrdiff_t stride : {1, 3}) {
+      PacketSlice slice;
+      slice.code = VoxelCode::f16;
+      slice.strideU = stride;
+      slice.strideV = 0;
+      bool equal = true;
+      for (int at = 0; at + kRayGroup < count / stride; at += kRayGroup) {
+        PacketBrick brick;
+        brick.voxels = codes.data();
+        brick.first = at * stride;
+        brick.endU = brick.endV = kRayGroup;
+        std::array<float, kRayGroup> u{}, v{}, value{};
+        for (int i = 0; i < kRayGroup; ++i) u[static_cast<std::size_t>(i)] = static_cast<float>(i);
+        std::array<float*, kMostFields> fields{value.data()};
+        samplePacket(slice, {&brick, 1}, u.data(), v.data(), fields.data());
+        for (int i = 0; i < kRayGroup; ++i)
+          equal = equal && value[static_cast<std::size_t>(i)] == values[static_cast<std::size_t>((at + i) * stride)];
+      }
+      CHECK(equal);
+    }
   });
 }
 
