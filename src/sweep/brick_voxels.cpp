@@ -190,6 +190,7 @@ std::uint64_t BrickVoxels::bytes() const {
   for (const auto& brick : bricks_) {
     if (brick->voxels) sum += voxels * umbrick::bytesOf(code_);
     if (brick->gradients) sum += voxels * sizeof(float);
+    if (brick->media) sum += voxels * kMediumNumbers * sizeof(float);
     if (brick->light) sum += voxels * sizeof(std::uint16_t);
     sum += brick->active.size() * (1 + (brick->ranges ? 2 * sizeof(float) : 0));
   }

@@ -26,12 +26,16 @@ struct HalfCode {
 };
 static_assert(sizeof(HalfCode) == 2);
 
+/// A medium as renderers integrate it: sigma_t, then sigma_s of red, green and blue, 1/world unit.
+inline constexpr int kMediumNumbers = 4;
+
 /// The voxels of one brick with its apron, x fastest, and what is known of them.
 struct VoxelBrick {
   glm::ivec3 origin{0};  // first owned voxel
   Range value, gradient;
   std::unique_ptr<std::byte[]> voxels;     // codes; none where all are the same
   std::unique_ptr<float[]> gradients;      // grid units per world unit; of 2D functions alone
+  std::unique_ptr<float[]> media;          // sigma_t and sigma_s by colour, each of all voxels; see classify()
   std::unique_ptr<std::uint16_t[]> light;  // shares of lightUnit(), by channel; none without a light volume
   /// The range of the voxels of each group of cells, and whether the function shows anything in it.
   std::unique_ptr<float[]> ranges;

@@ -143,6 +143,13 @@ void samplePacketOf(const PacketSlice& slice, std::span<const PacketBrick> brick
       const auto store = [&](int field, PacketFloats value) HWY_ATTR {
         hn::StoreU(hn::IfThenElse(mine, value, hn::LoadU(d, fields[field] + at)), d, fields[field] + at);
       };
+      if (slice.classified) {
+        for (int c = 0; c < kMediumNumbers; ++c)
+          store(c == 0 ? 0 : kColourFields + c - 1,
+                brick.media ? interpolated(d, brick.media + brick.first + c * slice.lightStride, slice, cells)
+                            : hn::Zero(d));
+        continue;
+      }
       store(0, valuesIn(d, brick, slice, cells));
       if (slice.gradients)
         store(1, brick.gradients ? hn::MulAdd(interpolated(d, brick.gradients + brick.first, slice, cells),

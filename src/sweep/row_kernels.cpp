@@ -329,6 +329,35 @@ HWY_INLINE Arriving arrivingAt(Lanes d, const RowSegment& segment, const float* 
   return {first, second, third, power};
 }
 
+// A number at the front and at the back of a part.
+struct PartEnds {
+  Floats front, back;
+};
+
+// Adds the space between two slices of classified voxels, between which the medium runs linearly.
+HWY_INLINE void addClassified(const RowSegment& segment, Accumulator& sum, const float* const* front,
+                              const float* const* back, int at, Floats begin, Floats end, Floats length) {
+  const Lanes d;
+  const auto read = [&](int field) HWY_ATTR {
+    const Floats a = hn::LoadU(d, front[field] + at), b = hn::LoadU(d, back[field] + at);
+    return PartEnds{between(a, b, begin), between(a, b, end)};
+  };
+  const PartEnds sigma = read(0), red = read(kColourFields), green = read(kColourFields + 1),
+                 blue = read(kColourFields + 2);
+  const Floats tau = hn::Mul(hn::Mul(hn::Set(d, 0.5f), hn::Add(sigma.front, sigma.back)), length);
+  if (hn::AllFalse(d, hn::Gt(tau, hn::Zero(d)))) return;
+  const Floats one = hn::Set(d, 1.0f);
+  const Arriving light{one, one, one, one};
+  const int parts = segment.midpoint || hn::AllFalse(d, hn::Gt(tau, hn::Set(d, 0.1f))) ? 1 : 8;
+  const Floats part = hn::Mul(hn::Set(d, 1.0f / static_cast<float>(parts)), length);
+  for (int i = 0; i < parts; ++i) {
+    const Floats place = hn::Set(d, (static_cast<float>(i) + 0.5f) / static_cast<float>(parts));
+    const auto mean = [&](const PartEnds& ends) HWY_ATTR { return between(ends.front, ends.back, place); };
+    const MeanMedium medium{mean(sigma), mean(red), mean(green), mean(blue)};
+    sum.add(medium, hn::Mul(medium.sigma_t, part), part, light);
+  }
+}
+
 void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const RowRays& rays, int first, int count,
                      const float* const* front, const float* const* back) {
   const Lanes d;
@@ -352,6 +381,12 @@ void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const 
         to = hn::MulAdd(end, change, from);
         from = hn::MulAdd(begin, change, from);
         length = hn::Mul(length, hn::Sub(end, begin));
+      }
+      if (segment.classified) {
+        Accumulator sum(rays, segment, at);
+        addClassified(segment, sum, front, back, at, begin, end, length);
+        sum.store();
+        continue;
       }
       const Floats middle = hn::Mul(half, hn::Add(begin, end));
       from = hn::Max(hn::Min(from, far), hn::Neg(far));

@@ -61,6 +61,9 @@ class SweptScene {
                   Picture& picture) const;
 
  private:
+  double largestExtinction() const;
+  std::uint64_t mediaBytes(bool classified) const;
+
   std::string technique_;
   BrickVoxels voxels_;
   BrickLight light_;
