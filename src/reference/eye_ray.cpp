@@ -1,11 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference/eye_ray.h"
 
+#include <array>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 namespace umbrick {
 namespace {
+
+// The media at the corners of a cell: sigma_t, then sigma_s by colour.
+class CellMedia {
+ public:
+  CellMedia(const FieldBlock& block, const glm::ivec3& cell, const TransferFunction& transfer) {
+    const std::array<double, 8> values = cornersOf(block.values, cell);
+    std::array<double, 8> gradients{};
+    if (block.gradients) gradients = cornersOf(block.gradients, cell);
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      const Medium medium = transfer(values[corner], gradients[corner]);
+      const glm::dvec3 sigma_s = medium.sigma_s();
+      const std::array<double, 4> four{medium.sigma_t, sigma_s.r, sigma_s.g, sigma_s.b};
+      for (std::size_t i = 0; i < 4; ++i) numbers_[i][corner] = four[i];
+    }
+  }
+  Cubic along(std::size_t i, const glm::dvec3& from, const glm::dvec3& to) const {
+    return TrilinearCell(numbers_[i]).along(from, to);
+  }
+
+ private:
+  std::array<std::array<double, 8>, 4> numbers_;
+};
 
 // Goes through the cells of a ray from front to back.
 class Collector {
@@ -33,7 +57,23 @@ class Collector {
       classifier_.forEachPiece(value, gradient, [&](const CellPiece& piece) { addSteps(piece); });
   }
 
+  /// Adds a cell, or part of one, whose media are interpolated. @param sigma_s  by colour
+  void addClassified(const Cubic& sigma_t, const std::array<Cubic, 3>& sigma_s, double begin, double end) {
+    sigma_s_ = &sigma_s;
+    cellBegin_ = begin;
+    length_ = end - begin;
+    addSteps(CellPiece{0, 1, sigma_t, nullptr});
+    sigma_s_ = nullptr;
+  }
+
  private:
+  glm::dvec3 albedoAt(const CellPiece& piece, double s) const {
+    if (!sigma_s_) return classifier_.albedo(piece, value_, gradient_, s);
+    const double sigma_t = piece.sigma_t(s);
+    if (!(sigma_t > 0)) return glm::dvec3(0);
+    return glm::clamp(glm::dvec3((*sigma_s_)[0](s), (*sigma_s_)[1](s), (*sigma_s_)[2](s)) / sigma_t, 0.0, 1.0);
+  }
+
   // Cuts a piece where a step ends.
   void addSteps(const CellPiece& piece) {
     double s = piece.begin;
@@ -83,13 +123,13 @@ class Collector {
       const double weight = weights[i] * sigma_t[i] * attenuation(std::max(0.0, length_ * (end - begin) * depth));
       sum += weight;
       centre += weight * s[i];
-      albedo += weight * classifier_.albedo(piece, value_, gradient_, s[i]);
+      albedo += weight * albedoAt(piece, s[i]);
     }
     if (!(sum > 0)) {
       // A fitted cubic may be positive only between the nodes.
       sum = 1;
       centre = s[1];
-      albedo = classifier_.albedo(piece, value_, gradient_, s[1]);
+      albedo = albedoAt(piece, s[1]);
     }
     Scatterer part;
     part.t = at(centre / sum);
@@ -113,6 +153,7 @@ class Collector {
   double begin_;
   std::vector<Scatterer>& parts_;
   Cubic value_, gradient_;
+  const std::array<Cubic, 3>* sigma_s_ = nullptr;  // of classified voxels
   double cellBegin_ = 0, length_ = 0, tau_ = 0, transmittance_ = 1;
   std::int64_t stretch_ = 0;
 };
@@ -153,6 +194,13 @@ double collectScatterers(const Field& field, Field::Accessor& accessor, const Cl
           ++cells;
           const glm::dvec3 corner = origin + glm::dvec3(cell);
           const glm::dvec3 from = ray.at(enter) - corner, to = ray.at(leave) - corner;
+          if (options.classifyVoxels) {
+            const CellMedia media(block, cell, classifier.transfer());
+            collector.addClassified(media.along(0, from, to),
+                                    {media.along(1, from, to), media.along(2, from, to), media.along(3, from, to)},
+                                    enter, leave);
+            return !collector.isDark();
+          }
           Cubic gradient;
           if (block.gradients) gradient = TrilinearCell(block.gradients, cell).along(from, to);
           const std::uint8_t kind = block.kind(cell);

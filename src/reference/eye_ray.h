@@ -44,9 +44,10 @@ struct Scatterer {
 };
 
 struct EyeRayOptions {
-  double largestTau = 0.1;  // largest optical depth of one part
-  double step = 0;          // world units: parts end at multiples of it from the beginning of the ray; 0: anywhere
-  double darkest = 1e-7;    // transmittance at which the ray ends
+  double largestTau = 0.1;      // largest optical depth of one part
+  double step = 0;              // world units: parts end at multiples of it from the beginning of the ray; 0: anywhere
+  double darkest = 1e-7;        // transmittance at which the ray ends
+  bool classifyVoxels = false;  // media are interpolated and not values
 };
 
 /// Collects the parts of a ray that scatter.

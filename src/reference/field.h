@@ -53,6 +53,8 @@ inline Range rangeOfCell(const float* values, const glm::ivec3& cell) {
 class TrilinearCell {
  public:
   TrilinearCell(const float* block, const glm::ivec3& cell);
+  /// @param corners  x fastest
+  explicit TrilinearCell(const std::array<double, 8>& corners);
   double operator()(const glm::dvec3& p) const {
     return k0_ + p.x * kx_ + p.y * (ky_ + p.x * kxy_) + p.z * (kz_ + p.x * kxz_ + p.y * (kyz_ + p.x * kxyz_));
   }
@@ -68,12 +70,20 @@ class TrilinearCell {
   double k0_, kx_, ky_, kz_, kxy_, kxz_, kyz_, kxyz_;
 };
 
-inline TrilinearCell::TrilinearCell(const float* block, const glm::ivec3& cell) {
+/// Returns the values at the corners of a cell, x fastest.
+inline std::array<double, 8> cornersOf(const float* block, const glm::ivec3& cell) {
   constexpr int kVoxels = FieldBlock::kVoxels;
   const float* v = block + (cell.z * kVoxels + cell.y) * kVoxels + cell.x;
   constexpr int Y = kVoxels, Z = kVoxels * kVoxels;
-  const double v000 = v[0], v100 = v[1], v010 = v[Y], v110 = v[Y + 1];
-  const double v001 = v[Z], v101 = v[Z + 1], v011 = v[Z + Y], v111 = v[Z + Y + 1];
+  return {v[0], v[1], v[Y], v[Y + 1], v[Z], v[Z + 1], v[Z + Y], v[Z + Y + 1]};
+}
+
+inline TrilinearCell::TrilinearCell(const float* block, const glm::ivec3& cell)
+    : TrilinearCell(cornersOf(block, cell)) {}
+
+inline TrilinearCell::TrilinearCell(const std::array<double, 8>& v) {
+  const double v000 = v[0], v100 = v[1], v010 = v[2], v110 = v[3];
+  const double v001 = v[4], v101 = v[5], v011 = v[6], v111 = v[7];
   k0_ = v000;
   kx_ = v100 - v000;
   ky_ = v010 - v000;

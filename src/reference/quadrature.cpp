@@ -61,6 +61,7 @@ QuadraturePixel::QuadraturePixel(const ReferenceSpace& space, const ReferenceOpt
       voxelEdge_(voxelEdge),
       accessor_(space.field.accessor()) {
   eyeOptions_.step = step;
+  eyeOptions_.classifyVoxels = space.scene.sampling.classification == Classification::pre;
   // A part stands for the V at its centre, so its error goes with the square of its optical depth. Without V only the
   // albedo varies, and three Gauss nodes integrate exp(-x) over 0.5 to 1e-8.
   eyeOptions_.largestTau =

@@ -49,6 +49,9 @@ void check(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOp
   checkAtLeast("threads", options.threads, 0);
   if (!(options.tolerance > 0 && options.tolerance <= 1))
     throw InvalidArgument("tolerance is " + std::to_string(options.tolerance) + ", must be in (0, 1]");
+  requireClassification(scene);
+  if (scene.sampling.classification == Classification::pre && options.integrator == Integrator::monteCarlo)
+    throw InvalidArgument("sampling.classification: pre is integrated by quadrature, not by Monte Carlo");
   if (!options.lights.empty() && !traitsOf(scene.model).directions)
     throw InvalidArgument("lights: are given, but the model " + modelName(scene.model) + " does not take a list");
   for (const auto& [direction, radiance] : options.lights) {

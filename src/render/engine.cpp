@@ -48,7 +48,7 @@ Engine chooseEngine(const SceneSettings& scene, EngineKind kind) {
   const Technique onGraphics = named ? scene.technique : Technique::slices;
   const bool forGl = !named || traitsOf(scene.technique).makeOnGl != nullptr;
   if (kind == EngineKind::automatic) {
-    if (forGl && hasGpu()) {
+    if (forGl && traitsOf(onGraphics).supports(scene) && hasGpu()) {
       try {
         return onGl(onGraphics, Backend::egl);
       } catch (const GlError&) {  // the GPU knows no OpenGL that is new enough

@@ -15,6 +15,7 @@
 #include "umbrick/grid/value_survey.h"
 #include "umbrick/render/suggest_transfer.h"
 #include "umbrick/shade/prepare.h"
+#include "umbrick/sweep/swept_bricks.h"
 
 namespace umbrick {
 
@@ -80,10 +81,7 @@ std::unique_ptr<Bricks> Volume::cut(const ResolvedScene& scene) const {
 }
 
 std::unique_ptr<Bricks> Volume::cutForCpu(const ResolvedScene& scene) const {
-  BrickOptions options;
-  if (scene.bricks.interior > 0) options.interior = scene.bricks.interior;
-  options.gradients = scene.transfer.is2d();
-  return cutGrid(grid_, options, scene.bricks.bricked);
+  return cutGrid(grid_, sweptBricks(scene), scene.bricks.bricked);
 }
 
 std::unique_ptr<Bricks> Volume::cutForRefinement(const ResolvedScene& scene) const {

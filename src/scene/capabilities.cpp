@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "umbrick/core/error.h"
+
 namespace umbrick {
 namespace {
 
@@ -58,6 +60,12 @@ const MethodTraits& traitsOf(Method method) {
 std::optional<Method> occlusionMethod(const SceneSettings& scene) {
   if (!traitsOf(scene.model).occlusion) return std::nullopt;
   return scene.method;
+}
+
+void requireClassification(const SceneSettings& scene) {
+  if (scene.sampling.classification == Classification::pre && traitsOf(scene.model).occlusion)
+    throw InvalidArgument("sampling.classification: pre is of the model emission alone, not of " +
+                          modelName(scene.model));
 }
 
 bool supports(Method method, Model model) {

@@ -22,6 +22,7 @@ ResolvedScene studyScene(const ResolvedScene& resolved, const StudyPlan& plan, d
   scene.model = Model::emission;
   scene.method = Method::dos;
   scene.technique = Technique::slices;
+  scene.sampling.classification = Classification::post;
   scene.sampling.spacing = SamplingOptions{}.spacing * voxelEdge;
   scene.sampling.segments = plan.settings.segments.front();
   scene.sampling.bits = plan.baseBits.eye;

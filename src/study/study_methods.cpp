@@ -135,6 +135,32 @@ const std::vector<StudyMethod>& studyMethods() {
        .slices = kMany,
        .quickSlices = kManyQuick,
        .usual = false},
+      {.name = "rays-midpoint",
+       .title = "rays on the CPU, classified at points",
+       .model = Model::emission,
+       .detail = {},
+       .apply =
+           [](int, ResolvedScene& scene) {
+             scene.technique = Technique::rays;
+             scene.sampling.quadrature = Quadrature::midpoint;
+           },
+       .work = cpuWork,
+       .slices = kMany,
+       .quickSlices = kManyQuick,
+       .usual = false},
+      {.name = "rays-pre",
+       .title = "rays on the CPU, classified before interpolation",
+       .model = Model::emission,
+       .detail = {},
+       .apply =
+           [](int, ResolvedScene& scene) {
+             scene.technique = Technique::rays;
+             scene.sampling.classification = Classification::pre;
+           },
+       .work = cpuWork,
+       .slices = kMany,
+       .quickSlices = kManyQuick,
+       .usual = false},
       {.name = "shear-warp",
        .title = "shear-warp on the CPU",
        .model = Model::emission,

@@ -18,6 +18,7 @@
 #include "umbrick/shade/prepare.h"
 #include "umbrick/slice/proxy_slices.h"
 #include "umbrick/study/case_scene.h"
+#include "umbrick/sweep/swept_bricks.h"
 
 namespace umbrick {
 namespace {
@@ -251,12 +252,7 @@ StudyRun::CaseRenderer StudyRun::rendererFor(const ResolvedScene& scene, const R
   CaseRenderer made;
   if (traitsOf(scene.technique).makeOnCpu) {
     std::unique_ptr<Bricks>& bricks = bricks_[{scene.bricks.interior, 0}];
-    if (!bricks) {
-      BrickOptions cut;
-      if (scene.bricks.interior > 0) cut.interior = scene.bricks.interior;
-      cut.gradients = scene.transfer.is2d();
-      bricks = cutGrid(grid_, cut, scene.bricks.bricked);
-    }
+    if (!bricks) bricks = cutGrid(grid_, sweptBricks(scene), scene.bricks.bricked);
     made.renderer = makeRenderer(*bricks, scene, options);
   } else {
     made.volume = residentFor(scene);

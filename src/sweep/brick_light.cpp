@@ -46,23 +46,23 @@ void spread(std::vector<float>& light, const glm::ivec3& edge) {
 
 }  // namespace
 
-void BrickLight::update(BrickVoxels& voxels, const ResolvedScene& scene, const std::vector<LightDirection>& directions,
-                        std::span<const glm::dvec4> planes) {
+void BrickLight::update(std::span<const Brick> visible, const BrickLayout& layout, const ResolvedScene& scene,
+                        const std::vector<LightDirection>& directions, std::span<const glm::dvec4> planes) {
   const Stopwatch watch;
   LightMedium medium{scene.transfer, directions, {}, {}};
-  for (const auto& brick : voxels.bricks()) medium.cells.push_back(brick->origin);
+  for (const Brick& brick : visible) medium.cells.push_back(brick.origin);
   for (const glm::dvec4& plane : planes)
-    if (cutsMedium(plane, medium.cells, voxels.volume().layout.interior)) medium.planes.push_back(plane);
+    if (cutsMedium(plane, medium.cells, layout.interior)) medium.planes.push_back(plane);
   const std::uint64_t most = std::max<std::uint64_t>(scene.bricks.budgetMiB << 20, std::uint64_t{2} << 30);
   // Where anything fails on the way, light is stored again the next time.
-  const bool stored = std::exchange(generation_, kNoGeneration) == voxels.generation();
-  const bool computed = light_.update(medium, most);
-  if (computed || !stored) store(voxels);
-  generation_ = voxels.generation();
+  const std::uint64_t stored = std::exchange(generation_, kNoGeneration);
+  if (!light_.update(medium, most)) generation_ = stored;
   ms_ = watch.elapsedMs();
 }
 
 void BrickLight::store(BrickVoxels& voxels) {
+  if (generation_ == voxels.generation()) return;
+  const Stopwatch watch;
   const std::size_t count = voxels.volume().layout.voxels(), channels = static_cast<std::size_t>(light_.channels());
   const auto bricks = voxels.bricks();
   const tbb::blocked_range<std::size_t> all(0, bricks.size(), 1);
@@ -97,6 +97,8 @@ void BrickLight::store(BrickVoxels& voxels) {
       }
     }
   });
+  generation_ = voxels.generation();
+  ms_ += watch.elapsedMs();
 }
 
 }  // namespace umbrick

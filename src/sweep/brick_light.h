@@ -18,21 +18,22 @@ class BrickLight {
  public:
   explicit BrickLight(const Bricks& volume) : light_(volume) {}
 
+  /// Computes the light of visible bricks, whether they are held or not.
   /// @param directions  the light
   /// @param planes      that cut the medium, index coordinates
   /// @throw InvalidArgument  more memory would be needed than the scene's budget and 2 GiB
-  void update(BrickVoxels& voxels, const ResolvedScene& scene, const std::vector<LightDirection>& directions,
-              std::span<const glm::dvec4> planes);
+  void update(std::span<const Brick> visible, const BrickLayout& layout, const ResolvedScene& scene,
+              const std::vector<LightDirection>& directions, std::span<const glm::dvec4> planes);
+  /// Stores it with the bricks that are held, where they do not have it.
+  void store(BrickVoxels& voxels);
 
   int channels() const { return light_.channels(); }
   glm::dvec3 whole() const { return light_.whole(); }
   float unit() const { return unit_; }  // share of whole() that a code of 1 stands for
-  double ms() const { return ms_; }     // of the last update
+  double ms() const { return ms_; }     // of the last update, and of what was stored since
   const LightStats& stats() const { return light_.stats(); }
 
  private:
-  void store(BrickVoxels& voxels);
-
   LightVolume light_;
   float unit_ = 1;
   double ms_ = 0;

@@ -99,7 +99,7 @@ std::span<const RowBrick> BrickRows::at(std::int64_t v, std::int64_t n) const {
 }
 
 RowReader::RowReader(const BrickVoxels& voxels, const BrickRows& rows, const RayLattice& axes, const MediumTable& table,
-                     int lights, float lightUnit)
+                     int lights, float lightUnit, bool classified)
     : voxels_(voxels),
       rows_(rows),
       table_(table),
@@ -108,7 +108,8 @@ RowReader::RowReader(const BrickVoxels& voxels, const BrickRows& rows, const Ray
       n_(axes.n),
       lights_(lights),
       lightUnit_(lightUnit),
-      empty_(static_cast<float>(table.stepsOf(voxels.volume().background))) {}
+      empty_(classified ? 0 : static_cast<float>(table.stepsOf(voxels.volume().background))),
+      classified_(classified) {}
 
 void RowReader::read(double v, double n, std::int64_t begin, std::int64_t end) {
   begin_ = begin;
@@ -144,9 +145,12 @@ void RowReader::read(double v, double n, std::int64_t begin, std::int64_t end) {
     complete = false;
     const std::int64_t from = std::max<std::int64_t>(at.first, begin),
                        to = std::min<std::int64_t>(at.first + edge, end);
-    std::fill_n(buffers_[0].begin() + (from - begin), to - from, static_cast<float>(table_.stepsOf(at.value)));
+    if (!classified_)
+      std::fill_n(buffers_[0].begin() + (from - begin), to - from, static_cast<float>(table_.stepsOf(at.value)));
   }
   complete = complete && next >= end;
+  for (int c = 0; classified_ && c < 3; ++c)
+    std::fill_n(buffers_[static_cast<std::size_t>(kColourFields + c)].begin(), end - begin + kRowPadding, 0.0f);
   if (has(1))
     std::fill_n(buffers_[1].begin(), end - begin + kRowPadding, static_cast<float>(table_.gradientStepsOf(0)));
   for (int c = 0; c < lights_; ++c)
@@ -202,16 +206,25 @@ void RowReader::readBrick(const RowBrick& at, const Place& place, std::int64_t f
     blendRows(code, rows, count, out);
     std::copy_n(behind, kRayGroup, out + count);
   };
+  if (classified_) {
+    for (int c = 0; brick.media && c < kMediumNumbers; ++c) {
+      const auto field = static_cast<std::size_t>(c == 0 ? 0 : kColourFields + c - 1);
+      blendFrom(static_cast<const float*>(brick.media.get()) + static_cast<std::ptrdiff_t>(layout.voxels()) * c,
+                VoxelCode::f32, buffers_[field].data() + (from - begin_));
+    }
+    return;
+  }
   float* const values = buffers_[0].data() + (from - begin_);
   if (!brick.voxels) {
     std::fill_n(values, count, static_cast<float>(table_.stepsOf(brick.value.min)));
   } else {
-    const bool whole = voxels_.code() != VoxelCode::f32;
+    const bool whole = !isFloat(voxels_.code());
     rows.bias = whole ? 0 : static_cast<float>(table_.origin());
     rows.factor = static_cast<float>(table_.perUnit());
     rows.first = static_cast<float>(whole ? table_.stepsOf(voxels_.offset()) : table_.first());
     if (voxels_.code() == VoxelCode::u8) blendFrom(BrickVoxels::codes<std::uint8_t>(brick), VoxelCode::u8, values);
     if (voxels_.code() == VoxelCode::u16) blendFrom(BrickVoxels::codes<std::uint16_t>(brick), VoxelCode::u16, values);
+    if (voxels_.code() == VoxelCode::f16) blendFrom(BrickVoxels::codes<HalfCode>(brick), VoxelCode::f16, values);
     if (voxels_.code() == VoxelCode::f32) blendFrom(BrickVoxels::codes<float>(brick), VoxelCode::f32, values);
   }
   if (has(1) && brick.gradients) {

@@ -72,11 +72,16 @@ class RowReader {
  public:
   /// @param lights     channels of light that bricks have
   /// @param lightUnit  what one unit of their numbers stands for
+  /// @param classified  bricks have media, which are read in place of values
   RowReader(const BrickVoxels& voxels, const BrickRows& rows, const RayLattice& axes, const MediumTable& table,
-            int lights, float lightUnit);
+            int lights, float lightUnit, bool classified = false);
 
-  /// Tells whether there is a field: 0 the value, 1 the gradient, from 2 on light.
-  bool has(int field) const { return field == 0 || (field == 1 ? table_.is2d() : field - 2 < lights_); }
+  /// Tells whether there is a field, see kMostFields.
+  bool has(int field) const {
+    if (field == 0) return true;
+    if (field == 1) return table_.is2d() && !classified_;
+    return field < kColourFields ? field - kLightFields < lights_ : classified_;
+  }
   /// Interpolates voxels begin <= u < end of the row at (v, n), which need not be whole. Each field's row is followed
   /// by kRowPadding numbers.
   void read(double v, double n, std::int64_t begin, std::int64_t end);
@@ -95,7 +100,8 @@ class RowReader {
   const BrickRows& rows_;
   const MediumTable& table_;
   int u_, v_, n_, lights_;
-  float lightUnit_, empty_;
+  float lightUnit_, empty_;  // what is read where nothing is held
+  bool classified_;
   std::array<std::vector<float>, kMostFields> buffers_;
   std::int64_t begin_ = 0, end_ = 0;  // of the row that is read
 };

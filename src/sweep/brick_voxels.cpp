@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 #include <limits>
 #include <map>
 #include <string>
 #include <tuple>
+#include <type_traits>
 
 #include "umbrick/core/error.h"
 #include "umbrick/core/memory.h"
@@ -20,35 +22,58 @@ namespace {
 
 std::tuple<int, int, int> orderOf(const glm::ivec3& origin) { return {origin.z, origin.y, origin.x}; }
 
-std::size_t bytesOf(VoxelCode code) { return code == VoxelCode::u8 ? 1 : code == VoxelCode::u16 ? 2 : sizeof(float); }
+template <class Code>
+Code codeOf(float value) {
+  if constexpr (std::is_same_v<Code, HalfCode>)
+    return {glm::packHalf1x16(value)};  // exact, as all voxels are halves
+  else
+    return static_cast<Code>(value);
+}
+
+std::size_t bytesOf(VoxelCode code) { return code == VoxelCode::u8 ? 1 : code == VoxelCode::f32 ? sizeof(float) : 2; }
 
 }  // namespace
 
 BrickVoxels::BrickVoxels(const Bricks& volume) : volume_(volume) {
   if (volume.exactFormat == VoxelFormat::unorm8) code_ = VoxelCode::u8;
   if (volume.exactFormat == VoxelFormat::unorm16) code_ = VoxelCode::u16;
-  if (code_ != VoxelCode::f32) offset_ = volume.value.min;
+  if (volume.exactFormat == VoxelFormat::half) code_ = VoxelCode::f16;
+  if (!isFloat(code_)) offset_ = volume.value.min;
   groups_ = (volume.layout.interior + kGroup - 1) / kGroup;
 }
 
-void BrickVoxels::select(const MediumTable& table, bool culling, bool backgroundVisible, std::uint64_t mostBytes) {
-  std::vector<Brick> wanted;
+std::vector<Brick> BrickVoxels::visible(const MediumTable& table, bool culling, bool backgroundVisible) const {
+  std::vector<Brick> bricks;
   const auto isVisible = [&](const Brick& brick) {
     return !culling || !table.isTransparent(brick.value, brick.gradient);
   };
-  std::ranges::copy_if(volume_.bricks, std::back_inserter(wanted), isVisible);
-  if (backgroundVisible) std::ranges::copy(backgroundBricks(volume_), std::back_inserter(wanted));
-  std::ranges::sort(wanted, {}, [](const Brick& brick) { return orderOf(brick.origin); });
-  const std::uint64_t voxels = volume_.layout.voxels();
-  const std::uint64_t each = voxels * (bytesOf(code_) + (table.is2d() ? sizeof(float) : 0));
-  // Bricks of one value take none, but those of 2D functions are read for their gradients.
+  std::ranges::copy_if(volume_.bricks, std::back_inserter(bricks), isVisible);
+  if (backgroundVisible) std::ranges::copy(backgroundBricks(volume_), std::back_inserter(bricks));
+  std::ranges::sort(bricks, {}, [](const Brick& brick) { return orderOf(brick.origin); });
+  return bricks;
+}
+
+std::uint64_t BrickVoxels::bytesEach(const MediumTable& table) const {
+  return volume_.layout.voxels() * (umbrick::bytesOf(code_) + (table.is2d() ? sizeof(float) : 0));
+}
+
+std::uint64_t BrickVoxels::bytesOf(std::span<const Brick> bricks, const MediumTable& table) const {
+  // Those of 2D functions are read for their gradients.
   const auto held = static_cast<std::uint64_t>(
-      std::ranges::count_if(wanted, [&](const Brick& brick) { return table.is2d() || !brick.uniform(); }));
-  if (held * each > mostBytes)
-    throw InvalidArgument("bricks.budgetMiB: the voxels of " + std::to_string(held) + " visible bricks take " +
-                          std::to_string((held * each >> 20) + 1) + " MiB, more than " +
-                          std::to_string(mostBytes >> 20) + " MiB");
-  requireMemory("the voxels of " + std::to_string(held) + " visible bricks", static_cast<double>(held * each));
+      std::ranges::count_if(bricks, [&](const Brick& brick) { return table.is2d() || !brick.uniform(); }));
+  return held * bytesEach(table);
+}
+
+void BrickVoxels::hold(std::span<const Brick> wanted, const MediumTable& table, bool culling, bool makeRoom) {
+  if (makeRoom) {
+    std::erase_if(bricks_, [&](const auto& held) {
+      return !std::ranges::binary_search(wanted, orderOf(held->origin), {},
+                                         [](const Brick& brick) { return orderOf(brick.origin); });
+    });
+    ++generation_;
+  }
+  requireMemory("the voxels of " + std::to_string(wanted.size()) + " visible bricks",
+                static_cast<double>(bytesOf(wanted, table)));
   // What is missing is read aside: where that fails, nothing has changed.
   std::map<std::tuple<int, int, int>, std::size_t> before;
   for (std::size_t i = 0; i < bricks_.size(); ++i)
@@ -73,7 +98,8 @@ void BrickVoxels::select(const MediumTable& table, bool culling, bool background
   const bool gradients = table.is2d();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, missing.size(), 1), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      if (gradients) missing[i]->gradients = std::make_unique_for_overwrite<float[]>(voxels + kPadding);
+      if (gradients)
+        missing[i]->gradients = std::make_unique_for_overwrite<float[]>(volume_.layout.voxels() + kPadding);
       load(*missing[i], scratches.local());
       missing[i]->active.resize(groupCount());
     }
@@ -111,6 +137,7 @@ void BrickVoxels::load(VoxelBrick& brick, std::vector<float>& values) const {
   findRanges(brick, values);
   if (code_ == VoxelCode::u8) store<std::uint8_t>(brick, values);
   if (code_ == VoxelCode::u16) store<std::uint16_t>(brick, values);
+  if (code_ == VoxelCode::f16) store<HalfCode>(brick, values);
   if (code_ == VoxelCode::f32) store<float>(brick, values);
 }
 
@@ -120,7 +147,7 @@ void BrickVoxels::store(VoxelBrick& brick, std::span<const float> values) const 
   brick.voxels = std::make_unique_for_overwrite<std::byte[]>((values.size() + kPadding) * sizeof(Code));
   auto* const codes = reinterpret_cast<Code*>(brick.voxels.get());
   const auto offset = static_cast<float>(offset_);
-  for (std::size_t i = 0; i < values.size(); ++i) codes[i] = static_cast<Code>(values[i] - offset);
+  for (std::size_t i = 0; i < values.size(); ++i) codes[i] = codeOf<Code>(values[i] - offset);
 }
 
 void BrickVoxels::findRanges(VoxelBrick& brick, std::span<const float> values) const {
@@ -161,8 +188,9 @@ std::uint64_t BrickVoxels::bytes() const {
   const std::uint64_t voxels = volume_.layout.voxels();
   std::uint64_t sum = 0;
   for (const auto& brick : bricks_) {
-    if (brick->voxels) sum += voxels * bytesOf(code_);
+    if (brick->voxels) sum += voxels * umbrick::bytesOf(code_);
     if (brick->gradients) sum += voxels * sizeof(float);
+    if (brick->media) sum += voxels * kMediumNumbers * sizeof(float);
     if (brick->light) sum += voxels * sizeof(std::uint16_t);
     sum += brick->active.size() * (1 + (brick->ranges ? 2 * sizeof(float) : 0));
   }

@@ -16,8 +16,18 @@ namespace umbrick {
 /// A row or a slice this near to voxels lies on them.
 inline constexpr double kOnVoxels = 1e-9;
 
-/// How a voxel is stored.
-enum class VoxelCode { u8, u16, f32 };
+/// How a voxel is stored: as a whole number above the least one, or as a float of 16 or 32 bits.
+enum class VoxelCode { u8, u16, f16, f32 };
+inline bool isFloat(VoxelCode code) { return code == VoxelCode::f16 || code == VoxelCode::f32; }
+
+/// A 16-bit float of a voxel.
+struct HalfCode {
+  std::uint16_t bits = 0;
+};
+static_assert(sizeof(HalfCode) == 2);
+
+/// A medium as renderers integrate it: sigma_t, then sigma_s of red, green and blue, 1/world unit.
+inline constexpr int kMediumNumbers = 4;
 
 /// The voxels of one brick with its apron, x fastest, and what is known of them.
 struct VoxelBrick {
@@ -25,6 +35,7 @@ struct VoxelBrick {
   Range value, gradient;
   std::unique_ptr<std::byte[]> voxels;     // codes; none where all are the same
   std::unique_ptr<float[]> gradients;      // grid units per world unit; of 2D functions alone
+  std::unique_ptr<float[]> media;          // sigma_t and sigma_s by colour, each of all voxels; see classify()
   std::unique_ptr<std::uint16_t[]> light;  // shares of lightUnit(), by channel; none without a light volume
   /// The range of the voxels of each group of cells, and whether the function shows anything in it.
   std::unique_ptr<float[]> ranges;
@@ -49,21 +60,28 @@ class BrickVoxels {
   /// @param volume  outlives this
   explicit BrickVoxels(const Bricks& volume);
 
-  /// Holds the bricks that the function shows and lets others go. Where this throws, nothing has changed.
-  /// @throw InvalidArgument  more than `mostBytes`
-  /// @param culling  false: all bricks are held, and all groups are active
-  void select(const MediumTable& table, bool culling, bool backgroundVisible, std::uint64_t mostBytes);
+  /// Returns the bricks that the function shows, ascending in z, then y, then x.
+  /// @param culling  false: all bricks
+  std::vector<Brick> visible(const MediumTable& table, bool culling, bool backgroundVisible) const;
+  /// Returns what the voxels of bricks take, and of one of several values. Bricks of one value take none.
+  std::uint64_t bytesOf(std::span<const Brick> bricks, const MediumTable& table) const;
+  std::uint64_t bytesEach(const MediumTable& table) const;
+  /// Holds bricks and lets others go. Where this throws, nothing has changed.
+  /// @param wanted    some of those that visible() returns, in its order
+  /// @param culling   false: all groups are active
+  /// @param makeRoom  lets others go first, so that no more is held at any time; they are gone where this throws
+  void hold(std::span<const Brick> wanted, const MediumTable& table, bool culling, bool makeRoom = false);
 
   const Bricks& volume() const { return volume_; }
   VoxelCode code() const { return code_; }
-  /// value = offset() + code
+  /// value = offset() + code; floats are values by themselves
   double offset() const { return offset_; }
   std::span<const std::unique_ptr<VoxelBrick>> bricks() const { return bricks_; }
   /// Returns those and all others of the volume, of which no more than a value is known.
   std::vector<PlacedBrick> allBricks() const;
   VoxelBrick& brick(std::size_t i) { return *bricks_[i]; }
   std::uint64_t bytes() const;
-  std::uint64_t loaded() const { return loaded_; }  // bricks that were read for the last selection
+  std::uint64_t loaded() const { return loaded_; }  // bricks that were read by the last hold()
   glm::ivec3 groups() const { return groups_; }
   /// A number that grows whenever the bricks that are held change.
   std::uint64_t generation() const { return generation_; }

@@ -27,6 +27,14 @@ int stepsFor(const std::vector<double>& values) {
   return steps;
 }
 
+// Tells whether a function has several colours and reaches an extinction.
+bool hidesColours(const TransferFunction& transfer, double extinction) {
+  const std::vector<Medium>& media = transfer.media();
+  const auto largest = std::ranges::max_element(media, {}, &Medium::sigma_t);
+  return largest->sigma_t >= extinction &&
+         std::ranges::any_of(media, [&](const Medium& medium) { return medium.albedo != largest->albedo; });
+}
+
 // Integrates a 1D function from below: exactly, since sigma_t is linear and sigma_s quadratic between control points.
 class MediumIntegral {
  public:
@@ -50,7 +58,7 @@ class MediumIntegral {
 
 }  // namespace
 
-MediumTable::MediumTable(const TransferFunction& transfer, double exact, double most) {
+MediumTable::MediumTable(const TransferFunction& transfer, double exact, double most, double hiding) {
   const std::vector<double>& values = transfer.values();
   const double low = values.front(), high = values.back();
   // A function of a single step has no extent.
@@ -68,6 +76,9 @@ MediumTable::MediumTable(const TransferFunction& transfer, double exact, double 
     fill2d(transfer, most);
   else
     fill1d(transfer, most);
+  if (!transfer.is2d() && hidesColours(transfer, hiding))
+    stretches_ = StretchTable(
+        transfer, [this](double value) { return stepsOf(value); }, steps_, most);
 }
 
 void MediumTable::fill1d(const TransferFunction& transfer, double most) {

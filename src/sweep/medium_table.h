@@ -3,8 +3,10 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
+#include "sweep/stretch_table.h"
 #include "umbrick/core/range.h"
 #include "umbrick/optics/transfer_function.h"
 
@@ -21,7 +23,10 @@ class MediumTable {
   /// @param exact     a value that is met by a step to the last bit, if it lies within the function: that of empty
   /// space
   /// @param most      largest sigma_t that makes a difference, 1/world unit
-  MediumTable(const TransferFunction& transfer, double exact, double most);
+  /// @param hiding    sigma_t from which on a part of a segment may hide colours behind others of it: such a function
+  ///   gets stretches()
+  MediumTable(const TransferFunction& transfer, double exact, double most,
+              double hiding = std::numeric_limits<double>::infinity());
 
   bool is2d() const { return gradientSteps_ > 0; }
   /// The value of a voxel in steps: (value - origin()) * perUnit() + first().
@@ -46,6 +51,9 @@ class MediumTable {
   const std::int32_t* rests() const { return rests_.empty() ? nullptr : rests_.data(); }
   static constexpr int kRests = 1 << 20;
 
+  /// The function's stretches, over which thick segments are integrated one by one; null: their means will do.
+  const StretchTable* stretches() const { return stretches_.empty() ? nullptr : &stretches_; }
+
   /// Tells whether the medium is empty for all values between two, and for all gradients between two.
   bool isTransparent(const Range& value, const Range& gradient) const;
 
@@ -62,6 +70,7 @@ class MediumTable {
   float sumUnit_ = 1;
   std::vector<float> points_;
   std::vector<std::int32_t> sums_, rests_;
+  StretchTable stretches_;
   /// Of a 1D function: how many of the steps and of the ways behind them, in turn, have medium before each. Of a 2D
   /// function a table of sums, see countAt().
   std::vector<std::int64_t> counts_;

@@ -29,6 +29,20 @@ HWY_INLINE PacketFloats gatherCodes(PacketLanes d, const std::uint16_t* from, Pa
   const PacketInts two = hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(from), hn::ShiftLeft<1>(index));
   return hn::ConvertTo(d, hn::And(two, hn::Set(di, 0xffff)));
 }
+// Widens 16-bit floats, the lower half of each number, to floats: exactly, none being infinite.
+HWY_INLINE PacketFloats widened(PacketLanes d, PacketInts half) {
+  const PacketNumbers di;
+  const PacketInts size = hn::And(half, hn::Set(di, 0x7fff));
+  const PacketInts sign = hn::ShiftLeft<16>(hn::And(half, hn::Set(di, 0x8000)));
+  const PacketFloats normal = hn::BitCast(d, hn::Add(hn::ShiftLeft<13>(size), hn::Set(di, (127 - 15) << 23)));
+  const PacketFloats small = hn::Mul(hn::ConvertTo(d, size), hn::Set(d, 0x1p-24f));
+  const auto isSmall = hn::RebindMask(d, hn::Lt(size, hn::Set(di, 0x400)));
+  return hn::BitCast(d, hn::Or(sign, hn::BitCast(di, hn::IfThenElse(isSmall, small, normal))));
+}
+HWY_INLINE PacketFloats gatherCodes(PacketLanes d, const HalfCode* from, PacketInts index) {
+  const PacketNumbers di;
+  return widened(d, hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(from), hn::ShiftLeft<1>(index)));
+}
 HWY_INLINE PacketFloats gatherCodes(PacketLanes d, const float* from, PacketInts index) {
   return hn::GatherIndex(d, from, index);
 }
@@ -48,6 +62,11 @@ HWY_INLINE CodePair gatherPairs(PacketLanes d, const std::uint16_t* from, Packet
   const PacketInts two = hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(from), hn::ShiftLeft<1>(index));
   const PacketInts mask = hn::Set(di, 0xffff);
   return {hn::ConvertTo(d, hn::And(two, mask)), hn::ConvertTo(d, hn::And(hn::ShiftRight<16>(two), mask))};
+}
+HWY_INLINE CodePair gatherPairs(PacketLanes d, const HalfCode* from, PacketInts index) {
+  const PacketNumbers di;
+  const PacketInts two = hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(from), hn::ShiftLeft<1>(index));
+  return {widened(d, two), widened(d, hn::ShiftRight<16>(two))};
 }
 HWY_INLINE CodePair gatherPairs(PacketLanes d, const float* from, PacketInts index) {
   return {hn::GatherIndex(d, from, index), hn::GatherIndex(d, from + 1, index)};
@@ -92,6 +111,8 @@ HWY_INLINE PacketFloats valuesIn(PacketLanes d, const PacketBrick& brick, const 
     value = interpolated(d, static_cast<const std::uint8_t*>(brick.voxels) + brick.first, slice, cells);
   else if (slice.code == VoxelCode::u16)
     value = interpolated(d, static_cast<const std::uint16_t*>(brick.voxels) + brick.first, slice, cells);
+  else if (slice.code == VoxelCode::f16)
+    value = interpolated(d, static_cast<const HalfCode*>(brick.voxels) + brick.first, slice, cells);
   else
     value = interpolated(d, static_cast<const float*>(brick.voxels) + brick.first, slice, cells);
   return hn::MulAdd(hn::Sub(value, hn::Set(d, slice.bias)), hn::Set(d, slice.factor), hn::Set(d, slice.first));
@@ -122,6 +143,13 @@ void samplePacketOf(const PacketSlice& slice, std::span<const PacketBrick> brick
       const auto store = [&](int field, PacketFloats value) HWY_ATTR {
         hn::StoreU(hn::IfThenElse(mine, value, hn::LoadU(d, fields[field] + at)), d, fields[field] + at);
       };
+      if (slice.classified) {
+        for (int c = 0; c < kMediumNumbers; ++c)
+          store(c == 0 ? 0 : kColourFields + c - 1,
+                brick.media ? interpolated(d, brick.media + brick.first + c * slice.lightStride, slice, cells)
+                            : hn::Zero(d));
+        continue;
+      }
       store(0, valuesIn(d, brick, slice, cells));
       if (slice.gradients)
         store(1, brick.gradients ? hn::MulAdd(interpolated(d, brick.gradients + brick.first, slice, cells),

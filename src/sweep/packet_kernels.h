@@ -20,6 +20,7 @@ struct PacketBrick {
   const void* voxels = nullptr;          // codes; none where all have one value
   const float* gradients = nullptr;      // of 2D functions
   const std::uint16_t* light = nullptr;  // by channel, see lightStride
+  const float* media = nullptr;          // of classified voxels, by number, at the same stride; none: empty
   float value = 0;                       // in steps of the table, where there are no voxels
   std::int32_t firstU = 0, firstV = 0;   // cells begin at these voxels,
   std::int32_t endU = 0, endV = 0;       // and end before these
@@ -36,9 +37,9 @@ struct PacketSlice {
   float bias = 0, factor = 1, first = 0;                 // steps = (code - bias) factor + first
   float gradientFactor = 1, gradientFirst = 0;
   float lightUnit = 1;
-  std::ptrdiff_t lightStride = 0;  // between channels
+  std::ptrdiff_t lightStride = 0;  // between channels of light, and numbers of media
   int lights = 0;
-  bool gradients = false;
+  bool gradients = false, classified = false;
 };
 
 /// Interpolates the fields of a packet's rays: those of the first brick that have their place in it, then those of the

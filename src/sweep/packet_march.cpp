@@ -291,7 +291,8 @@ void PacketMarch::sample(double n, int side) {
   sampledAt_[static_cast<std::size_t>(side)] = n;
   isSampled_[static_cast<std::size_t>(side)] = true;
   auto& fields = fields_[static_cast<std::size_t>(side)];
-  fields[0].fill(static_cast<float>(table.stepsOf(voxels.volume().background)));
+  fields[0].fill(frame_.classified ? 0 : static_cast<float>(table.stepsOf(voxels.volume().background)));
+  for (int c = 0; frame_.classified && c < 3; ++c) fields[static_cast<std::size_t>(kColourFields + c)].fill(0);
   if (table.is2d()) fields[1].fill(static_cast<float>(table.gradientStepsOf(0)));
   // Where no brick is held nothing is seen: light there is that of the slice before.
   if (frame_.lights > 0) {
@@ -319,10 +320,11 @@ void PacketMarch::sample(double n, int side) {
     share = 0;
   }
   slice.n = share < kOnVoxels ? 0 : static_cast<float>(share);
-  const bool codes = voxels.code() != VoxelCode::f32;
+  const bool codes = !isFloat(voxels.code());
   slice.bias = codes ? 0 : static_cast<float>(table.origin());
   slice.factor = static_cast<float>(table.perUnit());
   slice.first = static_cast<float>(codes ? table.stepsOf(voxels.offset()) : table.first());
+  slice.classified = frame_.classified;
   slice.gradients = table.is2d();
   slice.gradientFactor = static_cast<float>(table.gradientPerUnit());
   slice.gradientFirst = static_cast<float>(table.gradientStepsOf(0));
@@ -385,6 +387,7 @@ void PacketMarch::addBricks(std::int64_t n, std::int64_t layer, Listed& listed) 
       brick.voxels = held.voxels.get();
       brick.gradients = held.gradients.get();
       brick.light = held.light.get();
+      brick.media = held.media.get();
       brick.value = static_cast<float>(frame_.table->stepsOf(held.value.min));
       brick.first = (layout.apron - 1) * (strides[axes_->u] + strides[axes_->v]) +
                     (n - entry->origin[axes_->n] + layout.apron) * strides[axes_->n];

@@ -43,6 +43,29 @@ PacketAxes axesAlong(std::size_t n, const SweptScene& scene, const glm::dvec3& l
   return axes;
 }
 
+// Returns the rows of pixels that may see a brick.
+RowSpan rowsOf(const Brick& brick, const IndexView& view, const glm::ivec3& interior) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  bool behind = false, inFront = false;
+  for (int corner = 0; corner < 8; ++corner) {
+    glm::dvec3 at(brick.origin);
+    for (int axis = 0; axis < 3; ++axis) at[axis] += corner >> axis & 1 ? interior[axis] : -1;
+    const glm::dvec3 seen = view.toView(at);
+    const bool perspective = view.projection == Projection::perspective;
+    (seen.z > 0 || !perspective ? inFront : behind) = true;
+    const double y = perspective ? seen.y / seen.z : seen.y;
+    low = std::min(low, y);
+    high = std::max(high, y);
+  }
+  if (!inFront) return {};
+  if (behind) return {0, view.size.y - 1};
+  const auto rowAt = [&](double y) {
+    const double row = (y - view.centre.y + view.halfExtent.y) / (2 * view.halfExtent.y) * view.size.y;
+    return static_cast<int>(std::floor(std::clamp(row, -2.0, view.size.y + 2.0)));
+  };
+  return {rowAt(low) - 1, rowAt(high) + 1};
+}
+
 }  // namespace
 
 bool raysSupport(const SceneSettings& scene) { return sweptSupports(scene); }
@@ -57,9 +80,7 @@ class RayRenderer::Implementation {
       : options_(options), perVoxel_(perVoxel), scene_(volume, "rays") {}
 
   void update(const ResolvedScene& next, const ResolvedScene* before) {
-    const std::uint64_t generation = scene_.voxels().generation();
     scene_.update(next, before);
-    if (!bricks_ || generation != scene_.voxels().generation()) bricks_.emplace(scene_.voxels());
     picture_.reset();
   }
 
@@ -73,7 +94,10 @@ class RayRenderer::Implementation {
     Picture picture = emptyPicture(scene, options_.visibilityAndDepth);
     scene_.prepare(scene, sample, picture.stats);
     const Stopwatch sweep;
-    march(scene, frameOf(scene), picture);
+    scene_.drawInBands(
+        scene, scene.camera.height, kPacketEdge,
+        [&](const Brick& brick) { return rowsOf(brick, scene_.view(), scene_.volume().layout.interior); },
+        [&](int begin, int end) { march(scene, frameOf(scene), begin, end, picture); }, picture.stats);
     picture.stats.sweepMs = sweep.elapsedMs();
     picture.stats.bufferBytes = picture.colour.pixels.size() * sizeof(float);
     picture_ = std::move(picture);
@@ -85,7 +109,11 @@ class RayRenderer::Implementation {
   }
 
  private:
-  PacketFrame frameOf(const ResolvedScene& scene) const {
+  PacketFrame frameOf(const ResolvedScene& scene) {
+    if (!bricks_ || generation_ != scene_.voxels().generation()) {
+      bricks_.emplace(scene_.voxels());
+      generation_ = scene_.voxels().generation();
+    }
     PacketFrame frame;
     static_cast<SweptFrame&>(frame) = scene_.frame(scene, options_.visibilityAndDepth);
     frame.bricks = &*bricks_;
@@ -96,50 +124,55 @@ class RayRenderer::Implementation {
     return frame;
   }
 
-  void march(const ResolvedScene& scene, const PacketFrame& frame, Picture& picture) const {
+  // Fills the rows of pixels begin <= y < end.
+  void march(const ResolvedScene& scene, const PacketFrame& frame, int begin, int end, Picture& picture) const {
     const int width = scene.camera.width, height = scene.camera.height;
     const int columns = (width + kPacketEdge - 1) / kPacketEdge, rows = (height + kPacketEdge - 1) / kPacketEdge;
     const IndexView& view = scene_.view();
-    const bool nothing = scene_.voxels().bricks().empty();
+    const bool nothing = scene_.isEmpty();
     tbb::enumerable_thread_specific<PacketMarch> marches([&] { return PacketMarch(frame); });
-    std::atomic<int> done{0};
+    const int firstRow = begin / kPacketEdge;
+    std::atomic<int> done{firstRow};
     std::atomic<std::uint64_t> samples{0};
     const auto caller = std::this_thread::get_id();
-    tbb::parallel_for(tbb::blocked_range<int>(0, rows, 1), [&](const auto& range) {
-      PacketMarch& march = marches.local();
-      std::uint64_t taken = 0;
-      for (int row = range.begin(); row != range.end(); ++row)
-        for (int column = 0; column < columns; ++column) {
-          std::array<glm::dvec2, kRayGroup> screen;
-          for (int i = 0; i < kRayGroup; ++i) {
-            // What would lie outside of the picture goes with its last pixels.
-            const glm::dvec2 pixel(std::min(column * kPacketEdge + i % kPacketEdge, width - 1) + 0.5,
-                                   std::min(row * kPacketEdge + i / kPacketEdge, height - 1) + 0.5);
-            screen[static_cast<std::size_t>(i)] =
-                view.centre + view.halfExtent * (2.0 * pixel / glm::dvec2(width, height) - 1.0);
-          }
-          PacketPixels pixels{};
-          if (!nothing) taken += march.march(screen, pixels);
-          for (int i = 0; i < kRayGroup; ++i) {
-            const int x = column * kPacketEdge + i % kPacketEdge, y = row * kPacketEdge + i / kPacketEdge;
-            if (x >= width || y >= height) continue;
-            const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-            scene_.storePixel(scene, at, pixels.colour[static_cast<std::size_t>(i)],
-                              pixels.aux[static_cast<std::size_t>(i)], picture);
-          }
-        }
-      samples += taken;
-      const int finished = done += static_cast<int>(range.size());
-      if (options_.progress && std::this_thread::get_id() == caller)
-        options_.progress(static_cast<double>(finished) / rows);
-    });
-    picture.stats.fragments = samples;
+    tbb::parallel_for(
+        tbb::blocked_range<int>(firstRow, (end + kPacketEdge - 1) / kPacketEdge, 1), [&](const auto& range) {
+          PacketMarch& march = marches.local();
+          std::uint64_t taken = 0;
+          for (int row = range.begin(); row != range.end(); ++row)
+            for (int column = 0; column < columns; ++column) {
+              std::array<glm::dvec2, kRayGroup> screen;
+              for (int i = 0; i < kRayGroup; ++i) {
+                // What would lie outside of the picture goes with its last pixels.
+                const glm::dvec2 pixel(std::min(column * kPacketEdge + i % kPacketEdge, width - 1) + 0.5,
+                                       std::min(row * kPacketEdge + i / kPacketEdge, height - 1) + 0.5);
+                screen[static_cast<std::size_t>(i)] =
+                    view.centre + view.halfExtent * (2.0 * pixel / glm::dvec2(width, height) - 1.0);
+              }
+              PacketPixels pixels{};
+              if (!nothing) taken += march.march(screen, pixels);
+              for (int i = 0; i < kRayGroup; ++i) {
+                const int x = column * kPacketEdge + i % kPacketEdge, y = row * kPacketEdge + i / kPacketEdge;
+                if (x >= width || y >= height) continue;
+                const auto at =
+                    static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+                scene_.storePixel(scene, at, pixels.colour[static_cast<std::size_t>(i)],
+                                  pixels.aux[static_cast<std::size_t>(i)], picture);
+              }
+            }
+          samples += taken;
+          const int finished = done += static_cast<int>(range.size());
+          if (options_.progress && std::this_thread::get_id() == caller)
+            options_.progress(static_cast<double>(finished) / rows);
+        });
+    picture.stats.fragments += samples;
   }
 
   RenderOptions options_;
   std::optional<int> perVoxel_;
   SweptScene scene_;
   std::optional<BrickTable> bricks_;
+  std::uint64_t generation_ = 0;    // of the bricks that it knows
   std::optional<Picture> picture_;  // none: nothing was drawn since the scene changed
 };
 

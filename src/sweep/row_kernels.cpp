@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/row_kernels.h"
 
+#include <glm/gtc/packing.hpp>
+
 #include "umbrick/sweep/instructions.h"
 
 // Highway compiles what lies between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each set of instructions, by
@@ -10,6 +12,8 @@
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "sweep/stretches-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace umbrick::HWY_NAMESPACE {
@@ -30,10 +34,21 @@ HWY_INLINE Floats loadCodes(Lanes d, const std::uint16_t* from) {
   const hn::Rebind<std::uint16_t, Lanes> narrow;
   return hn::ConvertTo(d, hn::PromoteTo(Numbers(), hn::LoadU(narrow, from)));
 }
+HWY_INLINE Floats loadCodes(Lanes d, const HalfCode* from) {
+  const hn::Rebind<hwy::float16_t, Lanes> narrow;
+  const hn::Rebind<std::uint16_t, Lanes> bits;
+  return hn::PromoteTo(d, hn::BitCast(narrow, hn::LoadU(bits, &from->bits)));
+}
 HWY_INLINE Floats loadCodes(Lanes d, const float* from) { return hn::LoadU(d, from); }
 
 // As a + share (b - a): equal voxels give their value to the last bit.
 HWY_INLINE Floats between(Floats a, Floats b, Floats share) { return hn::MulAdd(share, hn::Sub(b, a), a); }
+
+template <class Code>
+HWY_INLINE float codeOf(Code code) {
+  return static_cast<float>(code);
+}
+HWY_INLINE float codeOf(HalfCode code) { return glm::unpackHalf1x16(code.bits); }
 
 template <class Code>
 void blend(const VoxelRows& rows, int count, float* out) {
@@ -46,9 +61,9 @@ void blend(const VoxelRows& rows, int count, float* out) {
   if (rows.stride != 1) {
     for (int i = 0; i < count; ++i) {
       const std::ptrdiff_t at = i * rows.stride;
-      float value = static_cast<float>(a[at]) + rows.v * (static_cast<float>(b[at]) - static_cast<float>(a[at]));
+      float value = codeOf(a[at]) + rows.v * (codeOf(b[at]) - codeOf(a[at]));
       if (rows.n > 0) {
-        const float next = static_cast<float>(c[at]) + rows.v * (static_cast<float>(e[at]) - static_cast<float>(c[at]));
+        const float next = codeOf(c[at]) + rows.v * (codeOf(e[at]) - codeOf(c[at]));
         value += rows.n * (next - value);
       }
       out[i] = (value - rows.bias) * rows.factor + rows.first;
@@ -69,6 +84,7 @@ void blend(const VoxelRows& rows, int count, float* out) {
 void blendRowsOf(VoxelCode code, const VoxelRows& rows, int count, float* out) {
   if (code == VoxelCode::u8) blend<std::uint8_t>(rows, count, out);
   if (code == VoxelCode::u16) blend<std::uint16_t>(rows, count, out);
+  if (code == VoxelCode::f16) blend<HalfCode>(rows, count, out);
   if (code == VoxelCode::f32) blend<float>(rows, count, out);
 }
 
@@ -264,6 +280,21 @@ class Accumulator {
     }
   }
 
+  // A piece whose opacity is known, with its albedo.
+  HWY_INLINE void add(const StretchPiece<Floats>& piece, const Arriving& light) {
+    const Lanes d;
+    const Floats gained = hn::Mul(piece.alpha, hn::Sub(hn::Set(d, 1.0f), opacity_));
+    red_ = hn::MulAdd(hn::Mul(gained, light.red), piece.red, red_);
+    green_ = hn::MulAdd(hn::Mul(gained, light.green), piece.green, green_);
+    blue_ = hn::MulAdd(hn::Mul(gained, light.blue), piece.blue, blue_);
+    opacity_ = hn::Add(opacity_, gained);
+    if (rays_.seen) {
+      seen_ = hn::MulAdd(gained, light.power, seen_);
+      depth_ = hn::MulAdd(gained, middle_, depth_);
+    }
+  }
+  HWY_INLINE Floats through() const { return hn::Sub(hn::Set(Lanes(), 1.0f), opacity_); }
+
   HWY_INLINE void store() const {
     const Lanes d;
     hn::StoreU(opacity_, d, rays_.opacity + at_);
@@ -298,6 +329,35 @@ HWY_INLINE Arriving arrivingAt(Lanes d, const RowSegment& segment, const float* 
   return {first, second, third, power};
 }
 
+// A number at the front and at the back of a part.
+struct PartEnds {
+  Floats front, back;
+};
+
+// Adds the space between two slices of classified voxels, between which the medium runs linearly.
+HWY_INLINE void addClassified(const RowSegment& segment, Accumulator& sum, const float* const* front,
+                              const float* const* back, int at, Floats begin, Floats end, Floats length) {
+  const Lanes d;
+  const auto read = [&](int field) HWY_ATTR {
+    const Floats a = hn::LoadU(d, front[field] + at), b = hn::LoadU(d, back[field] + at);
+    return PartEnds{between(a, b, begin), between(a, b, end)};
+  };
+  const PartEnds sigma = read(0), red = read(kColourFields), green = read(kColourFields + 1),
+                 blue = read(kColourFields + 2);
+  const Floats tau = hn::Mul(hn::Mul(hn::Set(d, 0.5f), hn::Add(sigma.front, sigma.back)), length);
+  if (hn::AllFalse(d, hn::Gt(tau, hn::Zero(d)))) return;
+  const Floats one = hn::Set(d, 1.0f);
+  const Arriving light{one, one, one, one};
+  const int parts = segment.midpoint || hn::AllFalse(d, hn::Gt(tau, hn::Set(d, 0.1f))) ? 1 : 8;
+  const Floats part = hn::Mul(hn::Set(d, 1.0f / static_cast<float>(parts)), length);
+  for (int i = 0; i < parts; ++i) {
+    const Floats place = hn::Set(d, (static_cast<float>(i) + 0.5f) / static_cast<float>(parts));
+    const auto mean = [&](const PartEnds& ends) HWY_ATTR { return between(ends.front, ends.back, place); };
+    const MeanMedium medium{mean(sigma), mean(red), mean(green), mean(blue)};
+    sum.add(medium, hn::Mul(medium.sigma_t, part), part, light);
+  }
+}
+
 void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const RowRays& rays, int first, int count,
                      const float* const* front, const float* const* back) {
   const Lanes d;
@@ -321,6 +381,12 @@ void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const 
         to = hn::MulAdd(end, change, from);
         from = hn::MulAdd(begin, change, from);
         length = hn::Mul(length, hn::Sub(end, begin));
+      }
+      if (segment.classified) {
+        Accumulator sum(rays, segment, at);
+        addClassified(segment, sum, front, back, at, begin, end, length);
+        sum.store();
+        continue;
       }
       const Floats middle = hn::Mul(half, hn::Add(begin, end));
       from = hn::Max(hn::Min(from, far), hn::Neg(far));
@@ -348,6 +414,7 @@ void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const 
         sum.store();
         continue;
       }
+      const Floats exactFrom = from, exactTo = to;
       from = hn::Round(from);
       to = hn::Round(to);
       TableEnd begins = linear.end(d, from), ends = linear.end(d, to);
@@ -358,17 +425,32 @@ void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const 
       linear.addColours(d, begins);
       linear.addColours(d, ends);
       // Where a segment is thick, its front hides its back: it is taken in two or four parts, between which that is
-      // exact. Each ray has its own parts, so that none depends on its neighbours: 1, 1/2 or 1/4 of the segment.
+      // exact. Each ray has its own parts, so that none depends on its neighbours: 1, 1/2 or 1/4 of the segment. Where
+      // even a part may be opaque and of several colours, the table has stretches, over which all is exact.
       const auto ranges = hn::Gt(hn::Abs(hn::Sub(to, from)), one);
-      const auto thick = hn::And(hn::Gt(tau, hn::Set(d, 0.2f)), ranges);
+      const auto thick =
+          table.stretches() ? hn::Gt(tau, hn::Set(d, 0.2f)) : hn::And(hn::Gt(tau, hn::Set(d, 0.2f)), ranges);
       if (hn::AllFalse(d, thick)) {
         const MeanMedium medium{sigma_t, linear.mean(d, all, begins, ends, 1), linear.mean(d, all, begins, ends, 2),
                                 linear.mean(d, all, begins, ends, 3)};
         sum.add(medium, tau, length, arrivingAt(d, segment, front, back, at, middle));
       } else {
-        const auto thicker = hn::And(hn::Gt(tau, hn::Set(d, 1.0f)), ranges);
-        const Floats size = hn::IfThenElse(thicker, hn::Set(d, 0.25f), hn::IfThenElse(thick, half, one));
-        const int parts = hn::AllFalse(d, thicker) ? 2 : 4;
+        auto byParts = hn::And(thick, ranges);
+        if (const StretchTable* const stretches = table.stretches()) {
+          const StretchWalk<Lanes> walk(d, *stretches, table.steps(), exactFrom, exactTo);
+          const auto exactly = hn::And(thick, walk.isShort());
+          byParts = hn::AndNot(exactly, thick);
+          const auto add = [&](const StretchPiece<Floats>& piece) HWY_ATTR {
+            sum.add(piece, arrivingAt(d, segment, front, back, at, between(begin, end, piece.place)));
+            return hn::AllFalse(d, hn::And(exactly, hn::Gt(sum.through(), hn::Set(d, 1e-7f))));
+          };
+          const auto opacityOf = [&](Floats x) HWY_ATTR { return hn::Mul(x, slabFactorOf(d, x)); };
+          if (!hn::AllFalse(d, exactly)) walk.along(length, exactly, opacityOf, add);
+          length = hn::IfThenZeroElse(exactly, length);
+        }
+        const auto thicker = hn::And(hn::Gt(tau, hn::Set(d, 1.0f)), byParts);
+        const Floats size = hn::IfThenElse(thicker, hn::Set(d, 0.25f), hn::IfThenElse(byParts, half, one));
+        const int parts = hn::AllFalse(d, byParts) ? 1 : hn::AllFalse(d, thicker) ? 2 : 4;
         Floats done = zero;
         TableEnd before = begins;
         for (int i = 0; i < parts; ++i) {

@@ -14,8 +14,10 @@ namespace umbrick {
 inline constexpr int kRayGroup = 16;
 /// Buffers that rows are read from end with so many numbers more, which are read and not used.
 inline constexpr int kRowPadding = 32;
-/// What is interpolated: the value, the gradient of 2D functions, and light of one or three channels.
-inline constexpr int kMostFields = 5;
+/// What is interpolated: the value, the gradient of 2D functions, and light of one or three channels. Of classified
+/// voxels sigma_t stands in the place of the value, and sigma_s by colour in the last places.
+inline constexpr int kMostFields = 8;
+inline constexpr int kLightFields = 2, kColourFields = 5;
 
 /// Up to four rows of a brick's voxels between which a row is interpolated, in steps of the table.
 struct VoxelRows {
@@ -56,6 +58,7 @@ struct RowSegment {
   bool clipped = false;                 // some rays enter or leave in it
   float saturation = 0;                 // transmittance below which a ray is full
   bool midpoint = false;                // the medium at the middle, for all of it
+  bool classified = false;              // the fields are media
   int lights = 0;                       // channels of light among the fields, behind value and gradient
   std::array<float, 3> power{1, 1, 1};  // share of the power of each channel
 };

@@ -20,7 +20,8 @@ std::int64_t bounded(double at, std::int64_t low, std::int64_t high) {
 
 RowMarch::RowMarch(const MarchFrame& frame)
     : frame_(frame),
-      reader_(*frame.voxels, *frame.rows, *frame.lattice, *frame.table, frame.lights, frame.lightUnit),
+      reader_(*frame.voxels, *frame.rows, *frame.lattice, *frame.table, frame.lights, frame.lightUnit,
+              frame.classified),
       groups_((frame.lattice->width + kRayGroup - 1) / kRayGroup) {
   const auto rays = static_cast<std::size_t>(groups_) * kRayGroup, groups = static_cast<std::size_t>(groups_);
   for (Row* row : {&red_, &green_, &blue_, &opacity_, &length_}) row->resize(rays);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include "sweep/row_march.h"
 #include "sweep/swept_scene.h"
@@ -38,6 +39,29 @@ std::vector<double> slicesOf(const RayLattice& lattice, const BrickRows& rows, i
     if (slices.empty() || std::abs(at - slices.back()) > 1e-9) slices.push_back(at);
   }
   return slices;
+}
+
+// Returns the rows of a lattice that may meet a brick.
+RowSpan rowsOf(const Brick& brick, const RayLattice& lattice, const glm::ivec3& interior) {
+  const double lowV = brick.origin[lattice.v] - 1.0, highV = brick.origin[lattice.v] + double(interior[lattice.v]);
+  double front = brick.origin[lattice.n] - 1.0, back = brick.origin[lattice.n] + double(interior[lattice.n]);
+  if (lattice.sign < 0) std::swap(front, back);
+  if (lattice.perspective) {
+    if ((back - lattice.eye.z) * lattice.sign <= 0) return {};
+    if ((front - lattice.eye.z) * lattice.sign < 0) front = lattice.eye.z;
+  }
+  // Rows are straight across the slices, so that they meet most at the first or at the last.
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double n : {front, back}) {
+    const double spacing = lattice.spacing(n).y, start = lattice.start(n).y;
+    if (spacing < 1e-6) return {0, lattice.height - 1};
+    low = std::min(low, (lowV - start) / spacing);
+    high = std::max(high, (highV - start) / spacing);
+  }
+  const auto bounded = [&](double row) {
+    return static_cast<int>(std::floor(std::clamp(row, -2.0, lattice.height + 2.0)));
+  };
+  return {bounded(low) - 1, bounded(high) + 1};
 }
 
 }  // namespace
@@ -76,7 +100,7 @@ class ShearWarpRenderer::Implementation {
     stats_ = {};
     scene_.prepare(scene, sample, stats_);
     const Stopwatch sweep;
-    if (!scene_.voxels().bricks().empty()) drawLattices(scene);
+    if (!scene_.isEmpty()) drawLattices(scene);
     stats_.sweepMs = sweep.elapsedMs();
     drawn_ = true;
   }
@@ -103,7 +127,7 @@ class ShearWarpRenderer::Implementation {
  private:
   void drawLattices(const ResolvedScene& scene) {
     const Bricks& volume = scene_.volume();
-    const BrickVoxels& voxels = scene_.voxels();
+    const bool aux = options_.visibilityAndDepth;
     const Box visible = scene_.visibleBox();
     const ShearWarpSampling sampling = sampling_.value_or(shearWarpSampling(scene, volume));
     LatticeOptions options;
@@ -114,20 +138,28 @@ class ShearWarpRenderer::Implementation {
         rayLattices(scene_.view(), glm::dmat3(volume.indexToWorld), domain, visible.min, visible.max, options);
     double done = 0;
     for (const RayLattice& lattice : lattices) {
-      const BrickRows rows(voxels, lattice);
-      const MarchFrame frame = frameOf(scene, lattice, rows, sampling);
       LatticePicture picture;
       picture.lattice = lattice;
       picture.stride = lattice.width;
       const auto rays = static_cast<std::size_t>(lattice.width) * static_cast<std::size_t>(lattice.height);
       requireMemory("shear-warp: " + std::to_string(lattice.width) + " x " + std::to_string(lattice.height) + " rays",
-                    static_cast<double>(rays) * (sizeof(glm::vec4) + (frame.aux ? sizeof(glm::vec2) : 0)));
+                    static_cast<double>(rays) * (sizeof(glm::vec4) + (aux ? sizeof(glm::vec2) : 0)));
       picture.colour.assign(rays, glm::vec4(0));
       picture.filled.assign(static_cast<std::size_t>(lattice.height), 0);
-      if (frame.aux) picture.aux.assign(rays, glm::vec2(0));
+      if (aux) picture.aux.assign(rays, glm::vec2(0));
       stats_.bufferBytes += rays * sizeof(glm::vec4);
-      stats_.slices += static_cast<std::int64_t>(frame.slices.size());
-      if (frame.slices.size() > 1) march(frame, picture, done, 1.0 / static_cast<double>(lattices.size()));
+      std::size_t slices = 0;
+      scene_.drawInBands(
+          scene, lattice.height, 1, [&](const Brick& brick) { return rowsOf(brick, lattice, volume.layout.interior); },
+          [&](int begin, int end) {
+            const BrickRows rows(scene_.voxels(), lattice);
+            const MarchFrame frame = frameOf(scene, lattice, rows, sampling);
+            slices = std::max(slices, frame.slices.size());
+            if (frame.slices.size() > 1)
+              march(frame, begin, end, picture, done, 1.0 / static_cast<double>(lattices.size()));
+          },
+          stats_);
+      stats_.slices += static_cast<std::int64_t>(slices);
       pictures_.push_back(std::move(picture));
       done += 1.0 / static_cast<double>(lattices.size());
     }
@@ -146,12 +178,13 @@ class ShearWarpRenderer::Implementation {
     return frame;
   }
 
-  void march(const MarchFrame& frame, LatticePicture& picture, double done, double share) {
+  // Fills the rows begin <= j < end of a lattice, which is so large a share of the picture.
+  void march(const MarchFrame& frame, int begin, int end, LatticePicture& picture, double done, double share) {
     tbb::enumerable_thread_specific<RowMarch> marches([&] { return RowMarch(frame); });
-    std::atomic<int> rows{0};
+    std::atomic<int> rows{begin};
     std::atomic<std::uint64_t> samples{0};
     const auto caller = std::this_thread::get_id();
-    tbb::parallel_for(tbb::blocked_range<int>(0, picture.lattice.height, 2), [&](const auto& range) {
+    tbb::parallel_for(tbb::blocked_range<int>(begin, end, 2), [&](const auto& range) {
       RowMarch& march = marches.local();
       std::uint64_t taken = 0;
       for (int j = range.begin(); j != range.end(); ++j) taken += march.march(j, picture);

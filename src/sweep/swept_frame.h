@@ -15,7 +15,8 @@ struct SweptFrame {
   const MediumTable* table = nullptr;
   float saturation = 0;
   bool midpoint = false, aux = false;
-  int lights = 0;  // channels of light beside the voxels
+  bool classified = false;  // voxels have media, which are interpolated
+  int lights = 0;           // channels of light beside the voxels
   float lightUnit = 1;
   std::array<float, 3> power{1, 1, 1};
 
@@ -26,6 +27,7 @@ struct SweptFrame {
     part.to = static_cast<float>(std::abs(to - first));
     part.saturation = saturation;
     part.midpoint = midpoint;
+    part.classified = classified;
     part.lights = lights;
     part.power = power;
     return part;

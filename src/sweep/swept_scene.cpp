@@ -2,9 +2,11 @@
 #include "sweep/swept_scene.h"
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
 
+#include "sweep/classified_voxels.h"
 #include "sweep/index_planes.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/memory.h"
@@ -13,8 +15,18 @@
 #include "umbrick/scene/lights.h"
 
 namespace umbrick {
+namespace {
+
+double longestVoxelEdge(const glm::dmat4& indexToWorld) {
+  double longest = 0;
+  for (int axis = 0; axis < 3; ++axis) longest = std::max(longest, glm::length(glm::dvec3(indexToWorld[axis])));
+  return longest;
+}
+
+}  // namespace
 
 bool sweptSupports(const SceneSettings& scene) {
+  if (scene.sampling.classification == Classification::pre && traitsOf(scene.model).occlusion) return false;
   return supports(Method::lightVolume, scene.model) &&
          occlusionMethod(scene).value_or(Method::lightVolume) == Method::lightVolume;
 }
@@ -26,6 +38,7 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
   if (!supports(Method::lightVolume, next.model))
     throw InvalidArgument("model: " + modelName(next.model) + " is integrated by the reference alone; " + technique_ +
                           " renders emission, cone, ambient and lights");
+  requireClassification(next);
   if (!sweptSupports(next))
     throw InvalidArgument("method: " + methodName(next.method) + " is one of slices; " + technique_ +
                           " takes light from a light volume");
@@ -35,21 +48,45 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
   if (volume().layout.voxels() > kMostVoxels)
     throw InvalidArgument("bricks: one brick has " + std::to_string(volume().layout.voxels()) + " voxels, " +
                           technique_ + " reads up to " + std::to_string(kMostVoxels));
-  const bool transfer = !before || before->transfer != next.transfer;
+  const bool classified = next.sampling.classification == Classification::pre;
+  const bool transfer =
+      !before || before->transfer != next.transfer || before->sampling.classification != next.sampling.classification;
   std::optional<MediumTable> table;
-  // What this extinction leaves of light on the way through a thousandth of a voxel is nothing.
-  if (transfer) table.emplace(next.transfer, volume().background, 1e5 / shortestVoxelEdge(volume().indexToWorld));
+  // A fourth of a
+  // segment, which is the least part that is taken, hides colours from an optical depth of 1 on.
+  if (transfer)
+    table.emplace(next.transfer, volume().background, largestExtinction(), 4 / longestVoxelEdge(volume().indexToWorld));
   if (transfer || before->bricks.culling != next.bricks.culling || before->bricks.budgetMiB != next.bricks.budgetMiB) {
     const MediumTable& now = table ? *table : *table_;
     const Range background{volume().background, volume().background};
     const bool backgroundVisible = !volume().domain.empty() && !now.isTransparent(background, {0, 0});
     const Stopwatch watch;
-    voxels_.select(now, next.bricks.culling, backgroundVisible, next.bricks.budgetMiB << 20);
+    std::vector<Brick> visible = voxels_.visible(now, next.bricks.culling, backgroundVisible);
+    const std::uint64_t most = next.bricks.budgetMiB << 20, each = voxels_.bytesEach(now) + mediaBytes(classified);
+    const std::uint64_t needed = voxels_.bytesOf(visible, now) + visible.size() * mediaBytes(classified);
+    if (needed > 0 && each > most)
+      throw InvalidArgument("bricks.budgetMiB: the voxels of one brick take " + std::to_string((each >> 20) + 1) +
+                            " MiB, more than " + std::to_string(most >> 20) + " MiB");
+    const bool inBands = needed > most;
+    voxels_.hold(inBands ? std::span<const Brick>() : visible, now, next.bricks.culling);
+    if (classified)
+      classify(voxels_, next.transfer, largestExtinction());
+    else
+      forgetMedia(voxels_);
+    visible_ = std::move(visible);
+    inBands_ = inBands;
     backgroundVisible_ = backgroundVisible;
     loadMs_ += watch.elapsedMs();
     loaded_ += voxels_.loaded();
   }
   if (table) table_.emplace(std::move(*table));
+}
+
+// What this extinction leaves of light on the way through a thousandth of a voxel is nothing.
+double SweptScene::largestExtinction() const { return 1e5 / shortestVoxelEdge(volume().indexToWorld); }
+
+std::uint64_t SweptScene::mediaBytes(bool classified) const {
+  return classified ? volume().layout.voxels() * kMediumNumbers * sizeof(float) : 0;
 }
 
 void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample, RenderStats& stats) {
@@ -62,9 +99,10 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
   lights_ = 0;
   whole_ = glm::vec3(1);
   if (occlusionMethod(scene) == Method::lightVolume) {
-    light_.update(voxels_, scene,
+    light_.update(visible_, volume().layout, scene,
                   sample.lights.empty() ? lightDirections(scene, scene.occlusion.ordinates.directions) : sample.lights,
                   planes_);
+    if (!inBands_) light_.store(voxels_);
     stats.lightMs = light_.ms();
     stats.directions = light_.stats().directions;
     stats.windowUpdates = light_.stats().updates;
@@ -74,8 +112,34 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
   if (scene.camera.projection == Projection::orthographic) planes_.push_back(frontPlane(scene, volume()));
   stats.geometryMs = watch.elapsedMs() - stats.lightMs;
   stats.bricks = volume().bricks.size();
-  stats.visibleBricks = stats.brickSlots = voxels_.bricks().size();
+  stats.visibleBricks = stats.brickSlots = visible_.size();
   stats.textureBytes = voxels_.bytes();
+}
+
+void SweptScene::drawInBands(const ResolvedScene& scene, int rows, int multiple,
+                             const std::function<RowSpan(const Brick& brick)>& rowsOf,
+                             const std::function<void(int begin, int end)>& draw, RenderStats& stats) {
+  if (!inBands_) {
+    draw(0, rows);
+    return;
+  }
+  const bool classified = scene.sampling.classification == Classification::pre;
+  std::vector<RowSpan> spans;
+  for (const Brick& brick : visible_) spans.push_back(rowsOf(brick));
+  for (const RowBand& band : cutBands(spans, rows, multiple, voxels_.bytesEach(*table_) + mediaBytes(classified),
+                                      scene.bricks.budgetMiB << 20)) {
+    const Stopwatch watch;
+    std::vector<Brick> needed;
+    for (std::size_t i = 0; i < spans.size(); ++i)
+      if (spans[i].meets(band.begin, band.end)) needed.push_back(visible_[i]);
+    voxels_.hold(needed, *table_, scene.bricks.culling, true);
+    if (classified) classify(voxels_, scene.transfer, largestExtinction());
+    if (lights_ > 0) light_.store(voxels_);
+    stats.uploadMs += watch.elapsedMs();
+    stats.uploadedBricks += voxels_.loaded();
+    stats.textureBytes = std::max(stats.textureBytes, voxels_.bytes());
+    draw(band.begin, band.end);
+  }
 }
 
 SweptFrame SweptScene::frame(const ResolvedScene& scene, bool aux) const {
@@ -83,6 +147,7 @@ SweptFrame SweptScene::frame(const ResolvedScene& scene, bool aux) const {
   frame.voxels = &voxels_;
   frame.table = &*table_;
   frame.saturation = static_cast<float>(scene.sampling.saturation);
+  frame.classified = scene.sampling.classification == Classification::pre;
   frame.midpoint = scene.sampling.quadrature == Quadrature::midpoint;
   frame.aux = aux;
   frame.lights = lights_;
@@ -94,9 +159,9 @@ SweptFrame SweptScene::frame(const ResolvedScene& scene, bool aux) const {
 
 Box SweptScene::visibleBox() const {
   Box box{glm::dvec3(std::numeric_limits<double>::infinity()), glm::dvec3(-std::numeric_limits<double>::infinity())};
-  for (const auto& brick : voxels_.bricks()) {
-    box.min = glm::min(box.min, glm::dvec3(brick->origin) - 1.0);
-    box.max = glm::max(box.max, glm::dvec3(brick->origin + volume().layout.interior));
+  for (const Brick& brick : visible_) {
+    box.min = glm::min(box.min, glm::dvec3(brick.origin) - 1.0);
+    box.max = glm::max(box.max, glm::dvec3(brick.origin + volume().layout.interior));
   }
   return box;
 }

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "sweep/brick_bands.h"
 #include "sweep/brick_light.h"
 #include "sweep/brick_voxels.h"
 #include "sweep/medium_table.h"
@@ -29,16 +31,25 @@ class SweptScene {
   SweptScene(const Bricks& volume, std::string technique);
 
   /// Takes another scene. @param before  null: this is the first one
-  /// @throw InvalidArgument  one that techniques on the CPU do not render; the visible bricks exceed its memory budget
+  /// @throw InvalidArgument  one that techniques on the CPU do not render; a brick exceeds its memory budget
   void update(const ResolvedScene& next, const ResolvedScene* before);
 
   /// Prepares a picture: light, and where the medium ends. Fills in what `stats` says of them.
   void prepare(const ResolvedScene& scene, const RenderSample& sample, RenderStats& stats);
+  /// Draws the rows of a picture: all at once, or in bands whose bricks fit the memory budget where not all do.
+  /// @param rows      of the picture; bands begin at multiples of `multiple`
+  /// @param rowsOf    returns where a brick is seen
+  /// @param draw      draws the rows begin <= row < end. The bricks that they need are held, with their light.
+  /// @throw InvalidArgument  the bricks of the least band do not fit
+  void drawInBands(const ResolvedScene& scene, int rows, int multiple,
+                   const std::function<RowSpan(const Brick& brick)>& rowsOf,
+                   const std::function<void(int begin, int end)>& draw, RenderStats& stats);
+  bool isEmpty() const { return visible_.empty(); }
 
   const BrickVoxels& voxels() const { return voxels_; }
   /// What all rays of the prepared picture share. @param aux  also light and depth
   SweptFrame frame(const ResolvedScene& scene, bool aux) const;
-  /// The space of cells in visible bricks, index coordinates. @pre there are some
+  /// The space of cells in visible bricks, index coordinates. @pre !isEmpty()
   Box visibleBox() const;
   const IndexView& view() const { return view_; }
   /// Half-spaces that the medium lies in, index coordinates.
@@ -50,11 +61,16 @@ class SweptScene {
                   Picture& picture) const;
 
  private:
+  double largestExtinction() const;
+  std::uint64_t mediaBytes(bool classified) const;
+
   std::string technique_;
   BrickVoxels voxels_;
   BrickLight light_;
   std::optional<MediumTable> table_;
   bool backgroundVisible_ = false;
+  std::vector<Brick> visible_;
+  bool inBands_ = false;      // not all of them are held at once
   double loadMs_ = 0;         // of bricks since the last picture
   std::uint64_t loaded_ = 0;  // their number
   IndexView view_;

@@ -55,7 +55,7 @@ TEST_CASE("Rows along each axis are those of the field, also beside bricks that 
   for (const int apron : {1, 3}) {
     const FieldBricks bricks = ballBricks(apron);
     BrickVoxels voxels(bricks);
-    voxels.select(table, true, false, std::uint64_t{1} << 30);
+    voxels.hold(voxels.visible(table, true, false), table, true);
     REQUIRE(voxels.bricks().size() > 10);
     REQUIRE(voxels.bricks().size() < bricks.bricks.size());
     TestRandom random(5);
@@ -95,7 +95,7 @@ TEST_CASE("Cells that show something are active", "[sweep]") {
   const MediumTable table(transfer, 0, 1e9);
   const FieldBricks bricks = ballBricks(1);
   BrickVoxels voxels(bricks);
-  voxels.select(table, true, false, std::uint64_t{1} << 30);
+  voxels.hold(voxels.visible(table, true, false), table, true);
   for (int n = 0; n < 3; ++n) {
     const RayLattice lattice = latticeAlong(n);
     const BrickRows rows(voxels, lattice);
@@ -134,19 +134,18 @@ TEST_CASE("Bricks that stay visible are read once, and those that leave make roo
   BrickVoxels voxels(bricks);
   const MediumTable wide(TransferFunction({{20, {glm::dvec3(1), 0}}, {200, {glm::dvec3(1), 1}}}), 0, 1e9);
   const MediumTable narrow(TransferFunction({{150, {glm::dvec3(1), 0}}, {200, {glm::dvec3(1), 1}}}), 0, 1e9);
-  constexpr std::uint64_t kPlenty = std::uint64_t{1} << 30;
-  voxels.select(narrow, true, false, kPlenty);
+  voxels.hold(voxels.visible(narrow, true, false), narrow, true);
   const std::uint64_t few = voxels.loaded();
   CHECK(few == voxels.bricks().size());
   const std::uint64_t bytes = voxels.bytes();
-  voxels.select(wide, true, false, kPlenty);
+  voxels.hold(voxels.visible(wide, true, false), wide, true);
   CHECK(voxels.loaded() == voxels.bricks().size() - few);
   CHECK(voxels.bytes() > bytes);
-  voxels.select(narrow, true, false, kPlenty);
+  voxels.hold(voxels.visible(narrow, true, false), narrow, true);
   CHECK(voxels.loaded() == 0);
   CHECK(voxels.bytes() == bytes);
   // Voxels are one byte each, as the whole numbers of the field are.
   CHECK(voxels.code() == VoxelCode::u8);
   CHECK(bytes < few * 1.15 * 1000);
-  CHECK_THROWS_WITH(voxels.select(wide, true, false, 1000), Catch::Contains("bricks.budgetMiB: the voxels of "));
+  CHECK(voxels.bytesOf(voxels.visible(narrow, true, false), narrow) == few * 1000);
 }

@@ -8,6 +8,7 @@
 #include "umbrick/brick/brick_grid.h"
 #include "umbrick/sweep/ray_renderer.h"
 #include "umbrick/sweep/shear_warp_renderer.h"
+#include "umbrick/sweep/swept_bricks.h"
 
 namespace umbrick {
 
@@ -16,10 +17,7 @@ inline ScalarGrid blobGrid(const glm::ivec3& origin = glm::ivec3(0)) {
 }
 
 inline std::unique_ptr<Bricks> cpuBricksFor(const ScalarGrid& grid, const ResolvedScene& scene) {
-  BrickOptions options;
-  options.interior = scene.bricks.interior;
-  options.gradients = scene.transfer.is2d();
-  return cutGrid(grid, options, scene.bricks.bricked);
+  return cutGrid(grid, sweptBricks(scene), scene.bricks.bricked);
 }
 
 inline Picture shearWarped(const ScalarGrid& grid, const ResolvedScene& scene, const RenderOptions& options = {},

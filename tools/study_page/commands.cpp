@@ -15,6 +15,10 @@ std::string sizeOption(const ResolvedScene& scene) {
 std::string methodOptions(const ResolvedScene& scene, const ResolvedScene& ofCase) {
   std::string text;
   if (ofCase.technique != scene.technique) text += " --technique " + techniqueName(ofCase.technique);
+  if (ofCase.sampling.quadrature != scene.sampling.quadrature)
+    text += " --quadrature " + std::string(nameOf(kQuadratures, ofCase.sampling.quadrature));
+  if (ofCase.sampling.classification != scene.sampling.classification)
+    text += " --classification " + std::string(nameOf(kClassifications, ofCase.sampling.classification));
   if (ofCase.sampling.saturation != scene.sampling.saturation)
     text += " --saturation " + jsonNumber(ofCase.sampling.saturation);
   if (!traitsOf(ofCase.model).occlusion) return text;

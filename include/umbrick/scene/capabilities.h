@@ -37,6 +37,10 @@ const MethodTraits& traitsOf(Method method);
 /// Returns the method that computes a scene's occlusion; none where the scene's model has no occlusion.
 std::optional<Method> occlusionMethod(const SceneSettings& scene);
 
+/// Refuses a scene that interpolates media where its model has occlusion, whose light knows values alone.
+/// @throw InvalidArgument
+void requireClassification(const SceneSettings& scene);
+
 /// Tells whether the method can compute the light of the model.
 bool supports(Method method, Model model);
 

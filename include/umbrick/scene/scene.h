@@ -49,6 +49,12 @@ enum class Quadrature {
 inline constexpr Name<Quadrature> kQuadratures[]{{"preintegrated", Quadrature::preintegrated},
                                                  {"midpoint", Quadrature::midpoint}};
 
+/// What is interpolated between voxels: the value, which the transfer function then turns into a medium; or the media
+/// of the voxels. The latter shows what lies between the values of two voxels as a mixture of their media: it is kept
+/// as a comparison.
+enum class Classification { post, pre };
+inline constexpr Name<Classification> kClassifications[]{{"post", Classification::post}, {"pre", Classification::pre}};
+
 /// How a picture is computed: by slices across the view, on OpenGL; by a ray through each pixel, or by shear-warp,
 /// whose rays lie in rows of voxels and whose picture is warped to the pixels, on the CPU. Automatic: see
 /// chooseEngine() in render/engine.h.
@@ -91,6 +97,7 @@ struct SamplingOptions {
   /// The distance d of slices along the view direction, in the scene's spacingUnit; in a ResolvedScene in world units.
   double spacing = 0.5;
   Quadrature quadrature = Quadrature::preintegrated;
+  Classification classification = Classification::post;
   int segments = 1;  // parts of equal length in which a slab is integrated along the ray
   /// Bits of the eye buffer: 32 (float) or 16 (fixed point). A slice rounds 16 bits to steps of 2^-16 and is off by up
   /// to one and a half of them: N slices by at most N 2.3e-5, mostly by much less (an occlusion buffer of 16 bits as
@@ -215,7 +222,8 @@ struct Scene : SceneSettings {
 ///                "directions"   list [{direction, weight, colour}, ...]
 ///                "environment"  file (EXR), up, front, scale; up and front are [0, 1, 0] and [0, 0, 1] in the view,
 ///                               [0, 0, 1] and [0, -1, 0] in the world, the same at azimuth 0 and elevation 0
-///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"), segments, bits, saturation,
+///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"),
+///              classification ("post", "pre"), segments, bits, saturation,
 ///              pixelSamples (tableSize, of scenes made by earlier versions, is read and means nothing)
 ///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits, directions, scale
 ///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]

@@ -47,6 +47,8 @@ inline constexpr int kAutomaticSegments = 0;
 ///   light-volume   the same directions, taken through the voxels before the picture is drawn
 ///   rays, shear-warp                              emission by techniques on the CPU; the number of slices stands for
 ///   rays-light-volume, shear-warp-light-volume    how densely they sample, and the last two have light volumes
+///   rays-midpoint  rays with the medium at the middle of each segment, not the integral over its values
+///   rays-pre       rays through media that were interpolated between classified voxels
 const std::vector<StudyMethod>& studyMethods();
 /// Returns the method of a name. @throw InvalidArgument  there is no such method; the message lists those there are
 const StudyMethod& studyMethod(std::string_view name);

@@ -26,11 +26,11 @@ int raySamplesPerVoxel(const ResolvedScene& scene, const Bricks& volume);
 /// doi:10.1145/383507.383515 (integration over values that run linearly)
 class RayRenderer : public Renderer {
  public:
-  /// Reads the visible bricks into memory.
+  /// Reads the visible bricks into memory; where they exceed the scene's memory budget, each picture reads them band by
+  /// band.
   /// @param volume    outlives this; with gradients where the transfer function asks for them
   /// @param perVoxel  samples between two slices of voxels; none: raySamplesPerVoxel() of each scene
-  /// @throw InvalidArgument  a model or method that it does not know; the visible bricks are more than the scene's
-  ///   memory budget
+  /// @throw InvalidArgument  a model or method that it does not know; a brick exceeds the memory budget
   RayRenderer(const Bricks& volume, const ResolvedScene& scene, const RenderOptions& options = {},
               std::optional<int> perVoxel = {});
   ~RayRenderer() override;

@@ -36,11 +36,11 @@ bool shearWarpSupports(const SceneSettings& scene);
 /// 2001, doi:10.1145/383507.383515 (integration over values that run linearly)
 class ShearWarpRenderer : public Renderer {
  public:
-  /// Reads the visible bricks into memory.
+  /// Reads the visible bricks into memory; where they exceed the scene's memory budget, each picture reads them band by
+  /// band.
   /// @param volume    outlives this; with gradients where the transfer function asks for them
   /// @param sampling  none: shearWarpSampling() of each scene
-  /// @throw InvalidArgument  a model or method that it does not know; the visible bricks are more than the scene's
-  ///   memory budget
+  /// @throw InvalidArgument  a model or method that it does not know; a brick exceeds the memory budget
   ShearWarpRenderer(const Bricks& volume, const ResolvedScene& scene, const RenderOptions& options = {},
                     std::optional<ShearWarpSampling> sampling = {});
   ~ShearWarpRenderer() override;

@@ -1,0 +1,18 @@
+// How a volume is cut into bricks for techniques on the CPU.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "umbrick/brick/bricks.h"
+#include "umbrick/scene/resolve.h"
+
+namespace umbrick {
+
+/// Returns how to cut a volume for a scene: with an apron of one voxel, since rays are sampled between the voxels of
+/// their brick, and with gradients where the transfer function asks for them.
+inline BrickOptions sweptBricks(const ResolvedScene& scene) {
+  BrickOptions options;
+  if (scene.bricks.interior > 0) options.interior = scene.bricks.interior;
+  options.gradients = scene.transfer.is2d();
+  return options;
+}
+
+}  // namespace umbrick
