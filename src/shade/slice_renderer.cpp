@@ -268,7 +268,8 @@ class SliceRenderer::Implementation {
       throw InvalidArgument("method: " + methodName(scene.method) + " knows one cone around the view axis; " +
                             modelName(scene.model) + " need ordinates or a light volume");
     if (scene.sampling.classification == Classification::pre)
-      throw InvalidArgument("sampling.classification: pre is rendered on the CPU, by rays and by shear-warp");
+      throw InvalidArgument(
+          "sampling.classification: pre is rendered on the CPU, by rays and by shear-warp, and without occlusion");
     const int most = resident_.context().maxTextureEdge2d();
     if (scene.camera.width > most || scene.camera.height > most)
       throw InvalidArgument("camera.size: " + std::to_string(scene.camera.width) + " x " +
