@@ -45,12 +45,12 @@ double cpuWork(int) { return 0.2; }
 double litCpuWork(int directions) { return 0.3 + 0.03 * directions; }
 
 template <Technique Way>
-void applyOnCpu(int, ResolvedScene& scene) {
+void applyTechnique(int, ResolvedScene& scene) {
   scene.technique = Way;
 }
 
 template <Technique Way>
-void applyLitOnCpu(int directions, ResolvedScene& scene) {
+void applyLitTechnique(int directions, ResolvedScene& scene) {
   scene.technique = Way;
   applyLightVolume(directions, scene);
 }
@@ -130,36 +130,59 @@ const std::vector<StudyMethod>& studyMethods() {
        .title = "rays on the CPU",
        .model = Model::emission,
        .detail = {},
-       .apply = applyOnCpu<Technique::rays>,
+       .apply = applyTechnique<Technique::rays>,
        .work = cpuWork,
        .slices = kMany,
        .quickSlices = kManyQuick,
-       .usual = false},
+       .usual = false,
+       .onCpu = true},
       {.name = "shear-warp",
        .title = "shear-warp on the CPU",
        .model = Model::emission,
        .detail = {},
-       .apply = applyOnCpu<Technique::shearWarp>,
+       .apply = applyTechnique<Technique::shearWarp>,
        .work = cpuWork,
        .slices = kMany,
        .quickSlices = kManyQuick,
-       .usual = false},
+       .usual = false,
+       .onCpu = true},
       {.name = "rays-light-volume",
        .title = "light volume by rays on the CPU",
        .model = Model::cone,
        .detail = kDirections,
-       .apply = applyLitOnCpu<Technique::rays>,
+       .apply = applyLitTechnique<Technique::rays>,
        .work = litCpuWork,
        .slices = kFew,
        .quickSlices = kFewQuick,
        .usual = false,
-       .fineSegments = true},
+       .fineSegments = true,
+       .onCpu = true},
       {.name = "shear-warp-light-volume",
        .title = "light volume by shear-warp on the CPU",
        .model = Model::cone,
        .detail = kDirections,
-       .apply = applyLitOnCpu<Technique::shearWarp>,
+       .apply = applyLitTechnique<Technique::shearWarp>,
        .work = litCpuWork,
+       .slices = kFew,
+       .quickSlices = kFewQuick,
+       .usual = false,
+       .fineSegments = true,
+       .onCpu = true},
+      {.name = "rays-gl",
+       .title = "rays on OpenGL",
+       .model = Model::emission,
+       .detail = {},
+       .apply = applyTechnique<Technique::rays>,
+       .work = emissionWork,
+       .slices = kMany,
+       .quickSlices = kManyQuick,
+       .usual = false},
+      {.name = "rays-gl-light-volume",
+       .title = "light volume by rays on OpenGL",
+       .model = Model::cone,
+       .detail = kDirections,
+       .apply = applyLitTechnique<Technique::rays>,
+       .work = lightVolumeWork,
        .slices = kFew,
        .quickSlices = kFewQuick,
        .usual = false,

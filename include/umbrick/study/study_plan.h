@@ -32,6 +32,7 @@ struct StudyMethod {
   bool quick = false;                               // whether it is also part of a quick study
   bool fineSegments = false;  // at the base: kAutomaticSegments per slab, else the fewest that are swept
   bool windows = false;       // whether it carries light in light windows, whose scale is swept
+  bool onCpu = false;         // where it is drawn; else on OpenGL
 };
 
 /// Stands for as many segments as segmentsOf() says.
@@ -47,6 +48,7 @@ inline constexpr int kAutomaticSegments = 0;
 ///   light-volume   the same directions, taken through the voxels before the picture is drawn
 ///   rays, shear-warp                              emission by techniques on the CPU; the number of slices stands for
 ///   rays-light-volume, shear-warp-light-volume    how densely they sample, and the last two have light volumes
+///   rays-gl, rays-gl-light-volume                 rays on OpenGL, of the slices' segments
 const std::vector<StudyMethod>& studyMethods();
 /// Returns the method of a name. @throw InvalidArgument  there is no such method; the message lists those there are
 const StudyMethod& studyMethod(std::string_view name);
