@@ -44,12 +44,15 @@ struct RenderCommand {
   bool strict = false;
 };
 
-// Says which options mean nothing to techniques on the CPU.
-void tellUnused(const RenderCommand& command) {
+// Says which options mean nothing to what draws.
+void tellUnused(const RenderCommand& command, Technique technique, bool onCpu) {
+  if (technique == Technique::slices) return;
+  const std::string where = onCpu ? "on the CPU: it is of slices (--backend osmesa)" : "on rays: it is of slices";
+  const auto tell = [&](const std::string& option) { std::cerr << option << " has no effect " << where << '\n'; };
   for (const char* option : {"eye-bits", "texel-format"})
-    if (command.scene->has(option))
-      std::cerr << command.scene->nameOf(option) << " has no effect on the CPU: it is of slices (--backend osmesa)\n";
-  if (command.timePasses) std::cerr << "--time-passes has no effect on the CPU: it is of slices (--backend osmesa)\n";
+    if (command.scene->has(option) && (onCpu || std::string_view(option) == "eye-bits"))
+      tell(command.scene->nameOf(option));
+  if (command.timePasses) tell("--time-passes");
 }
 
 // The volume of a scene, cut into bricks for it.
@@ -61,7 +64,7 @@ struct LoadedScene {
   std::unique_ptr<Bricks> bricks = {};
 };
 
-LoadedScene loadScene(const OpenedScene& opened, Technique technique, bool refined) {
+LoadedScene loadScene(const OpenedScene& opened, Technique technique, bool onCpu, bool refined) {
   const Volume& volume = *opened.volume;
   LoadedScene loaded{.scene = volume.resolve(opened.scene),
                      .loadMs = volume.loadMs(),
@@ -69,9 +72,9 @@ LoadedScene loadScene(const OpenedScene& opened, Technique technique, bool refin
                      .units = unitsOf(volume.grid())};
   loaded.scene.technique = technique;
   const Stopwatch brick;
-  loaded.bricks = traitsOf(technique).makeOnCpu ? volume.cutForCpu(loaded.scene)
-                  : refined                     ? volume.cutForRefinement(loaded.scene)
-                                                : volume.cut(loaded.scene);
+  loaded.bricks = onCpu     ? volume.cutForCpu(loaded.scene)
+                  : refined ? volume.cutForRefinement(loaded.scene)
+                            : volume.cut(loaded.scene);
   loaded.brickMs = brick.elapsedMs();
   warnOfNonFinite(opened.scene, loaded.bricks->nonFiniteVoxels);
   return loaded;
@@ -270,8 +273,9 @@ int render(const RenderCommand& command) {
   // Ordinates alone can be refined, so that a target takes them unless the user names a method.
   if (command.targetError && !command.scene->has("method")) scene.method = Method::ordinates;
   // A draft is one of slices, but where these cannot be.
-  if (command.backend == "cpu" && command.scene->quality && !command.scene->has("method"))
-    scene.method = Method::lightVolume;
+  const bool bySlices =
+      command.backend != "cpu" && (scene.technique == Technique::automatic || scene.technique == Technique::slices);
+  if (!bySlices && command.scene->quality && !command.scene->has("method")) scene.method = Method::lightVolume;
   if (command.targetError && occluded && scene.method == Method::lightVolume)
     throw UsageError("--target-error: needs --method ordinates, whose windows can be refined");
   RenderWatch watch;
@@ -280,8 +284,8 @@ int render(const RenderCommand& command) {
   const OpenedScene opened = openScene(*command.scene, scene, showShare(watch.bar, watch.stop, nothing));
   Engine engine = chooseEngine(opened.scene, parseName(kEngineKinds, command.backend, "--backend"));
   const std::unique_ptr<GlContext, ContextCloser> context(engine.context.release());  // null: on the CPU
-  if (!context) tellUnused(command);
-  LoadedScene loaded = loadScene(opened, engine.technique, progressive);
+  tellUnused(command, engine.technique, !context);
+  LoadedScene loaded = loadScene(opened, engine.technique, !context, progressive);
   prepareLook(*command.output, command.scene->backdrop, loaded.scene, loaded.units);
   std::unique_ptr<ResidentVolume> volume;
   if (context)

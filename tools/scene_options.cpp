@@ -408,10 +408,10 @@ void addBackendOption(CLI::App& command, std::string& backend) {
 
 void addEngineOption(CLI::App& command, std::string& engine) {
   command
-      .add_option(
-          "--backend", engine,
-          "what draws: cpu (SIMD, by rays or shear-warp), osmesa or egl (OpenGL, by slices), or auto: a GPU through "
-          "EGL where there is one, else cpu, or OpenGL in software for what cpu cannot do")
+      .add_option("--backend", engine,
+                  "what draws: cpu (SIMD, by rays or shear-warp), osmesa or egl (OpenGL, by slices or rays), or auto: "
+                  "a GPU through "
+                  "EGL where there is one, else cpu, or OpenGL in software for what cpu cannot do")
       ->check(CLI::IsMember(listNames(kEngineKinds)))
       ->capture_default_str();
 }

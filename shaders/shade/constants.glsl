@@ -15,8 +15,16 @@ const int kTileStateUnit = 3;          // tiles of the image, see tile_state.fra
 const int kCoveredByUnit = 4;          // also one texel for each tile of the image
 const int kExtinctionUnit = 5;         // optical depth of slabs on the light's lattice
 const int kLightUnit = 6;              // light at voxels, beside the atlas
+const int kSlotsUnit = 7;              // slots of bricks by cell, see brick_walk.glsl
 const int kVisibilityUnit = 8;         // the light that arrives
 const int kVisibilityWeightUnit = 9;   // how much of that counts, see window_step.comp
+const int kMoreAtlasUnit = 10;         // of rays: the second texture of the atlas, and those that follow
+const int kMoreLightUnit = 13;         // the same for light
+
+// Rays read up to so many textures of the atlas in one draw.
+const int kRayTextures = 4;
+// Added to the w of the table of slots where a brick is walked through as a whole.
+const int kWholeBrick = 256;
 
 // Images, which compute shaders read and write, are bound to these units.
 const int kWindowsImage = 0;

@@ -86,14 +86,16 @@ struct End {
   ivec2 stretch;
 };
 
-End endAt(vec3 point) {
+End endOf(vec2 texel) {
   End end;
-  end.value = textureLod(atlas, point, 0.0).rg;
+  end.value = texel;
   end.value.r = clamp(snapped(end.value.r), -1e38, 1e38);
   end.stretch.x = valueStretchOf(end.value.r);
   end.stretch.y = kQuadrature > 1 ? stretchOf(end.value.g, 1, kGradientSteps) : 0;
   return end;
 }
+
+End endAt(vec3 point) { return endOf(textureLod(atlas, point, 0.0).rg); }
 
 // Adds a piece of length `ray` within one stretch, over which the value runs from `front` to `back`.
 void addStretch(inout Slab slab, Stretch stretch, float front, float back, float ray) {

@@ -35,7 +35,7 @@ ModelLaws::ModelLaws(Model model, Method method) {
   skipped = makeResult(5, "V across skipped space" + m, "largest difference of V from not culled", rounding + light);
   jumps = makeResult(5, "V beside projected brick faces" + m, "how much steeper than unbricked", rounding + light);
   order = makeResult(6, "bricks drawn in reverse" + m, picture, "the same samples: none");
-  techniques = makeResult(8, "techniques on the CPU agree with slices" + m, "RMS difference of colour",
+  techniques = makeResult(8, "other techniques agree with slices" + m, "RMS difference of colour",
                           "twice the errors that both say they have");
 }
 
@@ -92,7 +92,7 @@ std::vector<InvariantResult> collect(Laws laws, const std::string& referenceNote
   for (ModelLaws* model : {&laws.emission, &laws.cone}) add(model->order, "");
   add(laws.border, "not measured: the background is visible, or no leaf of the grid");
   for (ModelLaws* model : {&laws.emission, &laws.cone})
-    add(model->techniques, "not measured: no technique on the CPU has this method");
+    add(model->techniques, "not measured: no other technique has this method");
   return results;
 }
 

@@ -152,7 +152,8 @@ void PictureLaws::check(const CheckView& view, Model model, ModelLaws& laws) {
 void PictureLaws::checkTechniques(ResolvedScene scene, const std::string& view, InvariantResult& result) {
   scene.bricks.culling = true;
   const Bricks& bricks = *volume_.bricks.at(volume_.sceneEdge);
-  techniques_.check(renderers_.get(bricks, scene), view + ", " + modelName(scene.model), work_, result);
+  const std::shared_ptr<ResidentVolume> resident = renderers_.volume(bricks, scene);
+  techniques_.check(renderers_.get(bricks, scene), *resident, view + ", " + modelName(scene.model), work_, result);
 }
 
 void PictureLaws::checkCulling(const Drawn& whole, const Reference& reference, ResolvedScene scene, double saturation,

@@ -24,6 +24,10 @@ class CheckRenderers {
   SliceRenderer& get(const Bricks& bricks, const ResolvedScene& scene, bool reverseBricks = false);
   /// Returns one whose atlas has other limits, and holds no other pictures' bricks.
   SliceRenderer& get(const Bricks& bricks, const ResolvedScene& scene, const AtlasLimits& limits);
+  /// Returns the volume that the first kind of them share.
+  std::shared_ptr<ResidentVolume> volume(const Bricks& bricks, const ResolvedScene& scene) {
+    return resident_.get(bricks, atlasOptions(scene, bricks));
+  }
   /// Takes the renderer of these limits away, if there is one.
   void forget(const Bricks& bricks, const AtlasLimits& limits);
 

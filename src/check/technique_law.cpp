@@ -43,20 +43,33 @@ Renderer& TechniqueLaw::rendererOf(Technique technique, const ResolvedScene& sce
   return *renderer;
 }
 
-void TechniqueLaw::check(Renderer& slices, const std::string& where, double work, InvariantResult& result) {
+void TechniqueLaw::compare(Renderer& slices, std::optional<ProgressivePicture>& bySlices, Renderer& other,
+                           const std::string& where, InvariantResult& result) const {
+  if (!bySlices) bySlices = drawn(slices);
+  const ProgressivePicture picture = drawn(other);
+  const double said = bySlices->error.total() + picture.error.total();
+  addMeasurement(result, rmsDifference(bySlices->picture.colour, picture.picture.colour),
+                 2 * said + rounding(bySlices->picture.stats), bySlices->picture.colour.pixels.size() / 4, where);
+}
+
+void TechniqueLaw::check(Renderer& slices, ResidentVolume& resident, const std::string& where, double work,
+                         InvariantResult& result) {
   const ResolvedScene scene = slices.scene();
   std::optional<ProgressivePicture> bySlices;
   for (const TechniqueTraits& traits : techniques()) {
-    if (!traits.makeOnCpu || !traits.supports(scene)) continue;
-    steps_.begin(where + ": " + techniqueName(traits.technique), kWork * work / 2);
-    if (!bySlices) bySlices = drawn(slices);
+    if (traits.technique == Technique::slices || !traits.supports(scene)) continue;
+    const std::string name = techniqueName(traits.technique);
     ResolvedScene there = scene;
     there.technique = traits.technique;
-    const ProgressivePicture picture = drawn(rendererOf(traits.technique, there));
-    const double said = bySlices->error.total() + picture.error.total();
-    addMeasurement(result, rmsDifference(bySlices->picture.colour, picture.picture.colour),
-                   2 * said + rounding(bySlices->picture.stats), bySlices->picture.colour.pixels.size() / 4,
-                   where + ": slices and " + techniqueName(traits.technique));
+    if (traits.makeOnGl) {
+      steps_.begin(where + ": " + name + " on OpenGL", kWork * work / 3);
+      compare(slices, bySlices, *traits.makeOnGl(resident, there, {}), where + ": slices and " + name + " on OpenGL",
+              result);
+    }
+    if (traits.makeOnCpu) {
+      steps_.begin(where + ": " + name, kWork * work / 3);
+      compare(slices, bySlices, rendererOf(traits.technique, there), where + ": slices and " + name, result);
+    }
   }
 }
 

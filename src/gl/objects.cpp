@@ -45,6 +45,7 @@ double texelBytes(GLenum format) {
     case GL_RG32F:
     case GL_RGBA16:
     case GL_RGBA16F:
+    case GL_RGBA16UI:
       return 8;
     default:
       return 16;

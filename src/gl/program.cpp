@@ -168,6 +168,9 @@ GLint GlProgram::location(const char* name) {
 void GlProgram::set(const char* name, int value) { gl_->ProgramUniform1i(name_, location(name), value); }
 void GlProgram::set(const char* name, float value) { gl_->ProgramUniform1f(name_, location(name), value); }
 void GlProgram::set(const char* name, const glm::ivec2& v) { gl_->ProgramUniform2i(name_, location(name), v.x, v.y); }
+void GlProgram::set(const char* name, const glm::ivec3& v) {
+  gl_->ProgramUniform3i(name_, location(name), v.x, v.y, v.z);
+}
 void GlProgram::set(const char* name, const glm::vec2& v) { gl_->ProgramUniform2f(name_, location(name), v.x, v.y); }
 void GlProgram::set(const char* name, const glm::vec3& v) {
   gl_->ProgramUniform3f(name_, location(name), v.x, v.y, v.z);

@@ -6,6 +6,7 @@
 
 #include "umbrick/core/error.h"
 #include "umbrick/scene/capabilities.h"
+#include "umbrick/shade/ray_caster.h"
 #include "umbrick/shade/slice_renderer.h"
 #include "umbrick/sweep/ray_renderer.h"
 #include "umbrick/sweep/shear_warp_renderer.h"
@@ -30,7 +31,7 @@ bool slicesSupport(const SceneSettings& scene) {
 // A new technique is a new row of this table.
 constexpr TechniqueTraits kTraits[]{
     {Technique::slices, "proxy slices across the view, nearest first", makeOnGl<SliceRenderer>, nullptr, slicesSupport},
-    {Technique::rays, "a ray through each pixel, by packets", nullptr, makeOnCpu<RayRenderer>, raysSupport},
+    {Technique::rays, "a ray through each pixel", makeOnGl<RayCaster>, makeOnCpu<RayRenderer>, raysSupport},
     {Technique::shearWarp, "rays through the rows of the voxels' own slices", nullptr, makeOnCpu<ShearWarpRenderer>,
      shearWarpSupports},
 };

@@ -90,8 +90,8 @@ const std::vector<SceneField>& table() {
        "(light-volume)",
        [](Scene& s) -> FieldPlace { return Choice(s.method, kMethods); }},
       {"technique", "technique", "Sampling",
-       "how the picture is computed: slices (across the view, on OpenGL), rays (through each pixel, on the CPU), "
-       "shear-warp (rays in rows of voxels, on the CPU: quicker and coarser) or auto",
+       "how the picture is computed: slices (across the view, on OpenGL), rays (through each pixel, on OpenGL or the "
+       "CPU), shear-warp (rays in rows of voxels, on the CPU: quicker and coarser) or auto",
        [](Scene& s) -> FieldPlace { return Choice(s.technique, kTechniques); }},
 
       {"light.ambient",

@@ -21,7 +21,7 @@ void EyeSweep::draw(Frame& frame, std::span<const SliceDraw> draws, const GlProg
   const std::int64_t interval = saturationInterval(frame.scene);
   for (std::size_t i = 0; i < draws.size();) {
     if (frame.scene.sampling.saturation > 0 && sinceTest_ >= interval) {
-      saturation_->run(frame);
+      saturation_->run(frame.gl, frame.targets, frame.scene.sampling.saturation);
       setState(frame, program);
       sinceTest_ = 0;
     }

@@ -84,16 +84,15 @@ void bindVolume(const Frame& frame, int texture) {
 SaturationTest::SaturationTest(const GlFunctions& gl)
     : program_(gl, "shade/full_screen.vert", "shade/saturated.frag"), nothing_(gl) {}
 
-void SaturationTest::run(const Frame& frame) {
-  const GlFunctions& gl = frame.gl;
-  gl.BindFramebuffer(GL_FRAMEBUFFER, frame.targets.depthOnly.name());
+void SaturationTest::run(const GlFunctions& gl, const RenderTargets& targets, double saturation) {
+  gl.BindFramebuffer(GL_FRAMEBUFFER, targets.depthOnly.name());
   gl.Enable(GL_DEPTH_TEST);
   gl.DepthFunc(GL_LESS);
   gl.DepthMask(GL_TRUE);
   gl.Disable(GL_STENCIL_TEST);
   gl.Disable(GL_SCISSOR_TEST);
-  gl.BindTextureUnit(kEyeUnit, frame.targets.eye.name());
-  program_.set("saturation", static_cast<float>(frame.scene.sampling.saturation));
+  gl.BindTextureUnit(kEyeUnit, targets.eye.name());
+  program_.set("saturation", static_cast<float>(saturation));
   program_.set("depth", -1.0f);
   program_.use();
   gl.BindVertexArray(nothing_.name());

@@ -131,7 +131,8 @@ std::unique_ptr<SlicePass> makeLightVolumePass(const Bricks& volume);
 class SaturationTest {
  public:
   explicit SaturationTest(const GlFunctions& gl);
-  void run(const Frame& frame);
+  /// @param saturation  transmittance below which a pixel counts as saturated
+  void run(const GlFunctions& gl, const RenderTargets& targets, double saturation);
 
  private:
   GlProgram program_;

@@ -14,6 +14,7 @@
 #include "shade/frame.h"
 #include "shade/sweep_plan.h"
 #include "shade/view_planes.h"
+#include "shade/visible_bricks.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/scene/capabilities.h"
@@ -21,26 +22,6 @@
 
 namespace umbrick {
 namespace {
-
-// Returns the bricks to draw, by their numbers in the atlas.
-std::vector<std::int32_t> visibleBricks(ResidentVolume& resident, const TransferLookup& transfer, bool culling,
-                                        bool backgroundVisible) {
-  const std::vector<Brick>& bricks = resident.volume().bricks;
-  std::vector<std::int32_t> visible;
-  for (std::size_t i = 0; i < bricks.size(); ++i)
-    if (!culling || transfer.isVisible(bricks[i].value, bricks[i].gradient))
-      visible.push_back(static_cast<std::int32_t>(i));
-  if (backgroundVisible) {
-    const std::span<const std::int32_t> background = resident.background();
-    visible.insert(visible.end(), background.begin(), background.end());
-  }
-  return visible;
-}
-
-// Light lies beside the slots of bricks, so that no two may share one.
-SlotSharing sharingOf(const ResolvedScene& scene) {
-  return occlusionMethod(scene) == Method::lightVolume ? SlotSharing::apart : SlotSharing::shared;
-}
 
 // The parts of the renderer that must be made anew after a change of the scene. Camera, clip planes, lights, theta and
 // the like ask for nothing: they are looked at when a picture is drawn.
@@ -97,8 +78,7 @@ class SliceRenderer::Implementation {
     std::optional<BrickSelection> selection;
     bool fits = fits_;
     if (dirty.selection) {
-      const Range background{volume_.background, volume_.background};
-      backgroundVisible = !volume_.domain.empty() && transfer.isVisible(background, {0, 0});
+      backgroundVisible = showsBackground(transfer, volume_);
       selection.emplace(resident_.atlas(), visibleBricks(resident_, transfer, next.bricks.culling, backgroundVisible),
                         sharingOf(next));
       fits = selection->reserve();
@@ -185,7 +165,7 @@ class SliceRenderer::Implementation {
     const Frame& frame = *frame_;
     Picture picture;
     const Stopwatch read;
-    readPicture(scene, picture);
+    readLayers(gl_, *targets_, scene, pass_->brightest(), picture);
     RenderStats& stats = picture.stats = stats_;
     stats.readMs = read.elapsedMs();
     stats.slices = frame.slices.count();
@@ -194,15 +174,10 @@ class SliceRenderer::Implementation {
     stats.brickSlots = selection_->slots();
     stats.polygons = frame.slices.polygons.size();
     stats.fragments = frame.fragments.total();
-    const BrickAtlas& atlas = resident_.atlas();
-    stats.textureBytes = atlas.textureBytes();
-    stats.textures = atlas.textureCount();
-    const glm::ivec3 textureSize = atlas.textureSize();
-    stats.textureEdge = std::max({textureSize.x, textureSize.y, textureSize.z});
+    addTextures(resident_.atlas(), stats);
     stats.bufferBytes = targets_->bytes();
     stats.passes = frame.clock.times();
     pass_->addTo(stats);
-    stats.formatError = atlas.formatError();
     return picture;
   }
 
@@ -267,16 +242,7 @@ class SliceRenderer::Implementation {
     if (!supports(scene.method, scene.model))
       throw InvalidArgument("method: " + methodName(scene.method) + " knows one cone around the view axis; " +
                             modelName(scene.model) + " need ordinates or a light volume");
-    if (scene.sampling.classification == Classification::pre)
-      throw InvalidArgument(
-          "sampling.classification: pre is rendered on the CPU, by rays and by shear-warp, and without occlusion");
-    const int most = resident_.context().maxTextureEdge2d();
-    if (scene.camera.width > most || scene.camera.height > most)
-      throw InvalidArgument("camera.size: " + std::to_string(scene.camera.width) + " x " +
-                            std::to_string(scene.camera.height) + " is beyond the driver's limit of " +
-                            std::to_string(most) + " pixels along an edge");
-    if (scene.transfer.is2d() && !volume_.hasGradients)
-      throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
+    checkOnGl(scene, resident_);
   }
 
   void checkReach(const IndexView& view, const ResolvedScene& scene) const {
@@ -319,34 +285,6 @@ class SliceRenderer::Implementation {
     if (pass_->occluders()) sweeps.push_back(pass_->occluders());
     runs_ = planSweep(sweeps, selection_->size(),
                       fits_ ? std::numeric_limits<std::size_t>::max() : resident_.atlas().slots());
-  }
-
-  void readPicture(const ResolvedScene& scene, Picture& picture) const {
-    const int width = scene.camera.width, height = scene.camera.height;
-    picture.colour = readTexture(gl_, targets_->eye, width, height);
-    const glm::vec3 ambient(scene.ambient);
-    const auto brightest = static_cast<float>(pass_->brightest());
-    for (std::size_t i = 0; i < picture.colour.pixels.size(); i += 4) {
-      float* pixel = &picture.colour.pixels[i];
-      pixel[3] = std::min(pixel[3], 1.0f);  // it is at most 1 except for rounding
-      const float through = 1 - pixel[3];
-      for (int c = 0; c < 3; ++c) {
-        pixel[c] *= brightest * ambient[c];
-        if (scene.background) pixel[c] += through * static_cast<float>((*scene.background)[c]);
-      }
-      if (scene.background) pixel[3] = 1;
-    }
-    if (!options_.visibilityAndDepth) return;
-    const Image aux = readTexture(gl_, targets_->aux, width, height);
-    picture.visibility = Image(width, height, 1);
-    picture.depth = Image(width, height, 1);
-    picture.opacity = Image(width, height, 1);
-    for (std::size_t i = 0; i < picture.depth.pixels.size(); ++i) {
-      const float* pixel = &aux.pixels[4 * i];
-      picture.visibility.pixels[i] = pixel[0];
-      picture.opacity.pixels[i] = std::min(pixel[3], 1.0f);
-      picture.depth.pixels[i] = pixel[3] > 0 ? pixel[1] / pixel[3] : std::numeric_limits<float>::infinity();
-    }
   }
 
   const GlFunctions& gl_;

@@ -5,8 +5,6 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
-#include "umbrick/slice/proxy_slices.h"
-
 namespace umbrick {
 namespace {
 
@@ -35,6 +33,12 @@ std::vector<glm::dvec4> viewBounds(const ResolvedScene& scene, const Bricks& vol
   if (backgroundVisible || volume.domain.empty()) return planes;
   for (const ClipPlane& plane : mediumPlanes(scene, volume)) planes.push_back(planeInView(plane, scene.camera));
   return planes;
+}
+
+glm::dvec4 planeInIndex(const glm::dvec4& plane, const IndexView& view) {
+  const glm::dvec3 n(plane);
+  return {glm::dot(n, view.axis[0]), glm::dot(n, view.axis[1]), glm::dot(n, view.axis[2]),
+          glm::dot(n, view.origin) + plane.w};
 }
 
 double domainDiagonal(const Bricks& volume) {

@@ -6,6 +6,7 @@
 
 #include "umbrick/brick/bricks.h"
 #include "umbrick/scene/resolve.h"
+#include "umbrick/slice/proxy_slices.h"
 
 namespace umbrick {
 
@@ -17,6 +18,9 @@ std::vector<glm::dvec4> viewPlanes(const ResolvedScene& scene, const Bricks& vol
 /// cut no slab, since the background is invisible.
 std::vector<glm::dvec4> viewBounds(const ResolvedScene& scene, const Bricks& volume, bool backgroundVisible,
                                    std::vector<glm::dvec4> planes);
+
+/// Returns a plane of view coordinates in index coordinates. It is not normalised.
+glm::dvec4 planeInIndex(const glm::dvec4& plane, const IndexView& view);
 
 /// Returns the longest diagonal of the volume's domain, world units. A crooked volume has four of different lengths.
 double domainDiagonal(const Bricks& volume);

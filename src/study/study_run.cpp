@@ -248,9 +248,9 @@ void StudyRun::measureModelError(const StudyReference& cone) {
 
 // --- cases ---
 
-StudyRun::CaseRenderer StudyRun::rendererFor(const ResolvedScene& scene, const RenderOptions& options) {
+StudyRun::CaseRenderer StudyRun::rendererFor(const ResolvedScene& scene, bool onCpu, const RenderOptions& options) {
   CaseRenderer made;
-  if (traitsOf(scene.technique).makeOnCpu) {
+  if (onCpu) {
     std::unique_ptr<Bricks>& bricks = bricks_[{scene.bricks.interior, 0}];
     if (!bricks) bricks = cutGrid(grid_, sweptBricks(scene), scene.bricks.bricked);
     made.renderer = makeRenderer(*bricks, scene, options);
@@ -261,16 +261,17 @@ StudyRun::CaseRenderer StudyRun::rendererFor(const ResolvedScene& scene, const R
   return made;
 }
 
-RenderStats StudyRun::countedPicture(const ResolvedScene& scene) {
+RenderStats StudyRun::countedPicture(const ResolvedScene& scene, bool onCpu) {
   RenderOptions options;
   options.timePasses = true;
-  const CaseRenderer made = rendererFor(scene, options);
+  const CaseRenderer made = rendererFor(scene, onCpu, options);
   made.renderer->render();  // uploads bricks and compiles shaders
   return made.renderer->render().stats;
 }
 
 void StudyRun::measureCase(const StudyCase& what) {
   const ResolvedScene scene = caseScene(record_.scene, what, record_.geometry);
+  const bool onCpu = studyMethod(what.method).onCpu;
   const StudyReference reference = record_.plan.referenceOf(what);
   const Image& truth = referenceImage(reference);
   Baseline& baseline = baselineOf(what.size);
@@ -282,7 +283,7 @@ void StudyRun::measureCase(const StudyCase& what) {
   timing.pairs = record_.plan.settings.repeats;
   PairedTimes times;
   {
-    const CaseRenderer made = rendererFor(scene, quietly());
+    const CaseRenderer made = rendererFor(scene, onCpu, quietly());
     times = timePairs([&] { baseline.renderer.render(); }, [&] { picture = made.renderer->render(); }, timing);
   }
   result.timeRatio = spreadOf(ratios(times.caseMs, times.baselineMs));
@@ -294,7 +295,7 @@ void StudyRun::measureCase(const StudyCase& what) {
   result.slicesDrawn = picture.stats.slices;
   result.bufferBytes = picture.stats.bufferBytes;
   result.textureBytes = picture.stats.textureBytes;
-  const RenderStats counted = countedPicture(scene);
+  const RenderStats counted = countedPicture(scene, onCpu);
   result.fragments = counted.fragments;
   result.passes = counted.passes;
   result.directions = counted.directions;

@@ -44,7 +44,7 @@ class StudyRun {
     std::shared_ptr<ResidentVolume> volume;  // none on the CPU
     std::unique_ptr<Renderer> renderer;
   };
-  CaseRenderer rendererFor(const ResolvedScene& scene, const RenderOptions& options);
+  CaseRenderer rendererFor(const ResolvedScene& scene, bool onCpu, const RenderOptions& options);
   const Bricks& bricksFor(const ResolvedScene& scene);
   std::shared_ptr<ResidentVolume> residentFor(const ResolvedScene& scene);
   Baseline& baselineOf(int size);
@@ -55,7 +55,7 @@ class StudyRun {
   void measureModelError(const StudyReference& cone);
   void measureCase(const StudyCase& what);
   /// Returns the statistics of a picture that counts its fragments and times its passes, which makes it slower.
-  RenderStats countedPicture(const ResolvedScene& scene);
+  RenderStats countedPicture(const ResolvedScene& scene, bool onCpu);
   /// Hands a picture to the caller. @param truth  null: nothing is compared
   void show(const std::string& id, Model model, const Image& image, const Image* truth) const;
   void save() const;

@@ -33,6 +33,8 @@ TEST_CASE("A command says what its method sets", "[study_page]") {
              Contains("--model cone --method dos --algorithm 3 --passes 1 --footprint 3 --theta 60 --occlusion-bits"));
   CHECK_THAT(commandOf(record, "dos-2", 5), Contains("--method dos --algorithm 2 --passes 1 --footprint 5 --theta"));
   CHECK_THAT(commandOf(record, "dos-two-pass", 3), Contains("--method dos --algorithm 3 --passes 2 --footprint 3"));
+  CHECK_THAT(commandOf(record, "rays", 0), Contains("--model emission --technique rays --backend cpu --spacing"));
+  CHECK_THAT(commandOf(record, "rays-gl", 0), Contains("--model emission --technique rays --backend osmesa --spacing"));
   CHECK_THAT(commandOf(record, "ordinates", 8), Contains("--model cone --method ordinates --directions 8 --theta 60"));
 }
 

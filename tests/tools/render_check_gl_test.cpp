@@ -7,6 +7,7 @@
 #include <string>
 
 #include "support/gl_fixture.h"
+#include "support/test_scenes.h"
 #include "tools/program.h"
 #include "umbrick/image/exr.h"
 #include "umbrick/image/png.h"
@@ -81,6 +82,31 @@ TEST_CASE("Every quality is drawn on the CPU, and what is of slices alone is sai
   CHECK_THAT(told.err, Contains("--eye-bits has no effect on the CPU"));
 }
 
+TEST_CASE("Rays on OpenGL are drawn where they are asked for", "[tools]") {
+  if (!testContext()) return;
+  const TemporaryFolder folder;
+  const auto pictureOf = [&](const std::string& options) {
+    const ProgramResult result =
+        runProgram(folder, "render " + kSmall + options + " --saturation 0 --stats s.json -o a.exr");
+    CAPTURE(options, result.err);
+    REQUIRE(result.status == 0);
+    return readExr(folder.path() / "a.exr").layers[0].image;
+  };
+  for (const std::string model : {"emission", "cone --quality draft --method light-volume"}) {
+    const Image rays = pictureOf("--model " + model + " --technique rays --backend osmesa");
+    const auto stats = nlohmann::json::parse(readBytes(folder.path() / "s.json"));
+    CHECK(stats["technique"] == "rays");
+    CHECK_THAT(stats["renderer"], StartsWith("OSMesa"));
+    CHECK(stats["fragments_shaded"] > 0);
+    CHECK(maxDifference(rays, pictureOf("--model " + model + " --technique slices --backend osmesa")) < 1e-3);
+  }
+  const ProgramResult told =
+      runProgram(folder, "render " + kSmall +
+                             "--model cone --quality draft --eye-bits 16 --technique rays --backend osmesa -o a.png");
+  CHECK(told.status == 0);
+  CHECK_THAT(told.err, Contains("--eye-bits has no effect on rays"));
+}
+
 TEST_CASE("Renders that fail say so in one line and leave nothing behind", "[tools]") {
   if (!testContext()) return;
   const TemporaryFolder folder;
@@ -111,7 +137,10 @@ TEST_CASE("Renders that fail say so in one line and leave nothing behind", "[too
         "beyond the driver's limit");
   check(kSmoke + "--tf smoke --azimuth 0 --grid density --size 99999x99999 --backend cpu -o a.png", 1,
         "buffers of 99999 x 99999 pixels: needs ");
-  check(kSmall + "-o a.png --technique rays --backend osmesa", 1, "rays does not run on OpenGL but on the CPU");
+  check(kSmall + "-o a.png --technique shear-warp --backend osmesa", 1,
+        "shear-warp does not run on OpenGL but on the CPU");
+  check(kSmall + "-o a.png --model cone --method ordinates --technique rays --backend osmesa", 1,
+        "ordinates is one of slices; rays take light from a light volume");
   check(kSmall + "-o a.png --technique slices --backend cpu", 1, "slices does not run on the CPU but on OpenGL");
   check(kSmall + "-o a.png --model cone --method ordinates --backend cpu", 1, "ordinates is one of slices");
   check(kSmall + "-o a.png --eye 0 0 0", 2, "--eye needs --look-at");

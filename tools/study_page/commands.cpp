@@ -12,9 +12,10 @@ std::string sizeOption(const ResolvedScene& scene) {
 }
 
 // Returns what a method sets in the scene of the study, as options.
-std::string methodOptions(const ResolvedScene& scene, const ResolvedScene& ofCase) {
+std::string methodOptions(const StudyMethod& method, const ResolvedScene& scene, const ResolvedScene& ofCase) {
   std::string text;
-  if (ofCase.technique != scene.technique) text += " --technique " + techniqueName(ofCase.technique);
+  if (ofCase.technique != scene.technique)
+    text += " --technique " + techniqueName(ofCase.technique) + " --backend " + (method.onCpu ? "cpu" : "osmesa");
   if (ofCase.sampling.quadrature != scene.sampling.quadrature)
     text += " --quadrature " + std::string(nameOf(kQuadratures, ofCase.sampling.quadrature));
   if (ofCase.sampling.classification != scene.sampling.classification)
@@ -36,7 +37,7 @@ std::string renderCommand(const StudyCase& what, const ResolvedScene& scene, con
   const StudyMethod& method = studyMethod(what.method);
   const ResolvedScene result = caseScene(scene, what, geometry);
   std::string text = "umbrick render scene.json --model " + modelName(method.model);
-  text += methodOptions(scene, result);
+  text += methodOptions(method, scene, result);
   if (traitsOf(method.model).occlusion)
     text += " --theta " + jsonDegrees(what.theta) + " --occlusion-bits " + std::to_string(what.bits.occlusion);
   if (what.scale > 0) text += " --occlusion-scale " + jsonNumber(what.scale);

@@ -23,7 +23,8 @@ namespace umbrick {
 ///   5  the visibility V has no seam across brick faces, and none across skipped space
 ///   6  the order in which the bricks of a slice are drawn does not matter
 ///   7  what lies at the border of a volume is whole: empty space around it changes nothing, however wide the slabs
-///   8  techniques on the CPU make the picture that slices make, within twice the errors that both state
+///   8  rays on OpenGL and techniques on the CPU make the picture that slices make, within twice the errors that both
+///   state
 struct InvariantResult {
   int invariant = 0;
   std::string name;       // what must hold, and for which model or bricks

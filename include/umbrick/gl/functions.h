@@ -40,7 +40,7 @@ namespace umbrick {
   X(PROGRAMUNIFORM4F, ProgramUniform4f) X(PROGRAMUNIFORM3FV, ProgramUniform3fv) X(PROGRAMUNIFORM4FV, ProgramUniform4fv) \
   X(DRAWARRAYS, DrawArrays) X(DRAWELEMENTS, DrawElements) X(BINDBUFFERBASE, BindBufferBase) \
   X(DISPATCHCOMPUTE, DispatchCompute) X(MEMORYBARRIER, MemoryBarrier) X(BINDIMAGETEXTURE, BindImageTexture) \
-  X(PROGRAMUNIFORM2I, ProgramUniform2i) \
+  X(PROGRAMUNIFORM2I, ProgramUniform2i) X(PROGRAMUNIFORM3I, ProgramUniform3i) \
   X(CREATEQUERIES, CreateQueries) X(DELETEQUERIES, DeleteQueries) X(BEGINQUERY, BeginQuery) X(ENDQUERY, EndQuery) \
   X(GETQUERYOBJECTUI64V, GetQueryObjectui64v)
 // clang-format on

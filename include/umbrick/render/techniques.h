@@ -14,10 +14,10 @@ namespace umbrick {
 struct TechniqueTraits {
   Technique technique;
   std::string_view meaning;  // "proxy slices across the view, nearest first"
-  /// Makes a renderer on OpenGL; null: it runs on the CPU. @throw InvalidArgument, GlError
+  /// Makes a renderer on OpenGL; null: it runs on the CPU alone. @throw InvalidArgument, GlError
   std::unique_ptr<Renderer> (*makeOnGl)(ResidentVolume& volume, const ResolvedScene& scene,
                                         const RenderOptions& options);
-  /// Makes a renderer on the CPU; null: it runs on OpenGL. @throw InvalidArgument
+  /// Makes a renderer on the CPU; null: it runs on OpenGL alone. @throw InvalidArgument
   std::unique_ptr<Renderer> (*makeOnCpu)(const Bricks& volume, const ResolvedScene& scene,
                                          const RenderOptions& options);
   /// Tells whether it can render the scene.

@@ -55,9 +55,9 @@ inline constexpr Name<Quadrature> kQuadratures[]{{"preintegrated", Quadrature::p
 enum class Classification { post, pre };
 inline constexpr Name<Classification> kClassifications[]{{"post", Classification::post}, {"pre", Classification::pre}};
 
-/// How a picture is computed: by slices across the view, on OpenGL; by a ray through each pixel, or by shear-warp,
-/// whose rays lie in rows of voxels and whose picture is warped to the pixels, on the CPU. Automatic: see
-/// chooseEngine() in render/engine.h.
+/// How a picture is computed: by slices across the view, on OpenGL; by a ray through each pixel, on OpenGL or the CPU;
+/// by shear-warp, whose rays lie in rows of voxels and whose picture is warped to the pixels, on the CPU. Automatic:
+/// see chooseEngine() in render/engine.h.
 enum class Technique { automatic, slices, rays, shearWarp };
 inline constexpr Name<Technique> kTechniques[]{{"auto", Technique::automatic},
                                                {"slices", Technique::slices},

@@ -32,6 +32,7 @@ struct StudyMethod {
   bool quick = false;                               // whether it is also part of a quick study
   bool fineSegments = false;  // at the base: kAutomaticSegments per slab, else the fewest that are swept
   bool windows = false;       // whether it carries light in light windows, whose scale is swept
+  bool onCpu = false;         // where it is drawn; else on OpenGL
 };
 
 /// Stands for as many segments as segmentsOf() says.
@@ -49,6 +50,7 @@ inline constexpr int kAutomaticSegments = 0;
 ///   rays-light-volume, shear-warp-light-volume    how densely they sample, and the last two have light volumes
 ///   rays-midpoint  rays with the medium at the middle of each segment, not the integral over its values
 ///   rays-pre       rays through media that were interpolated between classified voxels
+///   rays-gl, rays-gl-light-volume                 rays on OpenGL, of the slices' segments
 const std::vector<StudyMethod>& studyMethods();
 /// Returns the method of a name. @throw InvalidArgument  there is no such method; the message lists those there are
 const StudyMethod& studyMethod(std::string_view name);

@@ -1,0 +1,51 @@
+// Which parts of bricks show something: so that rays skip what is empty within a brick.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "shade/transfer_lookup.h"
+#include "umbrick/brick/bricks.h"
+
+namespace umbrick {
+
+/// Ranges of parts of bricks, read from the volume once, whatever the transfer function is.
+class BrickParts {
+ public:
+  /// Voxels along the edge of a part: small beside what is usually solid or empty, and large beside an apron.
+  static constexpr int kEdge = 8;
+  /// @param volume  outlives this
+  explicit BrickParts(const Bricks& volume);
+
+  /// Tells whether bricks have more than one part.
+  bool divides() const { return perBrick() > 1; }
+  glm::ivec3 edge() const { return volume_.layout.interior / count_; }  // voxels
+  glm::ivec3 count() const { return count_; }                           // parts of a brick along each axis
+  std::size_t perBrick() const {
+    return static_cast<std::size_t>(count_.x) * static_cast<std::size_t>(count_.y) * static_cast<std::size_t>(count_.z);
+  }
+
+  /// Reads the bricks at these origins that were not read yet.
+  void read(std::span<const glm::ivec3> origins);
+  /// Tells which parts of a brick show something, x fastest; as bricks do, a part counts what an apron around it holds.
+  /// @param shown  perBrick() flags  @pre the brick was read
+  void show(const glm::ivec3& origin, const TransferLookup& transfer, std::span<std::uint8_t> shown) const;
+
+ private:
+  struct Ranges {
+    Range value, gradient;
+  };
+  struct Hash {
+    std::size_t operator()(const glm::ivec3& o) const;
+  };
+  void measure(std::span<const float> values, std::vector<Range>& ranges) const;
+  std::vector<Ranges> rangesOf(const glm::ivec3& origin) const;
+  const Bricks& volume_;
+  glm::ivec3 count_;
+  std::unordered_map<glm::ivec3, std::vector<Ranges>, Hash> bricks_;
+};
+
+}  // namespace umbrick

@@ -1,0 +1,70 @@
+// Draws the rays of a picture through one run of bricks after another.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "shade/frame.h"
+#include "shade/ray_frame.h"
+#include "shade/render_targets.h"
+#include "shade/resident_light.h"
+#include "shade/slot_table.h"
+#include "shade/transfer_lookup.h"
+
+namespace umbrick {
+
+/// The buffers of rays: those of a picture, and how many segments a ray was taken through.
+struct RayTargets {
+  RayTargets(const GlFunctions& gl, const TargetOptions& options);
+  std::size_t bytes() const { return picture.bytes() + 4 * pixels(); }
+  std::size_t pixels() const {
+    return static_cast<std::size_t>(picture.options.width) * static_cast<std::size_t>(picture.options.height);
+  }
+  void clear(const GlFunctions& gl) const;
+  std::uint64_t segments(const GlFunctions& gl) const;
+
+  RenderTargets picture;
+  GlTexture count;
+  GlFramebuffer all;  // eye, count [, aux], depth
+};
+
+/// What all runs of a picture share.
+struct RayScene {
+  const GlFunctions& gl;
+  const ResolvedScene& scene;
+  const IndexView& view;
+  std::span<const glm::dvec4> planes;  // that cut the medium, view coordinates
+  Box medium;                          // outside of which there is nothing to see, index coordinates
+  const TransferLookup& transfer;
+  const BrickSelection& bricks;
+  const ResidentLight* light;  // null: all is lit alike
+  const RayTargets& targets;
+  const std::function<void(double)>& progress;
+};
+
+/// Bricks that are drawn at once; they are resident, and so is their light.
+struct RayRun {
+  SlotCells cells;             // in at most kRayTextures textures
+  double done = 0, share = 1;  // shares of the picture: what was drawn before, and what this is
+};
+
+class RayPass {
+ public:
+  /// Is called before the first run of a picture; compiles what has changed.
+  void begin(const RayScene& rays);
+  /// Draws a run behind those before it.
+  void draw(const RayScene& rays, const RayFrame& frame, const RayRun& run);
+  std::uint64_t bytes() const { return slots_.bytes(); }
+
+ private:
+  void setState(const RayScene& rays, const RayRun& run);
+  SpecialisedProgram program_{"shade/full_screen.vert", "shade/ray_march.frag"};
+  std::optional<SaturationTest> saturation_;
+  std::optional<GlVertexArray> nothing_;  // an empty vertex array, since the core profile draws nothing without one
+  SlotTable slots_;
+  bool first_ = true;  // nothing is drawn yet
+};
+
+}  // namespace umbrick
