@@ -211,6 +211,7 @@ class LightVolume::Implementation {
     bricks.light = lightLayout(volume_.layout, stats_.spacing);
     bricks.origins = origins;
     bricks.channels = channels();
+    bricks.toIndex = glm::inverse(glm::dmat3(volume_.indexToWorld));
     bricks.sums.assign(origins.size() * bricks.light.places() * static_cast<std::size_t>(channels()), 0);
     return bricks;
   }

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -23,6 +24,7 @@ struct SweptBricks {
   std::vector<std::int32_t> sums;  // of light, channel by channel within a brick
   const ExtinctionTable* extinction = nullptr;
   std::vector<glm::dvec4> planes;      // see LightMedium
+  glm::dmat3 toIndex{1};               // of directions, from the world
   std::unique_ptr<std::mutex[]> busy;  // one for the sums of each brick
 };
 

@@ -17,8 +17,11 @@ using PathNumbers = hn::Rebind<std::int32_t, PathLanes>;
 using PathFloats = hn::Vec<PathLanes>;
 using PathInts = hn::Vec<PathNumbers>;
 
-// Light outside of a cut is extrapolated over so many slices, and by so much at most.
-constexpr float kBeyond = 2, kMostGrowth = 4;
+// Light outside of a cut is continued over so many places of light. Where the next one within lies nearer to the cut
+// than kNear, the slope is that over kNear.
+constexpr float kBeyond = 3, kNear = 0.125f;
+// Behind the medium it goes on falling for so many slices.
+constexpr float kBehind = 2;
 
 // exp(-x) within 3e-7 of it for x up to kDarkDepth, 1 exactly at 0, and 0 from there on.
 HWY_INLINE PathFloats expNegative(PathLanes d, PathFloats x) {
@@ -123,6 +126,52 @@ void carry(const PathRow& before, const PathRow& here, const PathMedium& medium,
   }
 }
 
+// (1 - exp(-x)) / x, and the means of 1 - t and of t with the weight exp(-x t) over t in [0, 1].
+struct Means {
+  PathFloats whole, first, last;
+};
+HWY_INLINE Means meansOver(PathLanes d, PathFloats x) {
+  const PathFloats one = hn::Set(d, 1.0f), e = expNegative(d, x), safe = hn::Max(x, hn::Set(d, 0.25f));
+  const PathFloats per = hn::Div(one, safe);
+  const PathFloats whole = hn::Mul(hn::Sub(one, e), per);
+  const PathFloats last = hn::Mul(hn::Sub(whole, e), per);
+  // Power series where differences would cancel.
+  PathFloats small = hn::Set(d, 1.0f / 120);
+  small = hn::MulAdd(small, x, hn::Set(d, -1.0f / 24));
+  small = hn::MulAdd(small, x, hn::Set(d, 1.0f / 6));
+  small = hn::MulAdd(small, x, hn::Set(d, -0.5f));
+  small = hn::MulAdd(small, x, one);
+  PathFloats smallLast = hn::Set(d, 1.0f / 144);
+  smallLast = hn::MulAdd(smallLast, x, hn::Set(d, -1.0f / 30));
+  smallLast = hn::MulAdd(smallLast, x, hn::Set(d, 1.0f / 8));
+  smallLast = hn::MulAdd(smallLast, x, hn::Set(d, -1.0f / 3));
+  smallLast = hn::MulAdd(smallLast, x, hn::Set(d, 0.5f));
+  const auto isSmall = hn::Lt(x, hn::Set(d, 0.25f));
+  Means means;
+  means.whole = hn::IfThenElse(isSmall, small, whole);
+  means.last = hn::IfThenElse(isSmall, smallLast, last);
+  means.first = hn::Sub(means.whole, means.last);
+  return means;
+}
+
+// How much more light than arrives there is at so many voxels outside of a cut. Light that falls off like an
+// exponential is read linearly between there and the first voxel within. An eye that looks straight at the cut shall
+// see as much of it on this way as there is:
+//
+//     int_0^b exp(-eye t) (P + (exp(-tau b) - P) t / b) dt  =  int_0^b exp(-(eye + tau) t) dt
+//
+// gives P at the cut, from which the line goes on outwards. tau, eye: optical depths of the way between two places, for
+// light and eye. Ways are in such places.
+HWY_INLINE PathFloats continued(PathLanes d, PathFloats outside, PathFloats tau, PathFloats eye) {
+  const PathFloats way = hn::Min(hn::Max(outside, hn::Zero(d)), hn::Set(d, kBeyond));
+  const PathFloats within = hn::Max(hn::Sub(hn::Ceil(way), way), hn::Set(d, kNear));
+  const PathFloats next = expNegative(d, hn::Mul(tau, within));
+  const Means means = meansOver(d, hn::Mul(eye, within));
+  const PathFloats seen = meansOver(d, hn::Mul(hn::Add(eye, tau), within)).whole;
+  const PathFloats cut = hn::Div(hn::NegMulAdd(next, means.last, seen), means.first);
+  return hn::MulAdd(way, hn::Div(hn::Sub(cut, next), within), cut);
+}
+
 template <int kSpacing>
 void carryCut(const PathRow& before, const PathRow& here, const PathMedium& medium, const RowPlane* planes,
               int planeCount, float* depth, float* through, int count) {
@@ -133,13 +182,16 @@ void carryCut(const PathRow& before, const PathRow& here, const PathMedium& medi
   for (int i = 0; i < count; i += lanes) {
     const PathFloats path = hn::Add(hn::ConvertTo(d, hn::Iota(PathNumbers(), 0)), hn::Set(d, static_cast<float>(i)));
     // The medium is between `enter` and `leave`, in slices from this one on.
-    PathFloats enter = hn::Set(d, -1e9f), leave = hn::Set(d, 1e9f);
+    PathFloats enter = hn::Set(d, -1e9f), leave = hn::Set(d, 1e9f), perPlace = hn::Set(d, 1.0f), cosine = perPlace;
     for (int p = 0; p < planeCount; ++p) {
       const PathFloats crossing =
           hn::MulAdd(path, hn::Set(d, -planes[p].step / planes[p].rate), hn::Set(d, -planes[p].base / planes[p].rate));
-      if (planes[p].rate > 0)
+      if (planes[p].rate > 0) {
+        const auto later = hn::Gt(crossing, enter);
+        perPlace = hn::IfThenElse(later, hn::Set(d, planes[p].slicesPerPlace), perPlace);
+        cosine = hn::IfThenElse(later, hn::Set(d, planes[p].cosine), cosine);
         enter = hn::Max(enter, crossing);
-      else
+      } else
         leave = hn::Min(leave, crossing);
     }
     const PathFloats from = valuesAt<kSpacing>(d, before, i), to = valuesAt<kSpacing>(d, here, i);
@@ -154,11 +206,16 @@ void carryCut(const PathRow& before, const PathRow& here, const PathMedium& medi
         count - i < lanes ? hn::IfThenElse(hn::FirstN(d, static_cast<std::size_t>(count - i)), after, old) : after;
     hn::StoreU(own, d, depth + i);
     if (!through) continue;
-    const PathFloats most = hn::Set(d, kBeyond);
-    const PathFloats beyond =
-        hn::Sub(hn::Min(hn::Max(zero, hn::Neg(leave)), most), hn::Min(hn::Max(zero, enter), most));
-    const PathFloats growth = hn::Max(hn::Mul(hn::Mul(length, beyond), mean.at(d, to)), hn::Set(d, -kMostGrowth));
-    const PathFloats light = expNegative(d, hn::Add(after, growth));
+    const PathFloats sigma_t = mean.at(d, to);
+    const PathFloats behind = hn::Min(hn::Max(zero, hn::Neg(leave)), hn::Set(d, kBehind));
+    PathFloats light = expNegative(d, hn::MulAdd(hn::Mul(length, behind), sigma_t, after));
+    const PathFloats far = hn::Div(enter, perPlace);
+    const auto outside = hn::And(hn::Gt(far, zero), hn::Lt(far, hn::Set(d, kBeyond)));
+    if (!hn::AllFalse(d, outside)) {
+      const PathFloats tau = hn::Mul(hn::Mul(sigma_t, length), perPlace);
+      const PathFloats more = continued(d, far, tau, hn::Mul(tau, cosine));
+      light = hn::IfThenElse(outside, hn::Mul(light, more), light);
+    }
     hn::StoreU(light, d, through + i);
   }
 }

@@ -43,8 +43,12 @@ inline constexpr float kDarkDepth = 24;
 /// to slice.
 struct RowPlane {
   float base = 0, step = 0, rate = 0;
+  // By how many slices later paths meet it that lie a place of light farther out, along the axis nearest to its normal.
+  float slicesPerPlace = 1;
+  float cosine = 1;  // between the light and the plane's normal, world
 };
-/// Does the same where there is medium only inside of planes. Outside, `through` goes on as it changes inside.
+/// Does the same where there is medium only inside of planes. Before the medium, `through` is more than what arrives,
+/// so that what is read linearly between there and the first voxel within looks right; behind it, it goes on falling.
 void carryCutRow(const PathRow& before, const PathRow& here, const PathMedium& medium, const RowPlane* planes,
                  int planeCount, int spacing, float* depth, float* through, int count);
 

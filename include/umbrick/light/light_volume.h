@@ -42,7 +42,8 @@ struct LightMedium {
   TransferFunction transfer;
   std::vector<LightDirection> directions;
   /// The medium lies where dot(xyz, index) + w >= 0 for all of these, index coordinates. Beyond a plane that cuts
-  /// through medium light goes on growing as it fell within, for two voxels: so it is smooth where it is read.
+  /// through medium there is more light than arrives there, for three voxels: so much that what is read linearly
+  /// between there and the first voxel within looks as bright as what falls off from the plane on.
   std::vector<glm::dvec4> planes;
   std::vector<glm::ivec3> cells;  // first owned voxels of the bricks in which something is visible
   /// Light is held at every voxel (1) or at every second one along each axis (2), which takes a sixth of the memory and
