@@ -178,6 +178,9 @@ class LightVolume::Implementation {
   // Sweeps only what has changed. @return whether that is less work
   bool sweepEdit(const LightMedium& before, const glm::dvec3& wholeBefore, const LightMedium& medium,
                  const SortedLight& sorted, const std::vector<glm::ivec3>& cells, std::uint64_t mostBytes) {
+    // Between other ends of the function the steps of its table are others, and all values are rounded to others.
+    const std::vector<double>&from = before.transfer.values(), &to = medium.transfer.values();
+    if (from.front() != to.front() || from.back() != to.back()) return false;
     const std::vector<glm::ivec3> changed = changedCells(before, medium, volume_);
     if (before.directions != medium.directions) {
       if (!changed.empty()) return false;

@@ -75,9 +75,9 @@ class LightVolume {
   ~LightVolume();
 
   /// Computes the light where anything has changed since the last call. Where an edit changes the medium of some bricks
-  /// (a part of the transfer function, a clip plane, more bricks) or some directions, only the paths through these
-  /// bricks, or these directions, are swept, if that is less work. The light then is off by at most half a step of
-  /// 1/65535 more than that of a fresh sweep; after a few edits all is swept again.
+  /// (the transfer function between its ends, a clip plane, more bricks) or some directions, only the paths through
+  /// these bricks, or these directions, are swept, if that is less work. The light then is off by at most half a step
+  /// of 1/65535 more than that of a fresh sweep; after a few edits all is swept again.
   /// @return whether it was computed
   /// @param mostBytes  of host memory
   /// @throw InvalidArgument  more memory would be needed: the message says how much
