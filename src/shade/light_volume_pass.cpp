@@ -57,6 +57,8 @@ class LightVolumePass : public SlicePass {
   void addTo(RenderStats& stats) const override {
     stats.directions = light_.stats().directions;
     stats.windowUpdates = light_.stats().updates;
+    stats.lightSpacing = light_.stats().spacing;
+    stats.lightSpacingError = light_.stats().spacingError;
     stats.windowBytes = textures_.bytes();
     stats.textureBytes += textures_.bytes();
     stats.lightMs = lightMs_;
@@ -69,7 +71,8 @@ class LightVolumePass : public SlicePass {
         frame.scene.transfer,
         ofScene ? lightDirections(frame.scene, frame.scene.occlusion.ordinates.directions) : frame.sample.lights,
         {},
-        {frame.bricks.origins().begin(), frame.bricks.origins().end()}};
+        {frame.bricks.origins().begin(), frame.bricks.origins().end()},
+        frame.scene.occlusion.ordinates.lightSpacing};
     for (const glm::dvec4& plane : frame.planes) {
       const glm::dvec3 n(plane);
       const glm::dvec4 inIndex(glm::dot(n, frame.view.axis[0]), glm::dot(n, frame.view.axis[1]),
