@@ -105,10 +105,9 @@ nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& pict
   json["bytes"] = {
       {"brick_textures", stats.textureBytes}, {"buffers", stats.bufferBytes}, {"peak_memory", peakMemoryBytes()}};
   if (stats.directions > 0 && occlusionMethod(loaded.scene) == Method::lightVolume)
-    json["light"] = {{"directions", stats.directions},
-                     {"ms", stats.lightMs},
-                     {"bytes", stats.windowBytes},
-                     {"updates", stats.windowUpdates}};
+    json["light"] = {{"directions", stats.directions}, {"ms", stats.lightMs},
+                     {"bytes", stats.windowBytes},     {"updates", stats.windowUpdates},
+                     {"spacing", stats.lightSpacing},  {"spacing_error", stats.lightSpacingError}};
   else if (stats.directions > 0)
     json["windows"] = {{"directions", stats.directions},
                        {"texel_world", stats.windowTexel},
@@ -333,6 +332,9 @@ int render(const RenderCommand& command) {
   if (loaded.scene.bricks.format != "auto" && picture.stats.formatError > 0)
     std::cerr << "texels of " << loaded.scene.bricks.format << " are off by up to " << picture.stats.formatError
               << ", in units of the grid\n";
+  if (picture.stats.lightSpacing == 2 && loaded.scene.occlusion.ordinates.lightSpacing == 0)
+    std::cerr << "for lack of memory light is held at every second voxel alone, which changes it by about "
+              << picture.stats.lightSpacingError << " of the whole (--memory-budget)\n";
   const Stopwatch write;
   writePicture(output, picture, loaded.scene, engine.description,
                passes ? printPasses(*passes, command.seed).dump() : std::string());

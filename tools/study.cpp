@@ -248,8 +248,8 @@ Command addStudy(CLI::App& app) {
   addBackendOption(*sub, command->backend);
   // What the study sweeps is no option of the scene, and errors are measured without background radiance.
   for (const char* option : {"--model", "--method", "--quality", "--theta", "--footprint", "--directions",
-                             "--occlusion-scale", "--algorithm", "--passes", "--occlusion-bits", "--eye-bits",
-                             "--spacing", "--spacing-unit", "--segments", "--background", "--technique"})
+                             "--occlusion-scale", "--light-spacing", "--algorithm", "--passes", "--occlusion-bits",
+                             "--eye-bits", "--spacing", "--spacing-unit", "--segments", "--background", "--technique"})
     sub->remove_option(sub->get_option(option));
   sub->get_option("--size")->description("its shape is that of the study's pictures [512x512]");
   sub->add_option("-o,--output", command->folder, "folder of the report: new, empty, or of the same study")

@@ -36,6 +36,7 @@ class Integral {
 
 ExtinctionTable::ExtinctionTable(const TransferFunction& transfer) : transfer_(transfer) {
   integrals_.resize(kSteps + 2);
+  means_.resize(kSteps + 1);
   opaque_.resize(kSteps + 1);
   if (transfer.is2d()) {
     // The value is sigma_t itself, whose integral is half its square.
@@ -44,7 +45,10 @@ ExtinctionTable::ExtinctionTable(const TransferFunction& transfer) : transfer_(t
     perUnit_ = most > 0 ? kSteps / most : 1;
     for (int i = 0; i < kSteps + 2; ++i)
       integrals_[static_cast<std::size_t>(i)] = static_cast<float>(0.5 * i * static_cast<double>(i) / perUnit_);
-    for (int i = 0; i <= kSteps; ++i) opaque_[static_cast<std::size_t>(i)] = i;
+    for (int i = 0; i <= kSteps; ++i) {
+      opaque_[static_cast<std::size_t>(i)] = i;
+      means_[static_cast<std::size_t>(i)] = static_cast<float>((i + 0.5) / perUnit_);
+    }
     above_ = static_cast<float>(most);
     findEmptyEnds();
     return;
@@ -58,7 +62,11 @@ ExtinctionTable::ExtinctionTable(const TransferFunction& transfer) : transfer_(t
   const Integral integral(transfer);
   for (int i = 0; i < kSteps + 2; ++i) {
     const double value = low + (i - kEnds) / perUnit_;
-    integrals_[static_cast<std::size_t>(i)] = static_cast<float>((integral(value) - integral(first)) * perUnit_);
+    const double sum = integral(value);
+    integrals_[static_cast<std::size_t>(i)] = static_cast<float>((sum - integral(first)) * perUnit_);
+    // Of single precision the difference of two sums would have left few digits.
+    if (i <= kSteps)
+      means_[static_cast<std::size_t>(i)] = static_cast<float>((integral(value + 1 / perUnit_) - sum) * perUnit_);
     if (i == 0 || i > kSteps) continue;
     const bool empty = integrals_[static_cast<std::size_t>(i)] == integrals_[static_cast<std::size_t>(i) - 1];
     opaque_[static_cast<std::size_t>(i)] = opaque_[static_cast<std::size_t>(i) - 1] + !empty;
@@ -66,6 +74,15 @@ ExtinctionTable::ExtinctionTable(const TransferFunction& transfer) : transfer_(t
   below_ = static_cast<float>(transfer.media().front().sigma_t);
   above_ = static_cast<float>(transfer.media().back().sigma_t);
   findEmptyEnds();
+}
+
+void ExtinctionTable::toSteps(std::span<float> values, std::span<const float> gradients) const {
+  if (transfer_.is2d()) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = stepsOf(values[i], gradients[i]);
+    return;
+  }
+  const double low = low_, perUnit = perUnit_;
+  for (float& value : values) value = static_cast<float>(kEnds + (static_cast<double>(value) - low) * perUnit);
 }
 
 void ExtinctionTable::findEmptyEnds() {

@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "umbrick/core/range.h"
@@ -25,6 +26,8 @@ class ExtinctionTable {
     // extinction.
     return static_cast<float>(kEnds + (static_cast<double>(value) - low_) * perUnit_);
   }
+  /// Does the same for voxels in place. @param gradients  of a 2D function
+  void toSteps(std::span<float> values, std::span<const float> gradients) const;
   /// Tells whether sigma_t is 0 for all values between two, in steps. Between ends of the function, values less than a
   /// step from some with extinction count as having it.
   bool isTransparent(float low, float high) const {
@@ -36,7 +39,15 @@ class ExtinctionTable {
     return opaque_[std::min<std::size_t>(at(high) + 1, kSteps)] == opaque_[at(low)];
   }
 
+  /// Tells whether sigma_t is above 0 all the way between two values. May be false where it is.
+  bool isOpaque(float low, float high) const {
+    if (low < 0 || high > kSteps || low <= emptyBelow_ || high >= emptyAbove_) return false;
+    const auto first = static_cast<std::size_t>(low), last = static_cast<std::size_t>(high);
+    return last < kSteps && opaque_[last + 1] - opaque_[first] == static_cast<std::int32_t>(last + 1 - first);
+  }
+
   const float* integrals() const { return integrals_.data(); }  // kSteps + 2
+  const float* means() const { return means_.data(); }          // of sigma_t from each step to the next, kSteps + 1
   float below() const { return below_; }                        // sigma_t of values below the table, 1/world unit
   float above() const { return above_; }
   /// No value up to this one has any extinction; so far below the table that no value is where some have.
@@ -50,7 +61,7 @@ class ExtinctionTable {
   double low_ = 0, perUnit_ = 1;
   void findEmptyEnds();
   float below_ = 0, above_ = 0, emptyBelow_ = 0, emptyAbove_ = 0;
-  std::vector<float> integrals_;
+  std::vector<float> integrals_, means_;
   std::vector<std::int32_t> opaque_;  // number of steps before an entry over which sigma_t is not 0 everywhere
 };
 

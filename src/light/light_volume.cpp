@@ -11,13 +11,16 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
-#include <tuple>
+#include <utility>
 
 #include "light/extinction_table.h"
+#include "light/light_edit.h"
 #include "light/light_sweep.h"
+#include "light/stored_light.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 
@@ -25,15 +28,13 @@ namespace umbrick {
 namespace {
 
 // So many directions share a sweep: what they read and what they add is brought to the sweep's planes once for all.
-constexpr std::size_t kDirectionsTogether = 8;
+constexpr std::size_t kDirectionsTogether = 16;
 
-bool comesBefore(const glm::ivec3& a, const glm::ivec3& b) {
-  return std::tuple(a.z, a.y, a.x) < std::tuple(b.z, b.y, b.x);
-}
-
-std::size_t voxelsOf(const glm::ivec3& edge) {
-  return static_cast<std::size_t>(edge.x) * static_cast<std::size_t>(edge.y) * static_cast<std::size_t>(edge.z);
-}
+// An edit that takes more than this share of the work of a fresh sweep is none. Bricks are read for both mediums, so
+// that of mediums little more than half of the work costs as much time as all.
+constexpr double kMostMediumCost = 0.5, kMostLightCost = 0.8;
+// Each edit may round light by half a step. After so many all is swept again.
+constexpr int kMostEdits = 8;
 
 SweptDirection sweptDirection(const LightDirection& light, const glm::dmat3& toIndex) {
   const glm::dvec3 direction = toIndex * light.direction;  // per world unit
@@ -47,6 +48,48 @@ SweptDirection sweptDirection(const LightDirection& light, const glm::dmat3& toI
   swept.v = -direction[axes.v] / along;
   swept.length = 1 / along;
   return swept;
+}
+
+/// Directions as sweeps take them.
+struct SortedLight {
+  std::vector<SweepTask> tasks;
+  int sweeps = 0;  // pairs of axis and sign
+};
+SortedLight sortLight(const std::vector<LightDirection>& directions, const glm::dvec3& whole,
+                      const glm::dmat4& indexToWorld) {
+  const glm::dmat3 toIndex = glm::inverse(glm::dmat3(indexToWorld));
+  std::map<std::pair<int, int>, std::vector<SweptDirection>> byAxis;
+  for (const LightDirection& light : directions) {
+    SweptDirection swept = sweptDirection(light, toIndex);
+    for (int c = 0; c < 3; ++c)
+      swept.weight[static_cast<std::size_t>(c)] = static_cast<float>(whole[c] > 0 ? light.radiance[c] / whole[c] : 0);
+    byAxis[{swept.axis, swept.sign}].push_back(swept);
+  }
+  SortedLight sorted;
+  sorted.sweeps = static_cast<int>(byAxis.size());
+  for (const auto& [key, list] : byAxis) {
+    const std::size_t count = (list.size() + kDirectionsTogether - 1) / kDirectionsTogether;
+    for (std::size_t i = 0; i < count; ++i)
+      sorted.tasks.emplace_back().directions.assign(
+          list.begin() + static_cast<std::ptrdiff_t>(list.size() * i / count),
+          list.begin() + static_cast<std::ptrdiff_t>(list.size() * (i + 1) / count));
+  }
+  return sorted;
+}
+
+glm::dvec3 wholeOf(const std::vector<LightDirection>& directions) {
+  glm::dvec3 whole(0);
+  for (const LightDirection& light : directions) whole += light.radiance;
+  return whole;
+}
+
+bool isColoured(const std::vector<LightDirection>& directions, const glm::dvec3& whole) {
+  const double power = whole.r + whole.g + whole.b;
+  return std::ranges::any_of(directions, [&](const LightDirection& light) {
+    const double share = power > 0 ? (light.radiance.r + light.radiance.g + light.radiance.b) / power : 0;
+    const glm::dvec3 tint = glm::abs(light.radiance - share * whole);
+    return std::max({tint.r, tint.g, tint.b}) > 1e-9 * power;
+  });
 }
 
 }  // namespace
@@ -67,110 +110,159 @@ class LightVolume::Implementation {
   bool update(const LightMedium& medium, std::uint64_t mostBytes) {
     if (medium_ && *medium_ == medium) return false;
     const Stopwatch watch;
-    medium_.reset();  // until all is computed
+    std::vector<glm::ivec3> cells = medium.cells;
+    std::ranges::sort(cells, comesBefore);
+    const glm::dvec3 whole = wholeOf(medium.directions);
+    const bool coloured = isColoured(medium.directions, whole);
+    // Until all is computed nothing is held.
+    const std::optional<LightMedium> before = std::exchange(medium_, std::nullopt);
+    const glm::dvec3 wholeBefore = std::exchange(whole_, whole);
+    const bool sameChannels = std::exchange(coloured_, coloured) == coloured;
     stats_ = {};
-    cells_ = medium.cells;
-    std::sort(cells_.begin(), cells_.end(), comesBefore);
-    const std::vector<std::vector<SweptDirection>> sweeps = sortDirections(medium.directions);
-    checkMemory(mostBytes);
-    light_.assign(cells_.size() * volume_.layout.voxels() * static_cast<std::size_t>(channels()), 0);
-    if (!cells_.empty()) {
-      const ExtinctionTable extinction(medium.transfer);
-      readValues(medium.transfer, extinction);
-      for (int axis = 0; axis < 3; ++axis) sweepAxis(axis, sweeps, medium.planes, extinction);
-      values_ = sweptValues_ = {};
-      sweptLight_ = {};
-      lit_ = {};
+    stats_.spacing = spacingFor(medium.spacing, cells.size(), mostBytes);
+    const SortedLight sorted = sortLight(medium.directions, whole_, volume_.indexToWorld);
+    stats_.sweeps = sorted.sweeps;
+    stats_.edited = before && sameChannels && stats_.spacing == stored_.spacing() && edits_ < kMostEdits &&
+                    sweepEdit(*before, wholeBefore, medium, sorted, cells, mostBytes);
+    if (stats_.edited) {
+      ++edits_;
+    } else {
+      sweepAll(medium, sorted, std::move(cells));
+      edits_ = 0;
     }
     stats_.directions = static_cast<int>(medium.directions.size());
+    stats_.heldBytes = stored_.bytes();
+    stats_.spacingError = stored_.spacingError();
     stats_.ms = watch.elapsedMs();
     medium_ = medium;
     return true;
   }
 
-  int channels() const { return coloured_ ? 3 : 1; }
   bool coloured() const { return coloured_; }
   const glm::dvec3& whole() const { return whole_; }
   const LightStats& stats() const { return stats_; }
-
-  void read(const glm::ivec3& origin, std::span<float> light) const {
-    const glm::ivec3 edge = volume_.layout.edge();
-    const auto count = static_cast<std::size_t>(channels());
-    if (light.size() != voxelsOf(edge) * count)
-      throw InvalidArgument("light: " + std::to_string(light.size()) + " numbers to fill, must be " +
-                            std::to_string(voxelsOf(edge) * count));
-    const auto found = std::lower_bound(cells_.begin(), cells_.end(), origin, comesBefore);
-    if (found == cells_.end() || *found != origin)
-      throw InvalidArgument("light: there is none for the brick at (" + std::to_string(origin.x) + ", " +
-                            std::to_string(origin.y) + ", " + std::to_string(origin.z) + ")");
-    const auto cell = static_cast<std::size_t>(found - cells_.begin());
-    const std::size_t voxels = voxelsOf(edge);
-    for (std::size_t c = 0; c < count; ++c) {
-      const std::int32_t* from = light_.data() + (cell * count + c) * voxels;
-      for (std::size_t i = 0; i < voxels; ++i) light[i * count + c] = static_cast<float>(from[i]) * (1 / kWholeLight);
-    }
-  }
+  void read(const glm::ivec3& origin, std::span<float> light) const { stored_.read(origin, light); }
 
  private:
-  // Sorts directions by axis and sign, in groups that share a sweep.
-  std::vector<std::vector<SweptDirection>> sortDirections(const std::vector<LightDirection>& directions) {
-    const glm::dmat3 toIndex = glm::inverse(glm::dmat3(volume_.indexToWorld));
-    whole_ = glm::dvec3(0);
-    for (const LightDirection& light : directions) whole_ += light.radiance;
-    const double power = whole_.r + whole_.g + whole_.b;
-    coloured_ = false;
-    std::map<std::pair<int, int>, std::vector<SweptDirection>> byAxis;
-    for (const LightDirection& light : directions) {
-      SweptDirection swept = sweptDirection(light, toIndex);
-      const double share = power > 0 ? (light.radiance.r + light.radiance.g + light.radiance.b) / power : 0;
-      const glm::dvec3 tint = glm::abs(light.radiance - share * whole_);
-      coloured_ = coloured_ || std::max({tint.r, tint.g, tint.b}) > 1e-9 * power;
-      for (int c = 0; c < 3; ++c)
-        swept.weight[static_cast<std::size_t>(c)] =
-            static_cast<float>(whole_[c] > 0 ? light.radiance[c] / whole_[c] : 0);
-      byAxis[{swept.axis, swept.sign}].push_back(swept);
-    }
-    std::vector<std::vector<SweptDirection>> groups;
-    for (const auto& [key, list] : byAxis) {
-      const std::size_t count = (list.size() + kDirectionsTogether - 1) / kDirectionsTogether;
-      for (std::size_t i = 0; i < count; ++i)
-        groups.emplace_back(list.begin() + static_cast<std::ptrdiff_t>(list.size() * i / count),
-                            list.begin() + static_cast<std::ptrdiff_t>(list.size() * (i + 1) / count));
-    }
-    stats_.sweeps = static_cast<int>(byAxis.size());
-    return groups;
+  int channels() const { return coloured_ ? 3 : 1; }
+
+  // Values and sums, of which light is made that takes less.
+  std::uint64_t bytesFor(std::size_t bricks, int spacing) const {
+    return bricks * (volume_.layout.voxels() * sizeof(float) + lightLayout(volume_.layout, spacing).places() *
+                                                                   sizeof(std::int32_t) *
+                                                                   static_cast<std::uint64_t>(channels()));
   }
 
-  void checkMemory(std::uint64_t most) {
-    // Light and values are held once as they stay, and once in the order of a sweep.
-    stats_.bytes = cells_.size() * volume_.layout.voxels() * 2 *
-                   (sizeof(float) + sizeof(std::int32_t) * static_cast<std::uint64_t>(channels()));
-    if (stats_.bytes > most)
-      throw InvalidArgument("light-volume: the light of " + std::to_string(cells_.size()) + " visible bricks takes " +
-                            std::to_string((stats_.bytes >> 20) + 1) + " MiB, more than " + std::to_string(most >> 20) +
-                            " MiB; ordinates need less");
+  int spacingFor(int asked, std::size_t bricks, std::uint64_t most) {
+    int spacing = asked == 2 ? 2 : 1;
+    if (asked == 0 && bytesFor(bricks, 1) > most) spacing = 2;
+    stats_.bytes = bytesFor(bricks, spacing);
+    if (stats_.bytes > most) {
+      stored_ = {};
+      throw InvalidArgument("light-volume: the light of " + std::to_string(bricks) + " visible bricks takes " +
+                            std::to_string((stats_.bytes >> 20) + 1) + " MiB" +
+                            (spacing == 2 ? " even at every second voxel" : "") + ", more than " +
+                            std::to_string(most >> 20) + " MiB; ordinates need less");
+    }
+    return spacing;
   }
 
-  void readValues(const TransferFunction& transfer, const ExtinctionTable& extinction) {
+  void sweepAll(const LightMedium& medium, const SortedLight& sorted, std::vector<glm::ivec3> cells) {
+    stored_ = {};
+    SweptBricks bricks = bricksOf(cells);
+    if (!cells.empty()) sweep(bricks, medium, cells, sorted.tasks, 1);
+    bricks.values = {};
+    stored_.store(bricks, std::move(cells));
+  }
+
+  // Sweeps only what has changed. @return whether that is less work
+  bool sweepEdit(const LightMedium& before, const glm::dvec3& wholeBefore, const LightMedium& medium,
+                 const SortedLight& sorted, const std::vector<glm::ivec3>& cells, std::uint64_t mostBytes) {
+    // Between other ends of the function the steps of its table are others, and all values are rounded to others.
+    const std::vector<double>&from = before.transfer.values(), &to = medium.transfer.values();
+    if (from.front() != to.front() || from.back() != to.back()) return false;
+    const std::vector<glm::ivec3> changed = changedCells(before, medium, volume_);
+    if (before.directions != medium.directions) {
+      if (!changed.empty()) return false;
+      const auto edit = editOf(before.directions, wholeBefore, medium.directions, whole_);
+      if (!edit ||
+          static_cast<double>(edit->change.size()) > kMostLightCost * static_cast<double>(medium.directions.size()))
+        return false;
+      SweptBricks bricks = bricksOf(edit->change.empty() ? std::vector<glm::ivec3>{} : cells);
+      if (!bricks.origins.empty())
+        sweep(bricks, medium, cells, sortLight(edit->change, whole_, volume_.indexToWorld).tasks, 1);
+      stored_.change(bricks, cells, edit->scale);
+      return true;
+    }
+    std::vector<glm::ivec3> old = before.cells, both;
+    std::ranges::sort(old, comesBefore);
+    std::ranges::set_union(old, cells, std::back_inserter(both), comesBefore);
+    const LightEdit edit = editOf(sorted.tasks, changed, both, volume_.layout, stats_.spacing);
+    if (edit.cost > kMostMediumCost || bytesFor(edit.bricks.size(), stats_.spacing) > mostBytes) return false;
+    SweptBricks bricks = bricksOf(edit.bricks);
+    if (!edit.bricks.empty()) {
+      sweep(bricks, before, old, edit.tasks, -1);
+      sweep(bricks, medium, cells, edit.tasks, 1);
+    }
+    stored_.change(bricks, cells, glm::dvec3(1));
+    return true;
+  }
+
+  SweptBricks bricksOf(const std::vector<glm::ivec3>& origins) const {
+    SweptBricks bricks;
+    bricks.layout = volume_.layout;
+    bricks.light = lightLayout(volume_.layout, stats_.spacing);
+    bricks.origins = origins;
+    bricks.channels = channels();
+    bricks.toIndex = glm::inverse(glm::dmat3(volume_.indexToWorld));
+    bricks.sums.assign(origins.size() * bricks.light.places() * static_cast<std::size_t>(channels()), 0);
+    return bricks;
+  }
+
+  // Adds the light of a medium. @param cells  those of the medium, ascending; other bricks have none
+  void sweep(SweptBricks& bricks, const LightMedium& medium, const std::vector<glm::ivec3>& cells,
+             std::vector<SweepTask> tasks, float factor) {
+    const ExtinctionTable extinction(medium.transfer);
+    bricks.extinction = &extinction;
+    bricks.planes = medium.planes;
+    bricks.busy = std::make_unique<std::mutex[]>(bricks.origins.size());
+    readValues(bricks, medium.transfer, cells);
+    std::atomic<std::uint64_t> updates{0};
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, tasks.size(), 1),
+        [&](const auto& range) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            tasks[i].factor = factor;
+            updates += sweepLight(bricks, tasks[i]);
+          }
+        },
+        tbb::simple_partitioner());
+    stats_.updates += updates;
+    bricks.extinction = nullptr;
+  }
+
+  void readValues(SweptBricks& bricks, const TransferFunction& transfer, const std::vector<glm::ivec3>& cells) const {
     const std::size_t voxels = volume_.layout.voxels();
-    values_.resize(cells_.size() * voxels);
-    lit_.assign(cells_.size(), LitBlocks(volume_.layout.interior, volume_.layout.apron));
+    bricks.values.assign(bricks.origins.size() * voxels, 0.0f);
+    bricks.lit.assign(bricks.origins.size(), LitBlocks(bricks.layout, bricks.light));
     tbb::enumerable_thread_specific<std::vector<float>> scratches;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells_.size(), 1), [&](const auto& range) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bricks.origins.size(), 1), [&](const auto& range) {
       std::vector<float>& gradients = scratches.local();
       if (transfer.is2d()) gradients.resize(voxels);
-      for (std::size_t cell = range.begin(); cell != range.end(); ++cell) {
-        const std::span<float> values = std::span(values_).subspan(cell * voxels, voxels);
-        volume_.read(cells_[cell], values, gradients);
-        for (std::size_t i = 0; i < voxels; ++i)
-          values[i] = extinction.stepsOf(values[i], gradients.empty() ? 0.0f : gradients[i]);
-        findLit(values.data(), extinction, lit_[cell]);
+      for (std::size_t brick = range.begin(); brick != range.end(); ++brick) {
+        if (!std::ranges::binary_search(cells, bricks.origins[brick], comesBefore)) continue;
+        const std::span<float> values = std::span(bricks.values).subspan(brick * voxels, voxels);
+        volume_.read(bricks.origins[brick], values, gradients);
+        bricks.extinction->toSteps(values, gradients);
+        findLit(values.data(), *bricks.extinction, bricks.lit[brick]);
       }
     });
   }
 
   // Marks the blocks of a brick that have medium between any of their voxels.
   void findLit(const float* values, const ExtinctionTable& extinction, LitBlocks& lit) const {
+    const auto [least, most] = std::minmax_element(values, values + volume_.layout.voxels());
+    if (extinction.isOpaque(*least, *most)) return lit.markAll();
     const glm::ivec3 edge = volume_.layout.edge();
     const int apron = volume_.layout.apron;
     std::vector<float> low(static_cast<std::size_t>(edge.x)), high(low);
@@ -189,58 +281,10 @@ class LightVolume::Implementation {
       }
   }
 
-  void sweepAxis(int axis, const std::vector<std::vector<SweptDirection>>& sweeps,
-                 const std::vector<glm::dvec4>& planes, const ExtinctionTable& extinction) {
-    std::vector<const std::vector<SweptDirection>*> mine;
-    for (const auto& group : sweeps)
-      if (group.front().axis == axis) mine.push_back(&group);
-    if (mine.empty()) return;
-    const SweepAxes axes = kSweepAxes[axis];
-    const std::size_t held = volume_.layout.voxels();
-    SweptBricks bricks{.lattice = SweepLattice(axis, cells_, volume_.layout),
-                       .lit = &lit_,
-                       .values = values_.data(),
-                       .light = light_.data(),
-                       .channels = channels(),
-                       .extinction = &extinction,
-                       .planes = {},
-                       .busy = {}};
-    bricks.busy =
-        std::vector<std::mutex>(static_cast<std::size_t>(bricks.lattice.lastSlice() - bricks.lattice.firstSlice() + 1));
-    for (const glm::dvec4& plane : planes)
-      bricks.planes.emplace_back(plane[axes.u], plane[axes.v], plane[axes.n], plane.w);
-    // Along z voxels are in the order of the sweep as they are.
-    const bool asStored = axes.n == 2;
-    if (!asStored) {
-      sweptValues_.resize(values_.size());
-      sweptLight_.assign(light_.size(), 0);
-      bricks.values = sweptValues_.data();
-      bricks.light = sweptLight_.data();
-      tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t cell) {
-        permuteBlock(axes, volume_.layout.edge(), sweptValues_.data() + cell * held, values_.data() + cell * held,
-                     [](float& swept, float& plain) { swept = plain; });
-      });
-    }
-    std::atomic<std::uint64_t> updates{0};
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mine.size(), 1), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i) updates += sweepLight(bricks, *mine[i]);
-    });
-    stats_.updates += updates;
-    if (asStored) return;
-    tbb::parallel_for(std::size_t{0}, cells_.size() * static_cast<std::size_t>(channels()), [&](std::size_t block) {
-      permuteBlock(axes, volume_.layout.edge(), sweptLight_.data() + block * held, light_.data() + block * held,
-                   [](std::int32_t& swept, std::int32_t& plain) { plain += swept; });
-    });
-  }
-
   const Bricks& volume_;
   std::optional<LightMedium> medium_;
-  std::vector<glm::ivec3> cells_;
-  std::vector<LitBlocks> lit_;      // by cell
-  std::vector<float> values_;       // of each cell with its apron, x fastest, in steps of the table
-  std::vector<float> sweptValues_;  // the same in the order of a sweep
-  std::vector<std::int32_t> sweptLight_;
-  std::vector<std::int32_t> light_;  // of each cell with its apron, channel by channel
+  StoredLight stored_;
+  int edits_ = 0;  // since all was swept
   glm::dvec3 whole_{0};
   bool coloured_ = false;
   LightStats stats_;

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "umbrick/core/error.h"
-#include "umbrick/sweep/instructions.h"
+#include "umbrick/core/instructions.h"
 
 namespace umbrick {
 namespace {

@@ -207,6 +207,15 @@ const std::vector<SceneField>& table() {
        {Method::ordinates},
        ": a texel is as large as the larger of slab and voxel, in huge volumes 1/2048 of the diagonal"},
 
+      {"occlusion.lightSpacing",
+       "light-spacing",
+       "Light",
+       "of light-volume: voxels between places of light",
+       [](Scene& s) -> FieldPlace { return &s.occlusion.ordinates.lightSpacing; },
+       {.low = 0, .high = 2},
+       {Method::lightVolume},
+       ": 1, or 2 where there is no memory for light at every voxel"},
+
       {"bricks.bricked", "unbricked", "Bricks", "the whole volume as one texture",
        [](Scene& s) -> FieldPlace { return &s.bricks.bricked; }},
       {"bricks.interior",

@@ -16,7 +16,8 @@ void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sampl
       scene.transfer,
       sample.lights.empty() ? lightDirections(scene, scene.occlusion.ordinates.directions) : sample.lights,
       {},
-      {bricks.origins().begin(), bricks.origins().end()}};
+      {bricks.origins().begin(), bricks.origins().end()},
+      scene.occlusion.ordinates.lightSpacing};
   for (const glm::dvec4& plane : planes) {
     const glm::dvec4 inIndex = planeInIndex(plane, view);
     if (cutsMedium(inIndex, medium.cells, volume_.layout.interior)) medium.planes.push_back(inIndex);
@@ -30,6 +31,8 @@ void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sampl
 void ResidentLight::addTo(RenderStats& stats) const {
   stats.directions = light_.stats().directions;
   stats.windowUpdates = light_.stats().updates;
+  stats.lightSpacing = light_.stats().spacing;
+  stats.lightSpacingError = light_.stats().spacingError;
   stats.windowBytes = textures_.bytes();
   stats.textureBytes += textures_.bytes();
   stats.lightMs = ms_;

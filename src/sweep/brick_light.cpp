@@ -49,7 +49,7 @@ void spread(std::vector<float>& light, const glm::ivec3& edge) {
 void BrickLight::update(std::span<const Brick> visible, const BrickLayout& layout, const ResolvedScene& scene,
                         const std::vector<LightDirection>& directions, std::span<const glm::dvec4> planes) {
   const Stopwatch watch;
-  LightMedium medium{scene.transfer, directions, {}, {}};
+  LightMedium medium{scene.transfer, directions, {}, {}, scene.occlusion.ordinates.lightSpacing};
   for (const Brick& brick : visible) medium.cells.push_back(brick.origin);
   for (const glm::dvec4& plane : planes)
     if (cutsMedium(plane, medium.cells, layout.interior)) medium.planes.push_back(plane);

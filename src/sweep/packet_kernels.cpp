@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/packet_kernels.h"
 
-// See row_kernels.cpp.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sweep/packet_kernels.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "core/simd_targets.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace umbrick::HWY_NAMESPACE {

@@ -3,15 +3,9 @@
 
 #include <glm/gtc/packing.hpp>
 
-#include "umbrick/sweep/instructions.h"
-
-// Highway compiles what lies between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each set of instructions, by
-// including this file again and again. Sets that give little over the next lower one are left out.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sweep/row_kernels.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "core/simd_targets.h"
 
 #include "sweep/stretches-inl.h"
 
@@ -481,8 +475,6 @@ void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const 
   }
 }
 
-const char* instructions() { return hwy::TargetName(HWY_TARGET); }
-
 }  // namespace
 }  // namespace umbrick::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -492,7 +484,6 @@ namespace umbrick {
 HWY_EXPORT(blendRowsOf);
 HWY_EXPORT(sampleRowsOf);
 HWY_EXPORT(integrateRowsOf);
-HWY_EXPORT(instructions);
 
 void blendRows(VoxelCode code, const VoxelRows& rows, int count, float* out) {
   HWY_DYNAMIC_DISPATCH(blendRowsOf)(code, rows, count, out);
@@ -506,13 +497,6 @@ void sampleRows(const RowPlaces& places, int first, int count, int length, int f
 void integrateRows(const MediumTable& table, const RowSegment& segment, const RowRays& rays, int first, int count,
                    const float* const* front, const float* const* back) {
   HWY_DYNAMIC_DISPATCH(integrateRowsOf)(table, segment, rays, first, count, front, back);
-}
-
-std::string cpuInstructions() { return HWY_DYNAMIC_DISPATCH(instructions)(); }
-
-void useBaselineInstructions(bool baseline) {
-  hwy::SetSupportedTargetsForTest(baseline ? HWY_STATIC_TARGET : 0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 }  // namespace umbrick

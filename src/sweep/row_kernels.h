@@ -68,7 +68,4 @@ struct RowSegment {
 void integrateRows(const MediumTable& table, const RowSegment& segment, const RowRays& rays, int first, int count,
                    const float* const* front, const float* const* back);
 
-/// For tests: do not use instructions better than the baseline of the machine's kind, or all again.
-void useBaselineInstructions(bool baseline);
-
 }  // namespace umbrick

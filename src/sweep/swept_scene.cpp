@@ -106,6 +106,8 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
     stats.lightMs = light_.ms();
     stats.directions = light_.stats().directions;
     stats.windowUpdates = light_.stats().updates;
+    stats.lightSpacing = light_.stats().spacing;
+    stats.lightSpacingError = light_.stats().spacingError;
     lights_ = light_.channels();
     whole_ = glm::vec3(light_.whole());
   }

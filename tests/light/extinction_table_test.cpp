@@ -13,11 +13,13 @@ namespace {
 
 // Returns the optical depth of a path of length 1 over which the value runs from one number to another.
 double depthBetween(const ExtinctionTable& table, float from, float to) {
-  const std::vector<float> before(2, table.stepsOf(from, 0)), here(2, table.stepsOf(to, 0));
-  const PathMedium medium{table.integrals(), table.below(), table.above(), table.emptyBelow(), table.emptyAbove(), 1};
-  float depth = 0, through = 0;
-  carryRow({before.data(), before.data(), 0, 0}, {here.data(), here.data(), 0, 0}, medium, &depth, &through, 1);
-  return depth;
+  const std::vector<float> before(2 + kRowPadding, table.stepsOf(from, 0)), here(before.size(), table.stepsOf(to, 0));
+  const PathMedium medium{
+      table.integrals(), table.means(), table.below(), table.above(), table.emptyBelow(), table.emptyAbove(), 1};
+  std::vector<float> depth(1 + kRowPadding, 0.0f), through(depth);
+  carryRow({before.data(), before.data(), 0, 0}, {here.data(), here.data(), 0, 0}, medium, 1, depth.data(),
+           through.data(), 1);
+  return depth.front();
 }
 
 // Returns the mean of sigma_t by the rule of midpoints.
@@ -64,4 +66,17 @@ TEST_CASE("What the function does not show has no optical depth at all", "[light
     CHECK(table.isTransparent(table.stepsOf(from, 0), table.stepsOf(to, 0)) == transfer.isTransparent({from, to}));
   }
   CHECK_FALSE(table.isTransparent(table.stepsOf(9, 0), table.stepsOf(13, 0)));
+}
+
+TEST_CASE("Only values that the function shows all the way count as opaque", "[light]") {
+  const TransferFunction transfer = function({{10, 0}, {11, 4}, {12, 0}, {20, 0}, {21, 1}, {40, 2}});
+  const ExtinctionTable table(transfer);
+  const auto isOpaque = [&](float low, float high) {
+    return table.isOpaque(table.stepsOf(low, 0), table.stepsOf(high, 0));
+  };
+  CHECK(isOpaque(10.5f, 11.5f));
+  CHECK(isOpaque(21, 39));
+  CHECK_FALSE(isOpaque(11.5f, 20.5f));
+  CHECK_FALSE(isOpaque(9, 11));
+  CHECK_FALSE(isOpaque(30, 41));  // beyond its ends a table does not look
 }

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <numbers>
 
+#include "core/baseline_instructions.h"
 #include "support/random_transfer.h"
 #include "sweep/picture_of_grid.h"
-#include "sweep/row_kernels.h"
 #include "umbrick/core/error.h"
 
 using namespace umbrick;

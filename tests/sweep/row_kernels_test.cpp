@@ -6,9 +6,10 @@
 #include <cmath>
 #include <vector>
 
+#include "core/baseline_instructions.h"
 #include "support/test_grids.h"
 #include "sweep/packet_kernels.h"
-#include "umbrick/sweep/instructions.h"
+#include "umbrick/core/instructions.h"
 
 using namespace umbrick;
 

@@ -54,6 +54,8 @@ struct RenderStats {
   std::uint64_t windowBytes = 0;
   std::uint64_t windowUpdates = 0;  // ordinates, light-volume: texels that light was taken through slices in
   double lightMs = 0;               // light-volume: to compute light on the CPU; 0 where it was there already
+  int lightSpacing = 0;             // light-volume: voxels between places of light
+  double lightSpacingError = 0;     // light-volume: of light at every second voxel, root mean square, an estimate
   PassTimes passes;                 // only when asked for
   double formatError = 0;           // largest |voxel - texel|, grid units
   double geometryMs = 0;            // to cut slices into polygons

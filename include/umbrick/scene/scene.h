@@ -80,6 +80,9 @@ struct OrdinatesOptions {
   /// Of ordinates: window texels per voxel edge. 0 stands for texels as large as the larger of slab and voxel, or as
   /// 1/2048 of the volume's diagonal where that is larger.
   double scale = 0;
+  /// Of light-volume: voxels between places of light along each axis, 1 or 2. 0: 1, or 2 where there is no memory for
+  /// light at every voxel.
+  int lightSpacing = 0;
   bool operator==(const OrdinatesOptions&) const = default;
 };
 
@@ -225,7 +228,7 @@ struct Scene : SceneSettings {
 ///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"),
 ///              classification ("post", "pre"), segments, bits, saturation,
 ///              pixelSamples (tableSize, of scenes made by earlier versions, is read and means nothing)
-///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits, directions, scale
+///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits, directions, scale, lightSpacing
 ///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]
 ///   bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16", "half", "float32"), budgetMiB
 /// @param source  what messages call the text, usually its file name

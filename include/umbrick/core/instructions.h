@@ -1,4 +1,4 @@
-// The SIMD instructions that renderers on the CPU are run with.
+// The SIMD instructions that loops on the CPU are run with.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
