@@ -10,13 +10,13 @@ import {fieldControls} from "./field_controls.js";
 import {grouped} from "./fields.js";
 import {infoPanel} from "./info_panel.js";
 import {lightPanel} from "./light_panel.js";
-import {completed} from "./lights.js";
+import {completed, kNewLight} from "./lights.js";
 import {savePanel} from "./save_panel.js";
 import {transferPanel} from "./transfer_panel.js";
 
 // Edits of fields, with what the chosen model cannot be without.
 function completing(session) {
-  const axis = () => toWorld(session.view().axes, [0.4, 0.6, 0.7]);
+  const axis = () => toWorld(session.view().axes, kNewLight);
   return {
     get scene() { return session.scene; },
     edit: (patch) => session.edit(completed(patch, session.scene, axis())),
