@@ -146,6 +146,7 @@ class Page:
         for summary in self.driver.find_elements(By.CSS_SELECTOR, "#panel summary"):
             if summary.text == title and summary.find_element(By.XPATH, "..").get_attribute("open") is None:
                 summary.click()
+                time.sleep(0.3)  # what is in it is brought up to date when it has opened
 
     def press(self, text):
         for button in self.driver.find_elements(By.TAG_NAME, "button"):

@@ -64,5 +64,9 @@ export function buildPanels(panel, session, picture, notices) {
       2, 0, keep(clipPanel(session)), keep(backgroundPanel(session)), section("Error against time", true, chart.node));
   sections.push(keep(savePanel(session, note)), infoPanel(hello));
   panel.replaceChildren(...sections);
-  return { update: () => parts.forEach((part) => part.update()) };
+  parts.forEach((part) => part.update());
+  // A section that is folded is brought up to date when it is opened.
+  const updateOpen = () => parts.filter((part) => part.node.closest("details").open).forEach((part) => part.update());
+  for (const each of sections) each.addEventListener("toggle", updateOpen);
+  return { update: updateOpen };
 }
