@@ -62,7 +62,7 @@ export function buildPanels(panel, session, picture, notices) {
   if (light > 1) sections.splice(1, 0, ...sections.splice(light, 1));
   sections.splice(
       2, 0, keep(clipPanel(session)), keep(backgroundPanel(session)), section("Error against time", true, chart.node));
-  sections.push(keep(savePanel(session, note)), infoPanel(hello));
+  sections.push(keep(savePanel(session, note)), infoPanel(session));
   panel.replaceChildren(...sections);
   parts.forEach((part) => part.update());
   // A section that is folded is brought up to date when it is opened.

@@ -44,7 +44,7 @@ let greeting = "";
 session.on("hello", (hello) => {
   const { volume, version } = hello;
   // After a lost connection the same server greets in the same words. Another volume needs another page.
-  const words = JSON.stringify(hello);
+  const words = JSON.stringify({...hello, engine: "" });
   if (greeting && words !== greeting) location.reload();
   greeting = words;
   document.title = `${volume.file.split("/").at(-1)} - Umbrick`;
