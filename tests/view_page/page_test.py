@@ -2,8 +2,8 @@
 """Uses the page of `umbrick view` in headless Chromium as a person would: looks, drags, undoes, clips, saves.
 
 page_test.py ADDRESS [--folder FOLDER] [--screenshots FOLDER] [--patience SECONDS]
-ADDRESS is what `umbrick view` prints. FOLDER is where the server was started, where saved files are looked for. One line
-is printed for each step. Exit status 0: all steps passed, 1: one failed, 77: there is no Chromium or no selenium.
+ADDRESS is what `umbrick view` prints. FOLDER is where the server was started, where saved files are looked for. One
+line is printed for each step. Exit status 0: all steps passed, 1: one failed, 77: there is no Chromium or no selenium.
 """
 # SPDX-License-Identifier: Apache-2.0
 import argparse
@@ -14,8 +14,8 @@ import time
 
 SKIPPED = 77
 PATIENCE = 60  # seconds for a picture that is done, unless the caller says otherwise
-# Root mean square difference of 8-bit channels, over means of some hundred pixels. Two pictures of one scene with errors
-# of 0.01 differ by some tenths; a change that is seen anywhere in the picture makes one or more.
+# Root mean square difference of 8-bit channels, over means of some hundred pixels. Two pictures of one scene with
+# errors of 0.01 differ by some tenths; a change that is seen anywhere in the picture makes one or more.
 CHANGED = 1.0
 
 try:
