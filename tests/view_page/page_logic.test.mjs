@@ -158,3 +158,15 @@ test("The chart begins anew with each picture", () => {
   assert.deepEqual(words.withErrorPoint(history, at(90, 1, 0.3)).map((point) => point.samples), [1]);
   assert.deepEqual(words.withErrorPoint(history, at(500, 1, null, true)), []);
 });
+
+test("After a file was saved the next name is proposed", () => {
+  assert.equal(words.nextName("picture.png"), "picture-2.png");
+  assert.equal(words.nextName("picture-2.png"), "picture-3.png");
+  assert.equal(words.nextName("a-b.9.exr"), "a-b.9-2.exr");
+  assert.equal(words.nextName("bare"), "bare-2");
+});
+
+test("A slider of multiples gives multiples", () => {
+  const slider = fields.sliderOf({ low: 8, high: 256, kind: "integer", multipleOf: 8 });
+  for (const place of [0, 333, 777, 1000]) assert.equal(slider.toValue(place) % 8, 0);
+});

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Uses the page of `umbrick view` in headless Chromium as a person would: looks, drags, undoes, clips, saves.
 
-page_test.py ADDRESS [--folder FOLDER] [--screenshots FOLDER]
-ADDRESS is what `umbrick view` prints. FOLDER is where the server was started, where saved files are looked for. One line
-is printed for each step. Exit status 0: all steps passed, 1: one failed, 77: there is no Chromium or no selenium.
+page_test.py ADDRESS [--folder FOLDER] [--screenshots FOLDER] [--patience SECONDS]
+ADDRESS is what `umbrick view` prints. FOLDER is where the server was started, where saved files are looked for. One
+line is printed for each step. Exit status 0: all steps passed, 1: one failed, 77: there is no Chromium or no selenium.
 """
 # SPDX-License-Identifier: Apache-2.0
 import argparse
@@ -13,9 +13,9 @@ import sys
 import time
 
 SKIPPED = 77
-PATIENCE = 240  # seconds for a picture at rest, on a machine that does other things as well
-# Root mean square difference of 8-bit channels, over means of some hundred pixels. Two pictures of one scene with errors
-# of 0.01 differ by some tenths; a change that is seen anywhere in the picture makes one or more.
+PATIENCE = 60  # seconds for a picture that is done, unless the caller says otherwise
+# Root mean square difference of 8-bit channels, over means of some hundred pixels. Two pictures of one scene with
+# errors of 0.01 differ by some tenths; a change that is seen anywhere in the picture makes one or more.
 CHANGED = 1.0
 
 try:
@@ -63,8 +63,8 @@ def start_chromium(width, height):
 
 
 class Page:
-    def __init__(self, driver, address, screenshots):
-        self.driver, self.screenshots, self.shots = driver, screenshots, 0
+    def __init__(self, driver, address, screenshots, patience):
+        self.driver, self.screenshots, self.patience, self.shots = driver, screenshots, patience, 0
         driver.get(address)
 
     def find(self, selector):
@@ -75,8 +75,8 @@ class Page:
             self.shots += 1
             self.driver.save_screenshot(os.path.join(self.screenshots, f"{self.shots:02d}-{name}.png"))
 
-    def wait(self, what, condition, patience=PATIENCE):
-        until = time.monotonic() + patience
+    def wait(self, what, condition):
+        until = time.monotonic() + self.patience
         while time.monotonic() < until:
             try:
                 value = condition()
@@ -88,7 +88,7 @@ class Page:
         self.shot("failed")
         status = self.find("#status").text
         lines = [line.text for line in self.driver.find_elements(By.CSS_SELECTOR, ".notice")]
-        raise AssertionError(f"{what}: not within {patience} s; the status is '{status}', the notices {lines}")
+        raise AssertionError(f"{what}: not within {self.patience} s; the status is '{status}', the notices {lines}")
 
     def pixels(self):
         return self.driver.execute_script(PIXELS)
@@ -146,6 +146,7 @@ class Page:
         for summary in self.driver.find_elements(By.CSS_SELECTOR, "#panel summary"):
             if summary.text == title and summary.find_element(By.XPATH, "..").get_attribute("open") is None:
                 summary.click()
+                time.sleep(0.3)  # what is in it is brought up to date when it has opened
 
     def press(self, text):
         for button in self.driver.find_elements(By.TAG_NAME, "button"):
@@ -334,6 +335,7 @@ def main():
     parser.add_argument("address")
     parser.add_argument("--folder")
     parser.add_argument("--screenshots")
+    parser.add_argument("--patience", type=float, default=PATIENCE)
     arguments = parser.parse_args()
     try:
         driver = start_chromium(1280, 800)
@@ -344,7 +346,7 @@ def main():
              lambda page: save(page, arguments.folder), refuse, help_list, narrow, no_console_errors]
     try:
         try:
-            page = Page(driver, arguments.address, arguments.screenshots)
+            page = Page(driver, arguments.address, arguments.screenshots, arguments.patience)
         except WebDriverException as error:
             print(f"failed: {arguments.address} cannot be opened: {error.msg.splitlines()[0]}")
             return 1

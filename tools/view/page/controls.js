@@ -153,7 +153,7 @@ export function textRow({label, help = "", commit}) {
 
 /// A picker and three numbers of linear light. Radiance above 1 keeps its strength while the picker changes its colour.
 /// @param toPatch  of a linear colour
-export function colourInput({label, session, toPatch}) {
+function colourInput({ label, session, toPatch }) {
   let value = [0, 0, 0], current = null;
   const picker = element("input", { type: "color", "aria-label": `${label}, picker` });
   const picked = () => linearOfHex(picker.value).map((c) => Number((c * splitRadiance(value).strength).toPrecision(6)));

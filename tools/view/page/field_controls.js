@@ -1,6 +1,6 @@
 // Controls of scene fields as the server's table lists them, so that a new field appears without a change here.
 // SPDX-License-Identifier: Apache-2.0
-import {choiceRow, flagRow, numberRow, row, textRow, vectorInput} from "./controls.js";
+import {choiceRow, colourRow, flagRow, numberRow, row, textRow, vectorInput} from "./controls.js";
 import {element, newId} from "./dom.js";
 import {isShown, labelOf, sliderOf} from "./fields.js";
 import {patchOf, valueAt} from "./merge_patch.js";
@@ -37,6 +37,8 @@ function controlOf(field, session) {
         session,
         toPatch
       });
+    case "colour":
+      return colourRow({ label, help, session, toPatch });
     case "flag":
       return flagRow({ label, help, commit });
     case "vector":

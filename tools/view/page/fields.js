@@ -32,7 +32,8 @@ export function sliderOf(field) {
   const logarithmic = low > 0 && high / low > kSlowSlider;
   // The upper end of a range of real numbers is mostly excluded (an angle below 90), so that the slider ends before it.
   const end = whole ? high : high - (high - low) / 1000;
-  const rounded = (x) => (whole ? Math.round(x) : Number(x.toPrecision(4)));
+  const multiple = field.multipleOf ?? 1;
+  const rounded = (x) => (whole ? Math.round(x / multiple) * multiple : Number(x.toPrecision(4)));
   const toValue = (place) =>
       rounded(logarithmic ? low * (end / low) ** (place / 1000) : low + (end - low) * (place / 1000));
   const toPlace = (value) =>

@@ -5,7 +5,7 @@ import {colourRow, dragOf, flagRow, numberRow, row, vectorInput} from "./control
 import {button, element, newId} from "./dom.js";
 import {sliderOf} from "./fields.js";
 import {lightBall} from "./light_ball.js";
-import {addSource, changeSource, newSource, removeSource, sourcesOf} from "./lights.js";
+import {addSource, changeSource, kNewLight, newSource, removeSource, sourcesOf} from "./lights.js";
 
 const kAngle = sliderOf({ low: 0, high: 90, kind: "number" });
 
@@ -70,7 +70,7 @@ function describe(source) {
 /// Returns { node, update() }.
 export function lightPanel(session) {
   const list = element("div");
-  const add = () => session.edit(addSource(session.scene, newSource(toWorld(session.view().axes, [0.4, 0.6, 0.7]))));
+  const add = () => session.edit(addSource(session.scene, newSource(toWorld(session.view().axes, kNewLight))));
   const node = element(
       "div", {}, element("h3", { textContent: "Light sources" }), list,
       element("div", { className: "buttons" }, button("Add a light", add, "and the model lights, which looks at it")));

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import {normalize} from "./vector.js";
 
-/// A new source: a lamp of five degrees to the upper right of the viewer, in the world's frame.
+/// Where a new light is, in the view: to the upper right of the viewer.
+export const kNewLight = [0.4, 0.6, 0.7];
+
+/// A new source: a lamp of five degrees, in the world's frame.
 export function newSource(axis) {
   return { type: "cone", frame: "world", axis: axis.map((x) => Number(x.toFixed(4))), theta: 5, radiance: [1, 1, 1] };
 }

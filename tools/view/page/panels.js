@@ -10,13 +10,13 @@ import {fieldControls} from "./field_controls.js";
 import {grouped} from "./fields.js";
 import {infoPanel} from "./info_panel.js";
 import {lightPanel} from "./light_panel.js";
-import {completed} from "./lights.js";
+import {completed, kNewLight} from "./lights.js";
 import {savePanel} from "./save_panel.js";
 import {transferPanel} from "./transfer_panel.js";
 
 // Edits of fields, with what the chosen model cannot be without.
 function completing(session) {
-  const axis = () => toWorld(session.view().axes, [0.4, 0.6, 0.7]);
+  const axis = () => toWorld(session.view().axes, kNewLight);
   return {
     get scene() { return session.scene; },
     edit: (patch) => session.edit(completed(patch, session.scene, axis())),
@@ -62,7 +62,11 @@ export function buildPanels(panel, session, picture, notices) {
   if (light > 1) sections.splice(1, 0, ...sections.splice(light, 1));
   sections.splice(
       2, 0, keep(clipPanel(session)), keep(backgroundPanel(session)), section("Error against time", true, chart.node));
-  sections.push(keep(savePanel(session, note)), infoPanel(hello));
+  sections.push(keep(savePanel(session, note)), infoPanel(session));
   panel.replaceChildren(...sections);
-  return { update: () => parts.forEach((part) => part.update()) };
+  parts.forEach((part) => part.update());
+  // A section that is folded is brought up to date when it is opened.
+  const updateOpen = () => parts.filter((part) => part.node.closest("details").open).forEach((part) => part.update());
+  for (const each of sections) each.addEventListener("toggle", updateOpen);
+  return { update: updateOpen };
 }

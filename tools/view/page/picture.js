@@ -21,7 +21,9 @@ export class Picture {
     this.followsWindow = true;
     this.shownFrame_ = -1;
     new ResizeObserver(() => this.windowChanged_()).observe(stage);
-    session.on("change", () => this.fit_());
+    session.on("change", () => {
+      if (String(session.scene.camera.size) !== this.fitted_) this.fit_();
+    });
     session.on("edited", ({ patch, step }) => {
       if (patch.camera?.size && step !== "size") this.setFollowsWindow(false);
     });
@@ -58,7 +60,6 @@ export class Picture {
     context.drawImage(image, (width - drawnWidth) / 2, (height - drawnHeight) / 2, drawnWidth, drawnHeight);
     this.shownFrame_ = header.frame;
     Object.assign(canvas.dataset, { frame: header.frame, draft: header.draft, samples: header.samples });
-    this.fit_();
   }
 
   // Makes the picture as large as fits into its place, at the scene's proportions.
@@ -66,6 +67,7 @@ export class Picture {
     const size = this.session_.scene?.camera.size;
     const { clientWidth, clientHeight } = this.stage_;
     if (!size || clientWidth === 0) return;
+    this.fitted_ = String(size);
     const factor = Math.min(clientWidth / size[0], clientHeight / size[1]);
     this.canvas.style.width = `${size[0] * factor}px`;
     this.canvas.style.height = `${size[1] * factor}px`;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {numberInput, row, textRow, vectorInput} from "./controls.js";
 import {button, element, newId, section} from "./dom.js";
+import {nextName} from "./words.js";
 
 /// Copies a text; where the browser does not let pages do so, shows it ready to be copied by hand.
 async function copy(text, what, note) {
@@ -46,6 +47,11 @@ export function savePanel(session, note) {
   file.update(name);
   sceneFile.update(sceneName);
   samplesInput.update(samples);
+  session.on("saved", ({ path }) => {
+    const saved = path.split("/").at(-1);
+    if (saved === name) file.update((name = nextName(name)));
+    if (saved === sceneName) sceneFile.update((sceneName = nextName(sceneName)));
+  });
   return {
     node: section(
         "Save and share", false, file.node, row("size", "of the saved picture, pixels", sizeId, sizeInput.node),

@@ -22,7 +22,9 @@ export class TransferEditor {
     canvas.addEventListener("wheel", (event) => this.wheel_(event), { passive: false });
     canvas.addEventListener("keydown", (event) => this.key_(event));
     new ResizeObserver(() => this.draw()).observe(canvas);
-    session.on("change", () => this.changed_());
+    session.on("change", () => {
+      if (session.scene.transfer !== this.seen_) this.changed_();
+    });
   }
 
   /// The function's points in values of the grid, or null.
@@ -64,6 +66,7 @@ export class TransferEditor {
   range() { return this.range_ ?? this.drag_?.whole ?? this.whole_(); }
 
   changed_() {
+    this.seen_ = this.session_.scene.transfer;
     const count = this.points?.length ?? 0;
     if (this.chosen >= count) this.chosen = Math.max(0, count - 1);
     // While a point is dragged the axis stays, or the point would run away from the pointer.

@@ -24,7 +24,7 @@ new PictureInput(picture, session);
 
 const help = helpDialog();
 document.body.append(help);
-let paused = false, panels = null, sizeWasReset = false;
+let paused = false, panels = null, sizeWasReset = false, refreshDue = false;
 const actions = {
   undo: () => session.command({ type: "undo" }),
   redo: () => session.command({ type: "redo" }),
@@ -44,7 +44,7 @@ let greeting = "";
 session.on("hello", (hello) => {
   const { volume, version } = hello;
   // After a lost connection the same server greets in the same words. Another volume needs another page.
-  const words = JSON.stringify(hello);
+  const words = JSON.stringify({...hello, engine: "" });
   if (greeting && words !== greeting) location.reload();
   greeting = words;
   document.title = `${volume.file.split("/").at(-1)} - Umbrick`;
@@ -57,18 +57,23 @@ session.on("scene", ({ canUndo, canRedo }) => {
   if (sizeWasReset) picture.askForWindowSize();
   sizeWasReset = false;
 });
+const refresh = () => {
+  refreshDue = false;
+  panels.update();
+  const view = session.view();
+  drawTriad(at("axes"), view.axes);
+  drawScaleBar(at("scale"), view, at("picture").clientHeight);
+};
 session.on("change", () => {
   if (!session.hello) return;
   if (!panels) {
     panels = buildPanels(at("panel"), session, picture, notices);
     session.emit("change");
     picture.askForWindowSize();
-    return;
   }
-  panels.update();
-  const view = session.view();
-  drawTriad(at("axes"), view.axes);
-  drawScaleBar(at("scale"), view, at("picture").clientHeight);
+  // Several edits may come between two frames of the screen, and server and page may share a processor.
+  if (!refreshDue) requestAnimationFrame(refresh);
+  refreshDue = true;
 });
 session.on("status", (status) => {
   paused = status.paused;

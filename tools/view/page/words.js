@@ -37,3 +37,9 @@ export function withErrorPoint(history, {ms, error, samples, draft}) {
   if (kept.at(-1)?.samples === samples) return kept;
   return [...kept, { ms, error, samples }].slice(-2000);
 }
+
+/// Returns the name to propose after a file was saved, since the server replaces none: a.png, a-2.png, a-3.png.
+export function nextName(name) {
+  const [, stem, number, ending] = name.match(/^(.*?)(?:-(\d+))?(\.[^.]*)?$/);
+  return `${stem}-${number ? Number(number) + 1 : 2}${ending ?? ""}`;
+}
