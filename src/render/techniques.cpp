@@ -23,7 +23,9 @@ std::unique_ptr<Renderer> makeOnCpu(const Bricks& volume, const ResolvedScene& s
   return std::make_unique<Kind>(volume, scene, options);
 }
 
-bool slicesSupport(const SceneSettings& scene) { return supports(scene.method, scene.model); }
+bool slicesSupport(const SceneSettings& scene) {
+  return supportsMode(scene, Technique::slices) && supports(scene.method, scene.model);
+}
 
 // A new technique is a new row of this table.
 constexpr TechniqueTraits kTraits[]{

@@ -14,6 +14,7 @@
 #include "umbrick/draw/progressive.h"
 #include "umbrick/grid/value_survey.h"
 #include "umbrick/render/suggest_transfer.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/shade/prepare.h"
 
 namespace umbrick {
@@ -63,6 +64,12 @@ TransferFunction inUnit(const TransferFunction& transfer, std::string_view unit)
 ResolvedScene Volume::resolve(const Scene& scene) const {
   Scene complete = scene;
   complete.transfer = scene.transfer ? fitted(*scene.transfer, *this) : suggestTransfer(*this).transfer;
+  if (scene.mode == Mode::isosurface && scene.surfaces.empty()) {
+    if (!grid_.isLevelSet())
+      throw InvalidArgument(
+          "surfaces: is empty, must be one value or more for the mode isosurface of what is no level set");
+    complete.surfaces = {SceneSurface{}};
+  }
   if (scene.orbit) complete.orbit = settledOrbit(*scene.orbit, orientation_);
   const Box bounds = scene.orbit ? visibleBounds(*complete.transfer) : worldBounds_;
   ResolvedScene resolved = resolveScene(complete, bounds, indexToWorld_);
@@ -78,6 +85,8 @@ std::unique_ptr<Bricks> Volume::cutForCpu(const ResolvedScene& scene) const {
   BrickOptions options;
   if (scene.bricks.interior > 0) options.interior = scene.bricks.interior;
   options.gradients = scene.transfer.is2d();
+  // Central differences of a cell's corners look one voxel beyond them.
+  if (traitsOf(scene.mode).surfaces || isShaded(scene)) options.apron = 2;
   return cutGrid(grid_, options, scene.bricks.bricked);
 }
 

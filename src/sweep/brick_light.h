@@ -24,6 +24,9 @@ class BrickLight {
   void update(BrickVoxels& voxels, const ResolvedScene& scene, const std::vector<LightDirection>& directions,
               std::span<const glm::dvec4> planes);
 
+  /// Stores light again the next time: something else has taken its place beside the voxels.
+  void forget() { generation_ = kNoGeneration; }
+
   int channels() const { return light_.channels(); }
   glm::dvec3 whole() const { return light_.whole(); }
   float unit() const { return unit_; }  // share of whole() that a code of 1 stands for

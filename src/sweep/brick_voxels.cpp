@@ -38,12 +38,28 @@ void BrickVoxels::select(const MediumTable& table, bool culling, bool background
   };
   std::ranges::copy_if(volume_.bricks, std::back_inserter(wanted), isVisible);
   if (backgroundVisible) std::ranges::copy(backgroundBricks(volume_), std::back_inserter(wanted));
+  hold(std::move(wanted), table.is2d(), mostBytes, [&](VoxelBrick& brick) { activate(brick, table, culling); });
+}
+
+void BrickVoxels::select(const std::function<bool(const Range& value)>& isWanted, std::uint64_t mostBytes) {
+  std::vector<Brick> wanted;
+  std::ranges::copy_if(volume_.bricks, std::back_inserter(wanted), [&](const Brick& b) { return isWanted(b.value); });
+  hold(std::move(wanted), false, mostBytes, [&](VoxelBrick& brick) {
+    brick.active.assign(groupCount(), 1);
+    if (!brick.ranges) return;
+    for (std::size_t i = 0; i < brick.active.size(); ++i)
+      brick.active[i] = isWanted({brick.ranges[2 * i], brick.ranges[2 * i + 1]});
+  });
+}
+
+void BrickVoxels::hold(std::vector<Brick> wanted, bool gradients, std::uint64_t mostBytes,
+                       const std::function<void(VoxelBrick&)>& mark) {
   std::ranges::sort(wanted, {}, [](const Brick& brick) { return orderOf(brick.origin); });
   const std::uint64_t voxels = volume_.layout.voxels();
-  const std::uint64_t each = voxels * (bytesOf(code_) + (table.is2d() ? sizeof(float) : 0));
+  const std::uint64_t each = voxels * (bytesOf(code_) + (gradients ? sizeof(float) : 0));
   // Bricks of one value take none, but those of 2D functions are read for their gradients.
   const auto held = static_cast<std::uint64_t>(
-      std::ranges::count_if(wanted, [&](const Brick& brick) { return table.is2d() || !brick.uniform(); }));
+      std::ranges::count_if(wanted, [&](const Brick& brick) { return gradients || !brick.uniform(); }));
   if (held * each > mostBytes)
     throw InvalidArgument("bricks.budgetMiB: the voxels of " + std::to_string(held) + " visible bricks take " +
                           std::to_string((held * each >> 20) + 1) + " MiB, more than " +
@@ -53,7 +69,7 @@ void BrickVoxels::select(const MediumTable& table, bool culling, bool background
   std::map<std::tuple<int, int, int>, std::size_t> before;
   for (std::size_t i = 0; i < bricks_.size(); ++i)
     // Gradients are read with the voxels.
-    if (!table.is2d() || bricks_[i]->gradients) before[orderOf(bricks_[i]->origin)] = i;
+    if (!gradients || bricks_[i]->gradients) before[orderOf(bricks_[i]->origin)] = i;
   std::vector<std::unique_ptr<VoxelBrick>> next(wanted.size());
   std::vector<std::pair<std::size_t, std::size_t>> kept;  // places in `next` and in bricks_
   std::vector<VoxelBrick*> missing;
@@ -70,7 +86,6 @@ void BrickVoxels::select(const MediumTable& table, bool culling, bool background
     missing.push_back(next[i].get());
   }
   tbb::enumerable_thread_specific<std::vector<float>> scratches;
-  const bool gradients = table.is2d();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, missing.size(), 1), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       if (gradients) missing[i]->gradients = std::make_unique_for_overwrite<float[]>(voxels + kPadding);
@@ -83,7 +98,7 @@ void BrickVoxels::select(const MediumTable& table, bool culling, bool background
   ++generation_;
   loaded_ = missing.size();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bricks_.size(), 4), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) activate(*bricks_[i], table, culling);
+    for (std::size_t i = range.begin(); i != range.end(); ++i) mark(*bricks_[i]);
   });
 }
 

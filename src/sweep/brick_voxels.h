@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <span>
@@ -54,6 +55,10 @@ class BrickVoxels {
   /// @param culling  false: all bricks are held, and all groups are active
   void select(const MediumTable& table, bool culling, bool backgroundVisible, std::uint64_t mostBytes);
 
+  /// Does the same for pictures that do not look at a transfer function: holds the bricks and marks the groups whose
+  /// range of values is wanted.
+  void select(const std::function<bool(const Range& value)>& isWanted, std::uint64_t mostBytes);
+
   const Bricks& volume() const { return volume_; }
   VoxelCode code() const { return code_; }
   /// value = offset() + code
@@ -75,6 +80,8 @@ class BrickVoxels {
   }
 
  private:
+  void hold(std::vector<Brick> wanted, bool gradients, std::uint64_t mostBytes,
+            const std::function<void(VoxelBrick&)>& mark);
   std::size_t groupCount() const;
   void load(VoxelBrick& brick, std::vector<float>& values) const;
   template <class Code>

@@ -16,6 +16,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/memory.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
 namespace {
@@ -42,7 +43,9 @@ std::vector<double> slicesOf(const RayLattice& lattice, const BrickRows& rows, i
 
 }  // namespace
 
-bool shearWarpSupports(const SceneSettings& scene) { return sweptSupports(scene); }
+bool shearWarpSupports(const SceneSettings& scene) {
+  return supportsMode(scene, Technique::shearWarp) && sweptSupports(scene);
+}
 
 ShearWarpSampling shearWarpSampling(const ResolvedScene& scene, const Bricks& volume) {
   const double perVoxel = segmentsPerVoxel(scene, volume);
@@ -59,6 +62,7 @@ class ShearWarpRenderer::Implementation {
       : options_(options), sampling_(sampling), scene_(volume, "shear-warp") {}
 
   void update(const ResolvedScene& next, const ResolvedScene* before) {
+    requireMode(next, Technique::shearWarp);
     scene_.update(next, before);
     drawn_ = false;
   }

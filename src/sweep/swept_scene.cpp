@@ -29,6 +29,7 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
   if (!sweptSupports(next))
     throw InvalidArgument("method: " + methodName(next.method) + " is one of slices; " + technique_ +
                           " takes light from a light volume");
+  if (isShaded(next)) BrickShading::check(next, volume());
   if (next.transfer.is2d() && !volume().hasGradients)
     throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
   constexpr std::size_t kMostVoxels = std::size_t{1} << 29;  // of a brick, whose places are 32-bit numbers of bytes
@@ -69,7 +70,15 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
     stats.directions = light_.stats().directions;
     stats.windowUpdates = light_.stats().updates;
     lights_ = light_.channels();
+    lightUnit_ = light_.unit();
     whole_ = glm::vec3(light_.whole());
+  } else if (isShaded(scene)) {
+    const Stopwatch shading;
+    light_.forget();
+    shading_.update(voxels_, scene);
+    lights_ = shading_.channels();
+    lightUnit_ = shading_.unit();
+    stats.lightMs = shading.elapsedMs();
   }
   if (scene.camera.projection == Projection::orthographic) planes_.push_back(frontPlane(scene, volume()));
   stats.geometryMs = watch.elapsedMs() - stats.lightMs;
@@ -86,7 +95,7 @@ SweptFrame SweptScene::frame(const ResolvedScene& scene, bool aux) const {
   frame.midpoint = scene.sampling.quadrature == Quadrature::midpoint;
   frame.aux = aux;
   frame.lights = lights_;
-  frame.lightUnit = light_.unit();
+  frame.lightUnit = lightUnit_;
   const float sum = whole_.r + whole_.g + whole_.b;
   for (int c = 0; c < 3; ++c) frame.power[static_cast<std::size_t>(c)] = sum > 0 ? whole_[c] / sum : 0;
   return frame;
