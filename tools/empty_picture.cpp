@@ -6,6 +6,7 @@
 
 #include "umbrick/core/short_number.h"
 #include "umbrick/grid/value_survey.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick::tools {
 namespace {
@@ -63,6 +64,14 @@ std::string shownValues(const TransferFunction& transfer) {
 std::optional<std::string> describeEmptyPicture(const Image& colour, const ResolvedScene& scene, const Volume& volume) {
   const Emptiness found = findEmptiness(colour, scene);
   if (found == Emptiness::none) return std::nullopt;
+  // What other modes show may well fill the picture, and does not depend on what the transfer function shows.
+  if (scene.mode != Mode::integrate && scene.mode != Mode::xray) {
+    if (found == Emptiness::everything) return std::nullopt;
+    const std::string what = traitsOf(scene.mode).surfaces ? "a surface" : "anything but the background";
+    const bool clips = !scene.clipPlanes.empty() || scene.clipBox.has_value();
+    return "nothing is drawn: no ray meets " + what + "; try " + (clips ? "no clipping, or " : "") +
+           "a camera around the volume (no --eye)";
+  }
   const ValueSurvey values = surveyValues(volume.grid());
   std::string text = found == Emptiness::nothing ? "nothing is drawn" : "every pixel is opaque";
   if (values.voxels == 0) return text + ": the volume has no finite value";

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.h"
+#include "mode_options.h"
 #include "option_words.h"
 #include "umbrick/core/names.h"
 #include "umbrick/core/printable.h"
@@ -110,6 +111,7 @@ OpenedScene openScene(const SceneOptions& options, Scene scene, const std::funct
     choices.add("grid", "'" + opened.volume->source().grid + "'");
   opened.scene.volume = opened.volume->source();
   chooseTransfer(options, opened, choices);
+  if (const std::string iso = chooseSurfaces(opened.scene, *opened.volume); !iso.empty()) choices.add("iso", iso);
   if (!fromScene && !options.has("model") && traitsOf(opened.scene.model).directions) {
     choices.add("model", modelName(opened.scene.model));
     if (!options.quality && traitsOf(opened.scene.method).directions) choices.add("quality", "normal");

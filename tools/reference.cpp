@@ -11,6 +11,7 @@
 
 #include "command.h"
 #include "empty_picture.h"
+#include "mode_options.h"
 #include "opened_scene.h"
 #include "picture_output.h"
 #include "progress.h"
@@ -18,6 +19,7 @@
 #include "umbrick/core/pending_file.h"
 #include "umbrick/core/pixel_points.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/scene/capabilities.h"
 #include "validators.h"
 
 namespace umbrick::tools {
@@ -98,15 +100,18 @@ int runReference(ReferenceCommand& command) {
     bar.show(share);
     return !stop.requested();
   };
+  tellUnusedByMode(*command.scene, resolved, output.layers);
   const ReferencePicture picture = renderReference(volume.grid(), resolved, options);
   bar.clear();
   warnOfNonFinite(scene, picture.stats.nonFiniteVoxels);
   std::vector<ImageLayer> layers{{"", picture.colour}};
   if (options.integrator == Integrator::monteCarlo) layers.push_back({"standardError", picture.standardError});
-  if (output.layers) {
+  if (output.layers && !traitsOf(resolved.mode).projection) {
     layers.push_back({"V", picture.visibility});
     layers.push_back({"Z", picture.depth});
   }
+  if (output.layers || traitsOf(resolved.mode).projection)
+    layers.insert(layers.end(), picture.layers.begin(), picture.layers.end());
   writeOutputs(output, layers,
                {{"umbrick.scene", printScene(resolved)},
                 {"umbrick.renderer", "reference"},

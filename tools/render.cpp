@@ -15,6 +15,7 @@
 
 #include "command.h"
 #include "empty_picture.h"
+#include "mode_options.h"
 #include "opened_scene.h"
 #include "picture_output.h"
 #include "progress.h"
@@ -87,6 +88,7 @@ nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& pict
   nlohmann::ordered_json json;
   json["renderer"] = engine;
   json["technique"] = techniqueName(loaded.scene.technique);
+  json["mode"] = modeName(loaded.scene.mode);
   json["size"] = {loaded.scene.camera.width, loaded.scene.camera.height};
   json["time_ms"] = {{"load", loaded.loadMs},    {"brick", loaded.brickMs}, {"geometry", stats.geometryMs},
                      {"upload", stats.uploadMs}, {"sweep", stats.sweepMs},  {"read", stats.readMs},
@@ -139,10 +141,11 @@ void writePicture(const PictureOutput& output, const Picture& picture, const Res
                   const std::string& engine, const std::string& progressive = {},
                   PictureState state = PictureState::done) {
   std::vector<ImageLayer> layers{{"", picture.colour}};
-  if (output.layers) {
+  if (output.layers && !picture.depth.pixels.empty()) {
     layers.push_back({"V", picture.visibility});
     layers.push_back({"Z", picture.depth});
   }
+  layers.insert(layers.end(), picture.layers.begin(), picture.layers.end());
   std::map<std::string, std::string> metadata{{"umbrick.scene", printScene(scene)},
                                               {"umbrick.renderer", engine},
                                               {"umbrick.filter", pixelFilter(scene.sampling.pixelSamples)},
@@ -284,6 +287,7 @@ int render(const RenderCommand& command) {
   Engine engine = chooseEngine(opened.scene, parseName(kEngineKinds, command.backend, "--backend"));
   const std::unique_ptr<GlContext, ContextCloser> context(engine.context.release());  // null: on the CPU
   tellUnused(command, engine.technique, !context);
+  tellUnusedByMode(*command.scene, opened.scene, output.layers);
   LoadedScene loaded = loadScene(opened, engine.technique, !context, progressive);
   prepareLook(*command.output, command.scene->backdrop, loaded.scene, loaded.units);
   std::unique_ptr<ResidentVolume> volume;
@@ -359,7 +363,9 @@ Command addRender(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("render", "Make a picture of a volume.");
   command->scene = addSceneOptions(*sub);
   command->output =
-      addPictureOutput(*sub, "half", "V (visibility weighted by opacity) and Z (mean depth, world units)");
+      addPictureOutput(*sub, "half",
+                       "V (visibility weighted by opacity) and Z (mean depth, world units); of isosurfaces also value, "
+                       "position and normal of the nearest one");
   addEngineOption(*sub, command->backend);
   sub->add_option("--frames", command->frames, "render so many times and time each; the last is written")
       ->check(CLI::Range(1, 1000000))

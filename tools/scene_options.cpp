@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "command.h"
+#include "mode_options.h"
 #include "stop_request.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/printable.h"
@@ -360,6 +361,9 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNam
           "programs wrote mostly y); beside --eye also three numbers [auto; with --eye 0 0 1]")
       ->group("Camera");
 
+  addFieldOptions(command, o, "Mode");
+  addSurfaceOptions(command, o);
+
   addFieldOptions(command, o, "Light");
   command
       .add_option("--quality", o.quality,
@@ -434,6 +438,10 @@ Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults) {
     scene.volume.file = options.input;
     scene.model = defaults.model;
   }
+  // Other modes, and light that is reflected, go with no light in the medium.
+  for (const char* option : {"mode", "shading"})
+    if (options.has(option)) options.fields.find(option)->second(scene);
+  if (!fromScene && (scene.mode != Mode::integrate || isShaded(scene))) scene.model = Model::emission;
   applyVolumeOptions(options.volume, scene.volume);
   applyTransfer(options, scene);
   placeCamera(options, fromScene, scene);
@@ -443,6 +451,7 @@ Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults) {
   if (options.tableSize)
     std::cerr << "--table-size has no effect any more: transfer functions are integrated exactly, without a table\n";
   applyClipping(options, scene);
+  applySurfaces(options, scene);
   validate(options, scene);
   return scene;
 }

@@ -30,6 +30,8 @@ struct SceneOptions {
   std::optional<std::vector<double>> window, clipBox;
   std::vector<std::vector<double>> clipPlanes;
   std::optional<double> sigmaScale;
+  std::vector<double> isoValues, isoOpacities;  // of isosurfaces, one after another
+  std::vector<std::vector<double>> isoColours;
   std::optional<int> tableSize;
   bool orthographic = false;
   Backdrop backdrop = Backdrop::none;  // --background gradient, which a PNG has in place of the scene's background

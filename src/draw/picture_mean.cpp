@@ -12,6 +12,9 @@ void PictureMean::add(const Picture& picture) {
     visibility_.assign(picture.visibility.pixels.size(), 0);
     opacity_.assign(picture.opacity.pixels.size(), 0);
     depth_.assign(picture.depth.pixels.size(), 0);
+    layers_.clear();
+    for (const ImageLayer& layer : picture.layers)
+      layers_.push_back({std::vector<double>(layer.image.pixels.size()), std::vector<int>(layer.image.pixels.size())});
   }
   for (std::size_t i = 0; i < colour_.size(); ++i) colour_[i] += picture.colour.pixels[i];
   for (std::size_t i = 0; i < visibility_.size(); ++i) visibility_[i] += picture.visibility.pixels[i];
@@ -19,6 +22,14 @@ void PictureMean::add(const Picture& picture) {
   for (std::size_t i = 0; i < depth_.size(); ++i) {
     const float depth = picture.depth.pixels[i];
     if (std::isfinite(depth)) depth_[i] += static_cast<double>(picture.opacity.pixels[i]) * depth;
+  }
+  for (std::size_t k = 0; k < layers_.size(); ++k) {
+    const std::vector<float>& numbers = picture.layers[k].image.pixels;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (!std::isfinite(numbers[i])) continue;
+      layers_[k].sum[i] += numbers[i];
+      ++layers_[k].count[i];
+    }
   }
   ++count_;
 }
@@ -32,6 +43,10 @@ void PictureMean::store(Picture& picture) const {
   for (std::size_t i = 0; i < depth_.size(); ++i)
     picture.depth.pixels[i] =
         opacity_[i] > 0 ? static_cast<float>(depth_[i] / opacity_[i]) : std::numeric_limits<float>::infinity();
+  for (std::size_t k = 0; k < layers_.size(); ++k)
+    for (std::size_t i = 0; i < layers_[k].sum.size(); ++i)
+      if (layers_[k].count[i] > 0)
+        picture.layers[k].image.pixels[i] = static_cast<float>(layers_[k].sum[i] / layers_[k].count[i]);
 }
 
 }  // namespace umbrick

@@ -196,7 +196,7 @@ void writeExr(const std::filesystem::path& path, const std::vector<ImageLayer>& 
   for (const ImageLayer& layer : layers)
     for (int c = 0; c < layer.image.channels; ++c) {
       ChannelRows plane{channelName(layer, c), Imf::FLOAT, {}};
-      if (options.pixel == ExrPixel::half && plane.name != kDepth) {
+      if (options.pixel == ExrPixel::half && plane.name != kDepth && !layer.exact) {
         plane.type = Imf::HALF;
         plane.bytes = planeOf<half>(layer.image, c, toHalf);
       } else {

@@ -10,7 +10,7 @@
 namespace umbrick {
 
 ConvexRegion::ConvexRegion(const ResolvedScene& scene, const IndexBox& box, const glm::dmat4& indexToWorld,
-                           bool behindEye) {
+                           bool behindEye, double margin) {
   std::vector<glm::dvec4> world = scene.clipPlanes;
   for (int axis = 0; axis < 3; ++axis) {
     glm::dvec4 low(0), high(0);
@@ -22,8 +22,8 @@ ConvexRegion::ConvexRegion(const ResolvedScene& scene, const IndexBox& box, cons
       world.push_back(low);
       world.push_back(high);
     }
-    low.w = -static_cast<double>(box.min[axis]);
-    high.w = static_cast<double>(box.max[axis]);
+    low.w = margin - box.min[axis];
+    high.w = margin + box.max[axis];
     planes_.push_back(low);
     planes_.push_back(high);
   }

@@ -16,7 +16,9 @@ class ConvexRegion {
  public:
   /// The box, the clip planes and the clip box of the scene and what of space the camera sees.
   /// @param behindEye  also what lies behind the plane of the eye
-  ConvexRegion(const ResolvedScene& scene, const IndexBox& box, const glm::dmat4& indexToWorld, bool behindEye);
+  /// @param margin     by which the box is larger, voxels
+  ConvexRegion(const ResolvedScene& scene, const IndexBox& box, const glm::dmat4& indexToWorld, bool behindEye,
+               double margin = 0);
 
   /// Returns the part of the ray with t >= begin that lies inside.
   Interval clip(const IndexRay& ray, double begin) const;

@@ -66,6 +66,10 @@ QuadraturePixel::QuadraturePixel(const ReferenceSpace& space, const ReferenceOpt
   // albedo varies, and three Gauss nodes integrate exp(-x) over 0.5 to 1e-8.
   eyeOptions_.largestTau =
       !traitsOf(space.scene.model).occlusion ? 0.5 : std::clamp(2 * std::sqrt(options.tolerance), 1e-3, 0.1);
+  if (isShaded(space.scene)) {
+    shading_.emplace(space.grid, space.scene);
+    eyeOptions_.largestTau = 0.02;  // what is reflected is that of a part's centre
+  }
   eyeOptions_.darkest = std::min(1e-6, 0.01 * options.tolerance);
   aim(space.directions);
 }
@@ -103,7 +107,7 @@ std::optional<PixelResult> QuadraturePixel::integrate(const EyeRays::Ray& ray) {
   if (parts_.empty()) return result;
   if (!traitsOf(space_.scene.model).occlusion) {
     for (const Scatterer& p : parts_) {
-      result.light += p.light;
+      result.light += shading_ ? p.light * (*shading_)(ray.index.at(p.t)) : p.light;
       result.visibility += p.alpha;
       result.depth += p.alpha * p.t;
     }

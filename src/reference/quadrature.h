@@ -7,6 +7,7 @@
 #include "reference/convex_region.h"
 #include "reference/eye_ray.h"
 #include "reference/pixel.h"
+#include "reference/shaded_voxels.h"
 #include "umbrick/optics/directions.h"
 #include "umbrick/reference/reference.h"
 #include "umbrick/scene/light_set.h"
@@ -23,6 +24,7 @@ struct ReferenceSpace {
   const LightSet* lights;                         // of cone and lights
   const std::vector<LightDirection>& directions;  // of all models but emission and coneRay
   const std::vector<glm::dvec2>& places;          // in each pixel, through which rays go; at least one
+  const ScalarGrid& grid;
 };
 
 /// Returns light that is the same from all of the solid angle for which the directions stand.
@@ -81,7 +83,8 @@ class QuadraturePixel {
   EyeRayOptions eyeOptions_;
   Field::Accessor accessor_;
   std::vector<AimedLight> lights_;
-  double brightest_ = 1;  // largest component of the sum of their radiances
+  std::optional<ShadedVoxels> shading_;  // of a medium that reflects light
+  double brightest_ = 1;                 // largest component of the sum of their radiances
   std::vector<Scatterer> parts_;
   std::vector<Scatterer> before_;  // sums over all parts before each one; t is weighted by alpha
   RayCounts counts_;

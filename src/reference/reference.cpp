@@ -18,10 +18,12 @@
 
 #include "reference/monte_carlo.h"
 #include "reference/quadrature.h"
+#include "reference/value_pixel.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/memory.h"
 #include "umbrick/core/pixel_points.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/optics/projection_colour.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/resolve.h"
 
@@ -139,9 +141,9 @@ class Progress {
 };
 
 // Integrates all pixels, each tile in one thread. The result of a pixel does not depend on the thread that takes it.
-template <class MakeIntegrator>
+template <class MakeIntegrator, class Store>
 RayCounts integrateAll(const ResolvedScene& scene, const ReferenceOptions& options,
-                       const MakeIntegrator& makeIntegrator, ReferencePicture& picture) {
+                       const MakeIntegrator& makeIntegrator, const Store& storePixel, ReferencePicture& picture) {
   const int width = scene.camera.width, height = scene.camera.height;
   const int columns = (width + kTile - 1) / kTile, rows = (height + kTile - 1) / kTile;
   const std::size_t tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
@@ -164,10 +166,9 @@ RayCounts integrateAll(const ResolvedScene& scene, const ReferenceOptions& optio
         const int bottom = static_cast<int>(tile / static_cast<std::size_t>(columns)) * kTile;
         for (int y = bottom; y < std::min(bottom + kTile, height); ++y)
           for (int x = left; x < std::min(left + kTile, width) && !progress.stopped(); ++x) {
-            const std::optional<PixelResult> pixel = integrator.integrate(x, y);
+            const auto pixel = integrator.integrate(x, y);
             if (!pixel) continue;
-            store(*pixel, scene, x, y, picture);
-            if (!pixel->converged) ++unconverged;
+            if (!storePixel(*pixel, x, y)) ++unconverged;
             progress.add();
           }
       }
@@ -181,11 +182,93 @@ RayCounts integrateAll(const ResolvedScene& scene, const ReferenceOptions& optio
   return counts;
 }
 
+void countWork(const RayCounts& counts, ReferenceStats& stats) {
+  stats.eyeRays = counts.eyeRays;
+  stats.lightRays = counts.lightRays;
+  stats.cells = counts.cells;
+  stats.samples = counts.samples;
+}
+
+// Composites a premultiplied colour over the scene's background.
+void storeColour(const glm::dvec4& colour, const ResolvedScene& scene, float* out) {
+  const glm::dvec3 behind = scene.background.value_or(glm::dvec3(0));
+  for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(colour[c] + (1 - colour.w) * behind[c]);
+  out[3] = scene.background ? 1.0f : static_cast<float>(colour.w);
+}
+
+// Renders projections of values and isosurfaces.
+ReferencePicture renderValues(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOptions& options) {
+  ReferencePicture picture = blankPicture(scene.camera);
+  const Stopwatch prepare;
+  const ValueSpace space(grid, scene, options.skipEmpty);
+  picture.stats.fieldMs = prepare.elapsedMs();
+  picture.stats.nonFiniteVoxels = space.field().nonFiniteVoxels();
+  picture.stats.blocks = space.field().blocks();
+  const std::vector<glm::dvec2> places = pixelPoints(scene.sampling.pixelSamples);
+  const bool surfaces = traitsOf(scene.mode).surfaces;
+  Image value(scene.camera.width, scene.camera.height, 1);
+  Image position(surfaces ? scene.camera.width : 0, scene.camera.height, 3), normal = position;
+  const Stopwatch integrate;
+  const RayCounts counts = integrateAll(
+      scene, options, [&](const GoOn&) { return ValuePixel(space, places); },
+      [&](const ValueResult& pixel, int x, int y) {
+        storeColour(pixel.colour, scene, picture.colour.at(x, y));
+        *value.at(x, y) = static_cast<float>(pixel.value);
+        const auto opacity = static_cast<float>(pixel.colour.w);
+        *picture.visibility.at(x, y) = opacity;
+        *picture.depth.at(x, y) =
+            opacity > 0 ? static_cast<float>(pixel.depth / pixel.colour.w) : std::numeric_limits<float>::infinity();
+        for (int c = 0; surfaces && c < 3; ++c) {
+          position.at(x, y)[c] = static_cast<float>(pixel.position[c]);
+          normal.at(x, y)[c] = static_cast<float>(pixel.normal[c]);
+        }
+        return true;
+      },
+      picture);
+  picture.stats.integrateMs = integrate.elapsedMs();
+  countWork(counts, picture.stats);
+  picture.layers.push_back({"value", std::move(value), true});
+  if (surfaces) {
+    picture.layers.push_back({"position", std::move(position), true});
+    picture.layers.push_back({"normal", std::move(normal), true});
+  }
+  return picture;
+}
+
+// Turns opacities into what gets through.
+void showThrough(const ResolvedScene& scene, ReferencePicture& picture) {
+  Image through(scene.camera.width, scene.camera.height, 1);
+  for (std::size_t i = 0; i < through.pixels.size(); ++i) {
+    float* const pixel = &picture.colour.pixels[4 * i];
+    through.pixels[i] = 1 - pixel[3];
+    storeColour(pixel[3] > 0 ? xrayColour(through.pixels[i]) : glm::dvec4(0), scene, pixel);
+  }
+  picture.layers.push_back({"value", std::move(through), true});
+}
+
 }  // namespace
 
 ReferencePicture renderReference(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOptions& options) {
   check(grid, scene, options);
   validateScene(scene);
+  requireMode(scene, Technique::rays);
+  if (isShaded(scene) && scene.mode == Mode::integrate) {
+    if (traitsOf(scene.model).occlusion)
+      throw InvalidArgument("shading.kind: phong in a medium goes with the model emission, found " +
+                            modelName(scene.model));
+    if (options.integrator == Integrator::monteCarlo)
+      throw InvalidArgument("shading.kind: phong in a medium is integrated by quadrature, not by Monte Carlo");
+  }
+  if (traitsOf(scene.mode).ofValues || traitsOf(scene.mode).surfaces) return renderValues(grid, scene, options);
+  if (scene.mode == Mode::xray) {
+    ResolvedScene medium = scene;
+    medium.mode = Mode::integrate;
+    medium.model = Model::emission;
+    medium.background.reset();
+    ReferencePicture picture = renderReference(grid, medium, options);
+    showThrough(scene, picture);
+    return picture;
+  }
   const std::optional<LightSet> lights = lightsOf(scene, options);
   ReferencePicture picture = blankPicture(scene.camera);
   const glm::dmat4 indexToWorld = grid.indexToWorld();
@@ -201,23 +284,25 @@ ReferencePicture renderReference(const ScalarGrid& grid, const ResolvedScene& sc
   const LightSet* const given = lights ? &*lights : nullptr;
   const std::vector<LightDirection> directions = directionsOf(scene, options, given);
   const std::vector<glm::dvec2> places = pixelPoints(scene.sampling.pixelSamples);
-  const ReferenceSpace space{field, classifier, rays, region, scene, given, directions, places};
+  const ReferenceSpace space{field, classifier, rays, region, scene, given, directions, places, grid};
   const Stopwatch integrate;
   RayCounts counts;
   const double edge = shortestVoxelEdge(indexToWorld);
+  const auto keep = [&](const PixelResult& pixel, int x, int y) {
+    store(pixel, scene, x, y, picture);
+    return pixel.converged;
+  };
   if (options.integrator == Integrator::monteCarlo) {
     counts = integrateAll(
-        scene, options, [&](const GoOn& goOn) { return MonteCarloPixel(space, options, edge, goOn); }, picture);
+        scene, options, [&](const GoOn& goOn) { return MonteCarloPixel(space, options, edge, goOn); }, keep, picture);
   } else {
     counts = integrateAll(
         scene, options,
-        [&](const GoOn& goOn) { return QuadraturePixel(space, options, options.step * edge, edge, goOn); }, picture);
+        [&](const GoOn& goOn) { return QuadraturePixel(space, options, options.step * edge, edge, goOn); }, keep,
+        picture);
   }
   picture.stats.integrateMs = integrate.elapsedMs();
-  picture.stats.eyeRays = counts.eyeRays;
-  picture.stats.lightRays = counts.lightRays;
-  picture.stats.cells = counts.cells;
-  picture.stats.samples = counts.samples;
+  countWork(counts, picture.stats);
   return picture;
 }
 

@@ -7,6 +7,7 @@
 
 #include "umbrick/core/error.h"
 #include "umbrick/core/instructions.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
 namespace {
@@ -39,6 +40,7 @@ Engine onGl(Technique technique, Backend backend) {
 Engine chooseEngine(const SceneSettings& scene, EngineKind kind) {
   const bool named = scene.technique != Technique::automatic;
   const TechniqueTraits* const onProcessor = cpuTechnique(scene);
+  if (named) requireMode(scene, scene.technique);
   if (kind == EngineKind::cpu) {
     if (onProcessor) return onCpu(onProcessor->technique);
     if (named)
@@ -46,7 +48,7 @@ Engine chooseEngine(const SceneSettings& scene, EngineKind kind) {
     return onCpu(Technique::rays);  // which says in its own words what it cannot do
   }
   const Technique onGraphics = named ? scene.technique : Technique::slices;
-  const bool forGl = !named || traitsOf(scene.technique).makeOnGl != nullptr;
+  const bool forGl = named ? traitsOf(scene.technique).makeOnGl != nullptr : supportsMode(scene, onGraphics);
   if (kind == EngineKind::automatic) {
     if (forGl && traitsOf(onGraphics).supports(scene) && hasGpu()) {
       try {
@@ -56,6 +58,7 @@ Engine chooseEngine(const SceneSettings& scene, EngineKind kind) {
     }
     return onProcessor ? onCpu(onProcessor->technique) : onGl(onGraphics, Backend::automatic);
   }
+  if (!named) requireMode(scene, onGraphics);
   if (!forGl)
     throw InvalidArgument("technique: " + techniqueName(scene.technique) + " does not run on OpenGL but on the CPU");
   return onGl(onGraphics, kind == EngineKind::egl ? Backend::egl : Backend::osmesa);

@@ -25,7 +25,8 @@ std::unique_ptr<Renderer> makeOnCpu(const Bricks& volume, const ResolvedScene& s
 }
 
 bool slicesSupport(const SceneSettings& scene) {
-  return supports(scene.method, scene.model) && scene.sampling.classification == Classification::post;
+  return supportsMode(scene, Technique::slices) && supports(scene.method, scene.model) &&
+         scene.sampling.classification == Classification::post;
 }
 
 // A new technique is a new row of this table.

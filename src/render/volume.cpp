@@ -14,6 +14,7 @@
 #include "umbrick/draw/progressive.h"
 #include "umbrick/grid/value_survey.h"
 #include "umbrick/render/suggest_transfer.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/shade/prepare.h"
 #include "umbrick/sweep/swept_bricks.h"
 
@@ -70,6 +71,12 @@ ResolvedScene Volume::resolve(const Scene& scene) const {
 ResolvedScene Volume::resolve(const Scene& scene, const Box& seen) const {
   Scene complete = scene;
   if (!scene.transfer) complete.transfer = suggestTransfer(*this).transfer;
+  if (scene.mode == Mode::isosurface && scene.surfaces.empty()) {
+    if (!grid_.isLevelSet())
+      throw InvalidArgument(
+          "surfaces: is empty, must be one value or more for the mode isosurface of what is no level set");
+    complete.surfaces = {SceneSurface{}};
+  }
   if (scene.orbit) complete.orbit = settledOrbit(*scene.orbit, orientation_);
   ResolvedScene resolved = resolveScene(complete, seen, indexToWorld_);
   resolved.bricks.interior = brickInterior(resolved, indexToWorld_, worldBounds_);

@@ -43,6 +43,15 @@ constexpr MethodTraits kMethodTraits[]{
      .allAround = true},
 };
 
+constexpr ModeTraits kModeTraits[]{
+    {.mode = Mode::integrate, .meaning = "a medium that scatters and absorbs"},
+    {.mode = Mode::mip, .meaning = "the largest value along each ray", .projection = true, .ofValues = true},
+    {.mode = Mode::minip, .meaning = "the smallest one", .projection = true, .ofValues = true},
+    {.mode = Mode::average, .meaning = "the mean", .projection = true, .ofValues = true},
+    {.mode = Mode::xray, .meaning = "the share of light that gets through", .projection = true},
+    {.mode = Mode::isosurface, .meaning = "surfaces of single values", .surfaces = true},
+};
+
 }  // namespace
 
 std::span<const ModelTraits> modelTraits() { return kModelTraits; }
@@ -72,6 +81,38 @@ bool supports(Method method, Model model) {
   const ModelTraits& light = traitsOf(model);
   const MethodTraits& way = traitsOf(method);
   return !light.occlusion || (light.directions && (!light.sources || way.sources) && (!light.sphere || way.allAround));
+}
+
+std::span<const ModeTraits> modeTraits() { return kModeTraits; }
+
+const ModeTraits& traitsOf(Mode mode) {
+  return *std::find_if(std::begin(kModeTraits), std::end(kModeTraits),
+                       [&](const ModeTraits& traits) { return traits.mode == mode; });
+}
+
+bool supports(Technique technique, Mode mode) { return mode == Mode::integrate || technique == Technique::rays; }
+
+bool supportsMode(const SceneSettings& scene, Technique technique) {
+  return supports(technique, scene.mode) &&
+         (!isShaded(scene) || scene.mode != Mode::integrate || technique != Technique::slices);
+}
+
+void requireMode(const SceneSettings& scene, Technique technique) {
+  if (isShaded(scene) && traitsOf(scene.mode).projection)
+    throw InvalidArgument("shading.kind: phong is for surfaces and media; the mode " + modeName(scene.mode) +
+                          " reflects no light");
+  if (supportsMode(scene, technique)) return;
+  std::string others;
+  for (const auto& [name, other] : kTechniques)
+    if (other != Technique::automatic && supportsMode(scene, other))
+      others += (others.empty() ? "" : ", ") + std::string(name);
+  const std::string what = supports(technique, scene.mode) ? "shading.kind: phong" : "mode: " + modeName(scene.mode);
+  throw InvalidArgument(what + " is not rendered by the technique " + techniqueName(technique) + " but by " + others);
+}
+
+bool isShaded(const SceneSettings& scene) {
+  return scene.shading.kind == Shading::automatic ? traitsOf(scene.mode).surfaces
+                                                  : scene.shading.kind == Shading::phong;
 }
 
 bool lightComesFromBehind(const SceneSettings& scene) {

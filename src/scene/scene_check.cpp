@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/scene_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -71,6 +72,21 @@ void checkLights(Checker& check, const Scene& scene) {
   }
 }
 
+void checkSurfaces(Checker& check, const Scene& scene) {
+  check.require(scene.surfaces.size() <= kMostSurfaces, "surfaces", std::to_string(scene.surfaces.size()),
+                "at most " + std::to_string(kMostSurfaces));
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
+    const SceneSurface& surface = scene.surfaces[i];
+    const std::string field = "surfaces[" + std::to_string(i) + "].";
+    check.require(std::isfinite(surface.value), field + "value", print(surface.value), "finite");
+    check.require(surface.opacity >= 0 && surface.opacity <= 1, field + "opacity", print(surface.opacity), "in [0, 1]");
+    if (!surface.colour) continue;
+    const glm::dvec3& c = *surface.colour;
+    const bool inRange = std::min({c.r, c.g, c.b}) >= 0 && std::max({c.r, c.g, c.b}) <= 1;
+    check.require(isFinite(c) && inRange, field + "colour", print(c), "three numbers in [0, 1]");
+  }
+}
+
 }  // namespace
 
 std::optional<Complaint> findComplaint(const Scene& given) {
@@ -80,6 +96,8 @@ std::optional<Complaint> findComplaint(const Scene& given) {
   checkFrame(check, scene);
   checkFields(check, "light", scene);
   checkLights(check, scene);
+  checkSurfaces(check, scene);
+  checkFields(check, "shading", scene);
   checkFields(check, "sampling", scene);
   checkFields(check, "occlusion", scene);
   checkClip(check, scene);

@@ -25,8 +25,19 @@ std::string modelHelp() {
   return list + "; " + others + " only in the reference";
 }
 
+// "integrate (a medium ...), mip (the largest value along each ray), ... or isosurface (...)"
+std::string modeHelp() {
+  std::string list;
+  for (const ModeTraits& traits : modeTraits()) {
+    const bool last = &traits == &modeTraits().back();
+    list += list.empty() ? "what is seen: " : last ? " or " : ", ";
+    list += modeName(traits.mode) + " (" + std::string(traits.meaning) + ")";
+  }
+  return list + "; all but integrate by rays on the CPU";
+}
+
 const std::vector<SceneField>& table() {
-  static const std::string models = modelHelp();
+  static const std::string models = modelHelp(), modes = modeHelp();
   static const std::vector<SceneField> fields{
       {"camera.projection", "", "Camera", "perspective or orthographic",
        [](Scene& s) -> FieldPlace { return Choice(s.camera.projection, kProjections); }},
@@ -83,6 +94,40 @@ const std::vector<SceneField>& table() {
          return PixelSize{&s.camera.width, &s.camera.height};
        },
        {.low = 1}},
+
+      {"mode", "mode", "Mode", modes, [](Scene& s) -> FieldPlace { return Choice(s.mode, kModes); }},
+      {"shading.kind", "shading", "Mode",
+       "none, phong (ambient, diffuse and specular light on the gradient), or auto: phong on isosurfaces, else none",
+       [](Scene& s) -> FieldPlace { return Choice(s.shading.kind, kShadings); }},
+      {"shading.light", "shading-light", "Mode",
+       "that Phong's model reflects: headlight (from the eye), sources (the scene's directional ones), or auto: "
+       "sources "
+       "with the model lights, else headlight",
+       [](Scene& s) -> FieldPlace { return Choice(s.shading.light, kShadingLights); }},
+      {"shading.ambient",
+       "ambient-k",
+       "Mode",
+       "of Phong's model: share that is there without a light",
+       [](Scene& s) -> FieldPlace { return &s.shading.ambient; },
+       {.low = 0}},
+      {"shading.diffuse",
+       "diffuse-k",
+       "Mode",
+       "of Phong's model: share that is scattered to all sides",
+       [](Scene& s) -> FieldPlace { return &s.shading.diffuse; },
+       {.low = 0}},
+      {"shading.specular",
+       "specular-k",
+       "Mode",
+       "of Phong's model: share that is mirrored, in the colour of the light",
+       [](Scene& s) -> FieldPlace { return &s.shading.specular; },
+       {.low = 0}},
+      {"shading.shininess",
+       "shininess",
+       "Mode",
+       "of Phong's model: exponent, the larger the smaller are highlights",
+       [](Scene& s) -> FieldPlace { return &s.shading.shininess; },
+       {.low = 0, .lowOpen = true}},
 
       {"model", "model", "Light", models, [](Scene& s) -> FieldPlace { return Choice(s.model, kModels); }},
       {"method", "method", "Light",

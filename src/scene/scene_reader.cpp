@@ -114,6 +114,16 @@ void readLight(const JsonValue& value, const SceneFolder& folder, Scene& scene) 
     for (const JsonValue& source : sources->items()) scene.lights.push_back(readLightSource(source, folder));
 }
 
+void readSurfaces(const JsonValue& value, Scene& scene) {
+  for (const JsonValue& item : value.items()) {
+    item.allowFields({"value", "colour", "opacity"});
+    SceneSurface& surface = scene.surfaces.emplace_back();
+    surface.value = item.at("value").number();
+    if (const auto colour = item.find("colour")) surface.colour = readVector(*colour);
+    if (const auto opacity = item.find("opacity")) surface.opacity = opacity->number();
+  }
+}
+
 void readClip(const JsonValue& value, Scene& scene) {
   value.allowFields({"planes", "box"});
   if (const auto planes = value.find("planes"))
@@ -139,7 +149,7 @@ Scene parseScene(std::string_view text, const std::string& source, const std::fi
   Scene scene;
   readSection(root, "", scene,
               {"description", "volume", "camera", "transfer", "window", "sigmaScale", "light", "sampling", "occlusion",
-               "clip", "bricks"});
+               "clip", "bricks", "surfaces", "shading"});
   if (const auto description = root.find("description")) description->string();
   if (const auto volume = root.find("volume")) readVolume(*volume, folder, scene.volume);
   if (const auto camera = root.find("camera")) readCamera(*camera, scene);
@@ -155,6 +165,8 @@ Scene parseScene(std::string_view text, const std::string& source, const std::fi
   if (const auto sampling = root.find("sampling")) readSection(*sampling, "sampling", scene, {"tableSize"});
   if (const auto occlusion = root.find("occlusion")) readSection(*occlusion, "occlusion", scene);
   if (const auto clip = root.find("clip")) readClip(*clip, scene);
+  if (const auto surfaces = root.find("surfaces")) readSurfaces(*surfaces, scene);
+  if (const auto shading = root.find("shading")) readSection(*shading, "shading", scene);
   if (const auto bricks = root.find("bricks")) readSection(*bricks, "bricks", scene);
   // The ranges are those of any scene; here they are reported at the place in the text that breaks them.
   if (const auto complaint = findComplaint(scene)) document.closest(complaint->field).fail(complaint->message);

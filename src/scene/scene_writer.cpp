@@ -49,6 +49,17 @@ std::string printedLight(Scene& scene) {
   return jsonObject(fields);
 }
 
+std::string printedSurfaces(const Scene& scene) {
+  std::vector<std::string> surfaces;
+  for (const SceneSurface& surface : scene.surfaces) {
+    JsonFields fields{{"value", jsonNumber(surface.value)}};
+    if (surface.colour) fields.emplace_back("colour", printed(*surface.colour));
+    fields.emplace_back("opacity", jsonNumber(surface.opacity));
+    surfaces.push_back(jsonObject(fields));
+  }
+  return jsonArray(surfaces);
+}
+
 std::string printedClip(const Scene& scene) {
   JsonFields fields;
   std::vector<std::string> planes;
@@ -67,6 +78,8 @@ std::string printScene(const Scene& given) {
   fields.emplace_back("camera", jsonObject(printedFields("camera", scene)));
   if (scene.transfer) fields.emplace_back("transfer", printTransferFunction(*scene.transfer));
   for (const auto& field : printedFields("", scene)) fields.push_back(field);
+  if (!scene.surfaces.empty()) fields.emplace_back("surfaces", printedSurfaces(scene));
+  if (scene.shading != ShadingOptions{}) fields.emplace_back("shading", jsonObject(printedFields("shading", scene)));
   fields.emplace_back("light", printedLight(scene));
   fields.emplace_back("sampling", jsonObject(printedFields("sampling", scene)));
   fields.emplace_back("occlusion", jsonObject(printedFields("occlusion", scene)));

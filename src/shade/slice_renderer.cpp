@@ -69,6 +69,7 @@ class SliceRenderer::Implementation {
 
   /// Makes anew all that is dirty or, when something throws, nothing.
   void update(const ResolvedScene& next, const Dirty& dirty) {
+    requireMode(next, Technique::slices);
     checkScene(next);
     resetGlState(gl_);
     std::optional<TransferLookup> lookup;

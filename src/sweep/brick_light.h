@@ -27,6 +27,9 @@ class BrickLight {
   /// Stores it with the bricks that are held, where they do not have it.
   void store(BrickVoxels& voxels);
 
+  /// Stores light again the next time: something else has taken its place beside the voxels.
+  void forget() { generation_ = kNoGeneration; }
+
   int channels() const { return light_.channels(); }
   glm::dvec3 whole() const { return light_.whole(); }
   float unit() const { return unit_; }  // share of whole() that a code of 1 stands for

@@ -34,10 +34,12 @@ std::size_t bytesOf(VoxelCode code) { return code == VoxelCode::u8 ? 1 : code ==
 
 }  // namespace
 
-BrickVoxels::BrickVoxels(const Bricks& volume) : volume_(volume) {
+float halfValue(HalfCode code) { return glm::unpackHalf1x16(code.bits); }
+
+BrickVoxels::BrickVoxels(const Bricks& volume, bool halves) : volume_(volume) {
   if (volume.exactFormat == VoxelFormat::unorm8) code_ = VoxelCode::u8;
   if (volume.exactFormat == VoxelFormat::unorm16) code_ = VoxelCode::u16;
-  if (volume.exactFormat == VoxelFormat::half) code_ = VoxelCode::f16;
+  if (halves && volume.exactFormat == VoxelFormat::half) code_ = VoxelCode::f16;
   if (!isFloat(code_)) offset_ = volume.value.min;
   groups_ = (volume.layout.interior + kGroup - 1) / kGroup;
 }
@@ -53,15 +55,15 @@ std::vector<Brick> BrickVoxels::visible(const MediumTable& table, bool culling, 
   return bricks;
 }
 
-std::uint64_t BrickVoxels::bytesEach(const MediumTable& table) const {
-  return volume_.layout.voxels() * (umbrick::bytesOf(code_) + (table.is2d() ? sizeof(float) : 0));
+std::uint64_t BrickVoxels::bytesEach(bool gradients) const {
+  return volume_.layout.voxels() * (umbrick::bytesOf(code_) + (gradients ? sizeof(float) : 0));
 }
 
-std::uint64_t BrickVoxels::bytesOf(std::span<const Brick> bricks, const MediumTable& table) const {
+std::uint64_t BrickVoxels::bytesOf(std::span<const Brick> bricks, bool gradients) const {
   // Those of 2D functions are read for their gradients.
   const auto held = static_cast<std::uint64_t>(
-      std::ranges::count_if(bricks, [&](const Brick& brick) { return table.is2d() || !brick.uniform(); }));
-  return held * bytesEach(table);
+      std::ranges::count_if(bricks, [&](const Brick& brick) { return gradients || !brick.uniform(); }));
+  return held * bytesEach(gradients);
 }
 
 void BrickVoxels::hold(std::span<const Brick> wanted, const MediumTable& table, bool culling, bool makeRoom) {
@@ -72,13 +74,38 @@ void BrickVoxels::hold(std::span<const Brick> wanted, const MediumTable& table, 
     });
     ++generation_;
   }
+  read(wanted, table.is2d());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bricks_.size(), 4), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) activate(*bricks_[i], table, culling);
+  });
+}
+
+void BrickVoxels::select(const std::function<bool(const Range& value)>& isWanted, std::uint64_t mostBytes) {
+  std::vector<Brick> wanted;
+  std::ranges::copy_if(volume_.bricks, std::back_inserter(wanted), [&](const Brick& b) { return isWanted(b.value); });
+  std::ranges::sort(wanted, {}, [](const Brick& brick) { return orderOf(brick.origin); });
+  const std::uint64_t needed = bytesOf(wanted, false);
+  if (needed > mostBytes)
+    throw InvalidArgument("bricks.budgetMiB: the voxels of " + std::to_string(wanted.size()) + " bricks take " +
+                          std::to_string((needed >> 20) + 1) + " MiB, more than " + std::to_string(mostBytes >> 20) +
+                          " MiB");
+  read(wanted, false);
+  for (const auto& brick : bricks_) {
+    brick->active.assign(groupCount(), 1);
+    if (!brick->ranges) continue;
+    for (std::size_t i = 0; i < brick->active.size(); ++i)
+      brick->active[i] = isWanted({brick->ranges[2 * i], brick->ranges[2 * i + 1]});
+  }
+}
+
+void BrickVoxels::read(std::span<const Brick> wanted, bool gradients) {
   requireMemory("the voxels of " + std::to_string(wanted.size()) + " visible bricks",
-                static_cast<double>(bytesOf(wanted, table)));
+                static_cast<double>(bytesOf(wanted, gradients)));
   // What is missing is read aside: where that fails, nothing has changed.
   std::map<std::tuple<int, int, int>, std::size_t> before;
   for (std::size_t i = 0; i < bricks_.size(); ++i)
     // Gradients are read with the voxels.
-    if (!table.is2d() || bricks_[i]->gradients) before[orderOf(bricks_[i]->origin)] = i;
+    if (!gradients || bricks_[i]->gradients) before[orderOf(bricks_[i]->origin)] = i;
   std::vector<std::unique_ptr<VoxelBrick>> next(wanted.size());
   std::vector<std::pair<std::size_t, std::size_t>> kept;  // places in `next` and in bricks_
   std::vector<VoxelBrick*> missing;
@@ -95,7 +122,6 @@ void BrickVoxels::hold(std::span<const Brick> wanted, const MediumTable& table, 
     missing.push_back(next[i].get());
   }
   tbb::enumerable_thread_specific<std::vector<float>> scratches;
-  const bool gradients = table.is2d();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, missing.size(), 1), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       if (gradients)
@@ -108,9 +134,6 @@ void BrickVoxels::hold(std::span<const Brick> wanted, const MediumTable& table, 
   bricks_ = std::move(next);
   ++generation_;
   loaded_ = missing.size();
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bricks_.size(), 4), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) activate(*bricks_[i], table, culling);
-  });
 }
 
 std::vector<PlacedBrick> BrickVoxels::allBricks() const {

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <span>
@@ -25,6 +26,7 @@ struct HalfCode {
   std::uint16_t bits = 0;
 };
 static_assert(sizeof(HalfCode) == 2);
+float halfValue(HalfCode code);
 
 /// A medium as renderers integrate it: sigma_t, then sigma_s of red, green and blue, 1/world unit.
 inline constexpr int kMediumNumbers = 4;
@@ -57,20 +59,25 @@ class BrickVoxels {
   static constexpr int kGroup = 4;
   /// Arrays of voxels end with so many more, so that loops may read several at once.
   static constexpr std::size_t kPadding = 32;
-  /// @param volume  outlives this
-  explicit BrickVoxels(const Bricks& volume);
+  /// @param volume  outlives this  @param halves  whether floats may be held in 16 bits, where that is exact
+  explicit BrickVoxels(const Bricks& volume, bool halves = true);
 
   /// Returns the bricks that the function shows, ascending in z, then y, then x.
   /// @param culling  false: all bricks
   std::vector<Brick> visible(const MediumTable& table, bool culling, bool backgroundVisible) const;
   /// Returns what the voxels of bricks take, and of one of several values. Bricks of one value take none.
-  std::uint64_t bytesOf(std::span<const Brick> bricks, const MediumTable& table) const;
-  std::uint64_t bytesEach(const MediumTable& table) const;
+  /// @param gradients  whether they are held, too, as for 2D functions
+  std::uint64_t bytesOf(std::span<const Brick> bricks, bool gradients) const;
+  std::uint64_t bytesEach(bool gradients) const;
   /// Holds bricks and lets others go. Where this throws, nothing has changed.
   /// @param wanted    some of those that visible() returns, in its order
   /// @param culling   false: all groups are active
   /// @param makeRoom  lets others go first, so that no more is held at any time; they are gone where this throws
   void hold(std::span<const Brick> wanted, const MediumTable& table, bool culling, bool makeRoom = false);
+
+  /// Does the same for pictures that do not look at a transfer function: holds the bricks and marks the groups whose
+  /// range of values is wanted.
+  void select(const std::function<bool(const Range& value)>& isWanted, std::uint64_t mostBytes);
 
   const Bricks& volume() const { return volume_; }
   VoxelCode code() const { return code_; }
@@ -93,6 +100,7 @@ class BrickVoxels {
   }
 
  private:
+  void read(std::span<const Brick> wanted, bool gradients);
   std::size_t groupCount() const;
   void load(VoxelBrick& brick, std::vector<float>& values) const;
   template <class Code>

@@ -11,11 +11,15 @@
 #include <glm/matrix.hpp>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include "sweep/packet_march.h"
 #include "sweep/swept_scene.h"
+#include "sweep/value_rays.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/optics/projection_colour.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
 namespace {
@@ -66,9 +70,39 @@ RowSpan rowsOf(const Brick& brick, const IndexView& view, const glm::ivec3& inte
   return {rowAt(low) - 1, rowAt(high) + 1};
 }
 
+// Tells whether the mode looks at values and not at a medium.
+bool showsValues(Mode mode) { return traitsOf(mode).ofValues || traitsOf(mode).surfaces; }
+
+// Returns the scene whose medium rays are taken through: light that gets through a medium is all that an X-ray asks
+// for, to the last bit of it.
+ResolvedScene mediumOf(const ResolvedScene& scene) {
+  ResolvedScene medium = scene;
+  if (scene.mode != Mode::xray) return medium;
+  medium.model = Model::emission;
+  medium.sampling.saturation = 0;
+  medium.background.reset();
+  return medium;
+}
+
+// Turns opacities into what gets through, which is the layer "value".
+void showThrough(const ResolvedScene& scene, Picture& picture) {
+  Image through(scene.camera.width, scene.camera.height, 1);
+  const glm::dvec3 behind = scene.background.value_or(glm::dvec3(0));
+  for (std::size_t i = 0; i < through.pixels.size(); ++i) {
+    float* const pixel = &picture.colour.pixels[4 * i];
+    through.pixels[i] = 1 - pixel[3];
+    const glm::dvec4 colour = pixel[3] > 0 ? xrayColour(through.pixels[i]) : glm::dvec4(0);
+    for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(colour[c] + (1 - colour.w) * behind[c]);
+    pixel[3] = scene.background ? 1 : static_cast<float>(colour.w);
+  }
+  picture.layers.push_back({"value", std::move(through), true});
+}
+
 }  // namespace
 
-bool raysSupport(const SceneSettings& scene) { return sweptSupports(scene); }
+bool raysSupport(const SceneSettings& scene) {
+  return supportsMode(scene, Technique::rays) && (scene.mode != Mode::integrate || sweptSupports(scene));
+}
 
 int raySamplesPerVoxel(const ResolvedScene& scene, const Bricks& volume) {
   return static_cast<int>(std::clamp(std::round(segmentsPerVoxel(scene, volume)), 1.0, double(kMostPerVoxel)));
@@ -79,8 +113,16 @@ class RayRenderer::Implementation {
   Implementation(const Bricks& volume, const RenderOptions& options, std::optional<int> perVoxel)
       : options_(options), perVoxel_(perVoxel), scene_(volume, "rays") {}
 
-  void update(const ResolvedScene& next, const ResolvedScene* before) {
-    scene_.update(next, before);
+  void update(const ResolvedScene& next) {
+    requireMode(next, Technique::rays);
+    if (showsValues(next.mode)) {
+      if (!values_) values_.emplace(scene_.volume(), options_);
+      values_->update(next);
+    } else {
+      const ResolvedScene medium = mediumOf(next);
+      scene_.update(medium, medium_ ? &*medium_ : nullptr);
+      medium_ = medium;
+    }
     picture_.reset();
   }
 
@@ -91,13 +133,20 @@ class RayRenderer::Implementation {
 
   void draw(const ResolvedScene& scene, const RenderSample& sample) {
     picture_.reset();
-    Picture picture = emptyPicture(scene, options_.visibilityAndDepth);
-    scene_.prepare(scene, sample, picture.stats);
+    if (showsValues(scene.mode)) {
+      picture_ = values_->draw(scene, sample, perVoxel_.value_or(raySamplesPerVoxel(scene, scene_.volume())));
+      return;
+    }
+    const bool through = scene.mode == Mode::xray;
+    Picture picture = emptyPicture(scene, options_.visibilityAndDepth && !through);
+    const ResolvedScene& medium = *medium_;
+    scene_.prepare(medium, sample, picture.stats);
     const Stopwatch sweep;
     scene_.drawInBands(
-        scene, scene.camera.height, kPacketEdge,
+        medium, medium.camera.height, kPacketEdge,
         [&](const Brick& brick) { return rowsOf(brick, scene_.view(), scene_.volume().layout.interior); },
-        [&](int begin, int end) { march(scene, frameOf(scene), begin, end, picture); }, picture.stats);
+        [&](int begin, int end) { march(medium, frameOf(medium), begin, end, picture); }, picture.stats);
+    if (through) showThrough(scene, picture);
     picture.stats.sweepMs = sweep.elapsedMs();
     picture.stats.bufferBytes = picture.colour.pixels.size() * sizeof(float);
     picture_ = std::move(picture);
@@ -171,8 +220,10 @@ class RayRenderer::Implementation {
   RenderOptions options_;
   std::optional<int> perVoxel_;
   SweptScene scene_;
+  std::optional<ResolvedScene> medium_;  // of scene_; none: it has had none yet
   std::optional<BrickTable> bricks_;
-  std::uint64_t generation_ = 0;    // of the bricks that it knows
+  std::uint64_t generation_ = 0;  // of the bricks that it knows
+  std::optional<ValueRays> values_;
   std::optional<Picture> picture_;  // none: nothing was drawn since the scene changed
 };
 
@@ -184,7 +235,7 @@ RayRenderer::RayRenderer(const Bricks& volume, const ResolvedScene& scene, const
 
 RayRenderer::~RayRenderer() = default;
 
-void RayRenderer::update(const ResolvedScene& next) { implementation_->update(next, hasScene() ? &scene() : nullptr); }
+void RayRenderer::update(const ResolvedScene& next) { implementation_->update(next); }
 
 std::optional<RaySampling> RayRenderer::sampling(const ResolvedScene& scene) const {
   return implementation_->sampling(scene);

@@ -17,6 +17,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/memory.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
 namespace {
@@ -66,7 +67,9 @@ RowSpan rowsOf(const Brick& brick, const RayLattice& lattice, const glm::ivec3& 
 
 }  // namespace
 
-bool shearWarpSupports(const SceneSettings& scene) { return sweptSupports(scene); }
+bool shearWarpSupports(const SceneSettings& scene) {
+  return supportsMode(scene, Technique::shearWarp) && sweptSupports(scene);
+}
 
 ShearWarpSampling shearWarpSampling(const ResolvedScene& scene, const Bricks& volume) {
   const double perVoxel = segmentsPerVoxel(scene, volume);
@@ -83,6 +86,7 @@ class ShearWarpRenderer::Implementation {
       : options_(options), sampling_(sampling), scene_(volume, "shear-warp") {}
 
   void update(const ResolvedScene& next, const ResolvedScene* before) {
+    requireMode(next, Technique::shearWarp);
     scene_.update(next, before);
     drawn_ = false;
   }

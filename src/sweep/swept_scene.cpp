@@ -42,6 +42,7 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
   if (!sweptSupports(next))
     throw InvalidArgument("method: " + methodName(next.method) + " is one of slices; " + technique_ +
                           " takes light from a light volume");
+  if (isShaded(next)) BrickShading::check(next, volume());
   if (next.transfer.is2d() && !volume().hasGradients)
     throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
   constexpr std::size_t kMostVoxels = std::size_t{1} << 29;  // of a brick, whose places are 32-bit numbers of bytes
@@ -62,8 +63,9 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
     const bool backgroundVisible = !volume().domain.empty() && !now.isTransparent(background, {0, 0});
     const Stopwatch watch;
     std::vector<Brick> visible = voxels_.visible(now, next.bricks.culling, backgroundVisible);
-    const std::uint64_t most = next.bricks.budgetMiB << 20, each = voxels_.bytesEach(now) + mediaBytes(classified);
-    const std::uint64_t needed = voxels_.bytesOf(visible, now) + visible.size() * mediaBytes(classified);
+    const std::uint64_t most = next.bricks.budgetMiB << 20,
+                        each = voxels_.bytesEach(now.is2d()) + mediaBytes(classified);
+    const std::uint64_t needed = voxels_.bytesOf(visible, now.is2d()) + visible.size() * mediaBytes(classified);
     if (needed > 0 && each > most)
       throw InvalidArgument("bricks.budgetMiB: the voxels of one brick take " + std::to_string((each >> 20) + 1) +
                             " MiB, more than " + std::to_string(most >> 20) + " MiB");
@@ -109,7 +111,15 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
     stats.lightSpacing = light_.stats().spacing;
     stats.lightSpacingError = light_.stats().spacingError;
     lights_ = light_.channels();
+    lightUnit_ = light_.unit();
     whole_ = glm::vec3(light_.whole());
+  } else if (isShaded(scene)) {
+    const Stopwatch shading;
+    light_.forget();
+    shading_.update(voxels_, scene);
+    lights_ = shading_.channels();
+    lightUnit_ = shading_.unit();
+    stats.lightMs = shading.elapsedMs();
   }
   if (scene.camera.projection == Projection::orthographic) planes_.push_back(frontPlane(scene, volume()));
   stats.geometryMs = watch.elapsedMs() - stats.lightMs;
@@ -128,7 +138,7 @@ void SweptScene::drawInBands(const ResolvedScene& scene, int rows, int multiple,
   const bool classified = scene.sampling.classification == Classification::pre;
   std::vector<RowSpan> spans;
   for (const Brick& brick : visible_) spans.push_back(rowsOf(brick));
-  for (const RowBand& band : cutBands(spans, rows, multiple, voxels_.bytesEach(*table_) + mediaBytes(classified),
+  for (const RowBand& band : cutBands(spans, rows, multiple, voxels_.bytesEach(table_->is2d()) + mediaBytes(classified),
                                       scene.bricks.budgetMiB << 20)) {
     const Stopwatch watch;
     std::vector<Brick> needed;
@@ -136,7 +146,10 @@ void SweptScene::drawInBands(const ResolvedScene& scene, int rows, int multiple,
       if (spans[i].meets(band.begin, band.end)) needed.push_back(visible_[i]);
     voxels_.hold(needed, *table_, scene.bricks.culling, true);
     if (classified) classify(voxels_, scene.transfer, largestExtinction());
-    if (lights_ > 0) light_.store(voxels_);
+    if (isShaded(scene))
+      shading_.update(voxels_, scene);
+    else if (lights_ > 0)
+      light_.store(voxels_);
     stats.uploadMs += watch.elapsedMs();
     stats.uploadedBricks += voxels_.loaded();
     stats.textureBytes = std::max(stats.textureBytes, voxels_.bytes());
@@ -153,7 +166,7 @@ SweptFrame SweptScene::frame(const ResolvedScene& scene, bool aux) const {
   frame.midpoint = scene.sampling.quadrature == Quadrature::midpoint;
   frame.aux = aux;
   frame.lights = lights_;
-  frame.lightUnit = light_.unit();
+  frame.lightUnit = lightUnit_;
   const float sum = whole_.r + whole_.g + whole_.b;
   for (int c = 0; c < 3; ++c) frame.power[static_cast<std::size_t>(c)] = sum > 0 ? whole_[c] / sum : 0;
   return frame;

@@ -11,6 +11,7 @@
 
 #include "sweep/brick_bands.h"
 #include "sweep/brick_light.h"
+#include "sweep/brick_shading.h"
 #include "sweep/brick_voxels.h"
 #include "sweep/medium_table.h"
 #include "sweep/swept_frame.h"
@@ -67,6 +68,7 @@ class SweptScene {
   std::string technique_;
   BrickVoxels voxels_;
   BrickLight light_;
+  BrickShading shading_;
   std::optional<MediumTable> table_;
   bool backgroundVisible_ = false;
   std::vector<Brick> visible_;
@@ -75,7 +77,8 @@ class SweptScene {
   std::uint64_t loaded_ = 0;  // their number
   IndexView view_;
   std::vector<glm::dvec4> planes_;
-  int lights_ = 0;      // channels of light beside the voxels; 0 where all is lit alike
+  int lights_ = 0;  // channels of light beside the voxels; 0 where all is lit alike
+  float lightUnit_ = 1;
   glm::vec3 whole_{1};  // light that arrives where nothing is in the way
 };
 

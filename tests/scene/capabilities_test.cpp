@@ -88,3 +88,26 @@ TEST_CASE("Without occlusion no method computes it", "[scene]") {
         CHECK(occlusionMethod(scene) == method);
     }
 }
+
+TEST_CASE("Every mode has traits, and a technique that renders it", "[scene][modes]") {
+  std::set<std::string_view> meanings;
+  CHECK(modeTraits().size() == std::size(kModes));
+  for (const auto& [name, mode] : kModes) {
+    CAPTURE(name);
+    const ModeTraits& traits = traitsOf(mode);
+    CHECK(traits.mode == mode);
+    CHECK(meanings.insert(traits.meaning).second);
+    if (traits.ofValues) CHECK(traits.projection);
+    CHECK_FALSE((traits.projection && traits.surfaces));
+    CHECK(supports(Technique::rays, mode));
+    SceneSettings scene;
+    scene.mode = mode;
+    CHECK_NOTHROW(requireMode(scene, Technique::rays));
+    if (mode == Mode::integrate)
+      CHECK_NOTHROW(requireMode(scene, Technique::slices));
+    else
+      CHECK_THROWS_WITH(requireMode(scene, Technique::slices),
+                        "mode: " + std::string(name) + " is not rendered by the technique slices but by rays");
+    CHECK(isShaded(scene) == traits.surfaces);
+  }
+}

@@ -54,6 +54,9 @@ Scene randomScene(std::mt19937& random) {
   scene.lights = {{LightFrame::view, ConeLight{{number(-0.1, 0.1), 0.05, 1}, number(0, 1.3), vector(0, 7)}},
                   {LightFrame::world, ConeLight{vector(-1, 1), number(0, 1.5), vector(0, 1)}},
                   {LightFrame::world, ListedLight{{{vector(-1, 1), number(0, 1), vector(0, 1)}, {vector(-1, 1)}}}}};
+  scene.mode = Mode::isosurface;
+  scene.surfaces = {{number(-9, 9), vector(0, 1), number(0, 1)}, {number(-1e9, 1e9), {}, 1}};
+  scene.shading = {Shading::phong, ShadingLight::headlight, number(0, 1), number(0, 1), number(0, 1), number(1, 99)};
   scene.sampling = {number(1e-4, 5), Quadrature::midpoint, 5, 16, number(0, 0.1)};
   scene.spacingUnit = SpacingUnit::world;
   scene.occlusion = {number(0, 1.57), 16, {5, 2, 2, false}, {7, number(0, 4)}};

@@ -11,23 +11,8 @@
 
 namespace umbrick {
 
-/// Soft blobs in a box of 24 voxels, nothing at its faces.
-inline double smallBlobs(const glm::ivec3& i) { return coneAt(i, {{9, 8, 15, 7}, {15, 14, 9, 6}, {13, 6, 11, 4}}); }
-inline constexpr glm::dvec3 kSmallCentre(12, 11, 12);
-/// Returns a parallel and a perspective camera that look at the box.
-inline std::vector<Camera> smallCameras(int size = 32) {
-  return {orthographicCamera({30, 22, 40}, kSmallCentre, 30, size),
-          perspectiveCamera({30, 22, 40}, kSmallCentre, 0.6, size)};
-}
-
 inline bool allWithin(const Image& image, float low, float high) {
   return std::all_of(image.pixels.begin(), image.pixels.end(), [&](float v) { return v >= low && v <= high; });
-}
-
-inline double largestAlpha(const Image& image) {
-  float largest = 0;
-  for (std::size_t i = 3; i < image.pixels.size(); i += 4) largest = std::max(largest, image.pixels[i]);
-  return largest;
 }
 
 /// Renders at the scene's spacing and at half of it and compares with the reference. Both pictures are of one method,

@@ -8,6 +8,7 @@
 
 #include "support/field_bricks.h"
 #include "support/gl_fixture.h"
+#include "support/small_blobs.h"
 #include "support/test_scenes.h"
 #include "umbrick/scene/resolve.h"
 #include "umbrick/shade/prepare.h"
@@ -26,14 +27,6 @@ inline TransferFunction ramp(double sigma_t, double empty = 0, double full = 1) 
   const Medium nothing{kAlbedo, 0}, medium{kAlbedo, sigma_t};
   return empty < full ? TransferFunction({{empty, nothing}, {full, medium}})
                       : TransferFunction({{full, medium}, {empty, nothing}});
-}
-
-/// Returns the largest of cones that fall from 1 at a centre (xyz) to 0 at a distance (w), and 0 beyond them.
-inline double coneAt(const glm::ivec3& i, std::initializer_list<glm::dvec4> cones) {
-  double value = 0;
-  for (const glm::dvec4& cone : cones)
-    value = std::max(value, 1 - glm::length(glm::dvec3(i) - glm::dvec3(cone)) / cone.w);
-  return value;
 }
 
 /// Blobs that fade to nothing before the block ends, where slabs are drawn whole or not at all.

@@ -147,5 +147,5 @@ TEST_CASE("Bricks that stay visible are read once, and those that leave make roo
   // Voxels are one byte each, as the whole numbers of the field are.
   CHECK(voxels.code() == VoxelCode::u8);
   CHECK(bytes < few * 1.15 * 1000);
-  CHECK(voxels.bytesOf(voxels.visible(narrow, true, false), narrow) == few * 1000);
+  CHECK(voxels.bytesOf(voxels.visible(narrow, true, false), narrow.is2d()) == few * 1000);
 }

@@ -4,7 +4,7 @@ if(UMBRICK_TOOLS)
               convert_plan_test.cpp convert_resample_test.cpp convert_safety_test.cpp convert_sequence_test.cpp convert_several_test.cpp info_volume_test.cpp
               interrupt_gl_test.cpp outputs_gl_test.cpp progress_test.cpp render_check_gl_test.cpp study_gl_test.cpp usage_test.cpp foreign_input_test.cpp memory_limits_gl_test.cpp mutations_test.cpp
               OPENVDB first_picture_gl_test.cpp hard_volumes_gl_test.cpp progressive_gl_test.cpp pixel_samples_gl_test.cpp look_gl_test.cpp
-              kill_test.cpp outputs_test.cpp reference_test.cpp signals_test.cpp)
+              kill_test.cpp modes_test.cpp outputs_test.cpp reference_test.cpp signals_test.cpp)
   target_link_libraries(umbrick_tools_tests PRIVATE ZLIB::ZLIB nlohmann_json::nlohmann_json)
   add_dependencies(umbrick_tools_tests umbrick_tool)
   target_compile_definitions(umbrick_tools_tests PRIVATE UMBRICK_FUZZ_CORPUS="${PROJECT_SOURCE_DIR}/tests/fuzz/corpus")

@@ -29,6 +29,11 @@ def _unpack(chunk, size):
 
 def read_rgba(path):
     """height x width x RGBA, row 0 at the bottom; a missing alpha is 1."""
+    return read_channels(path, "RGBA")
+
+
+def read_channels(path, names):
+    """height x width x the channels of these names, row 0 at the bottom; one that is missing is 1."""
     with open(path, "rb") as file:
         data = file.read()
     magic, version = struct.unpack_from("<II", data)
@@ -53,7 +58,7 @@ def read_rgba(path):
     width, height = x1 - x0 + 1, y1 - y0 + 1
     lines = LINES_PER_CHUNK[compression]
     offsets = struct.unpack_from(f"<{-(-height // lines)}Q", data, at + 1)
-    planes = {name: np.ones((height, width)) for name in "RGBA"}
+    planes = {name: np.ones((height, width)) for name in names}
     line_bytes = sum(kind.itemsize for _, kind in channels) * width
     for offset in offsets:
         y, size = struct.unpack_from("<ii", data, offset)
@@ -66,4 +71,4 @@ def read_rgba(path):
                 if name in planes:
                     planes[name][line] = np.frombuffer(block, kind, width, p)
                 p += kind.itemsize * width
-    return np.stack([planes[name] for name in "RGBA"], 2)[::-1]
+    return np.stack([planes[name] for name in names], 2)[::-1]

@@ -1,4 +1,5 @@
-"""Renders a scene with one of VTK's volume mappers, times the frames, saves the picture. Started by emission_vs_vtk.py.
+"""Renders a scene with one of VTK's volume mappers, times the frames, saves the picture. Started by emission_vs_vtk.py and
+modes_vs_vtk.py.
 
 Debian's VTK 9.1 makes its contexts with GLX only, so this runs under xvfb-run, where Mesa's llvmpipe draws.
 VTK's frame buffer has 8 bits a channel, from which the picture is read: an error of 0.0011 (1 / 255 / sqrt(12)) is the
@@ -41,7 +42,7 @@ def volume_property(points, low, high):
 
 
 def make_mapper(kind, distance):
-    if kind == "gpu":
+    if kind in ("gpu", "iso", "gpu-mip"):
         mapper = vtk.vtkOpenGLGPUVolumeRayCastMapper()
         mapper.SetUseJittering(0)
         mapper.SetMaxMemoryInBytes(1 << 34)
@@ -53,7 +54,30 @@ def make_mapper(kind, distance):
     mapper.SetLockSampleDistanceToInputSpacing(0)
     mapper.SetImageSampleDistance(1)
     mapper.SetSampleDistance(distance)
+    if kind == "iso":
+        mapper.SetBlendModeToIsoSurface()
+    elif kind.endswith("mip"):
+        mapper.SetBlendModeToMaximumIntensity()
     return mapper
+
+
+def set_mode(kind, scene, low, high, properties):
+    """Surfaces are white and lit by Phong's model, and a maximum is a grey level in proportion to the value."""
+    white, opacity = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
+    white.AddRGBPoint(low, 1, 1, 1)
+    opacity.AddPoint(low, 1 if kind == "iso" else 0)
+    opacity.AddPoint(high, 1)
+    properties.SetColor(white)
+    properties.SetScalarOpacity(opacity)
+    if kind != "iso":
+        return
+    properties.GetIsoSurfaceValues().SetValue(0, scene["iso"])
+    properties.ShadeOn()
+    ambient, diffuse, specular, shininess = scene["phong"]
+    properties.SetAmbient(ambient)
+    properties.SetDiffuse(diffuse)
+    properties.SetSpecular(specular)
+    properties.SetSpecularPower(shininess)
 
 
 def main(kind, scene_path, frames, output):
@@ -65,7 +89,10 @@ def main(kind, scene_path, frames, output):
     mapper.SetInputData(image_data(voxels, scene["spacing"]))
     volume = vtk.vtkVolume()
     volume.SetMapper(mapper)
-    volume.SetProperty(volume_property(scene["points"], float(voxels.min()), float(voxels.max())))
+    properties = volume_property(scene["points"], float(voxels.min()), float(voxels.max()))
+    if kind not in ("gpu", "cpu"):
+        set_mode(kind, scene, float(voxels.min()), float(voxels.max()), properties)
+    volume.SetProperty(properties)
 
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(0, 0, 0)
@@ -81,7 +108,11 @@ def main(kind, scene_path, frames, output):
     view.SetPosition(*camera["eye"])
     view.SetFocalPoint(*camera["lookAt"])
     view.SetViewUp(*camera["up"])
-    view.SetViewAngle(camera["fov"])
+    if "viewHeight" in camera:
+        view.ParallelProjectionOn()
+        view.SetParallelScale(camera["viewHeight"] / 2)
+    else:
+        view.SetViewAngle(camera["fov"])
     renderer.ResetCameraClippingRange()
 
     elapsed = []

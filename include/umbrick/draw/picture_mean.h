@@ -14,13 +14,19 @@ class PictureMean {
   void add(const Picture& picture);
   double colour(std::size_t i) const { return colour_[i] / count_; }
   std::size_t values() const { return colour_.size(); }
-  /// Replaces the pixels of a picture of the same size by the means. Depth is averaged by opacity.
+  /// Replaces the pixels of a picture of the same size by the means. Depth is averaged by opacity, and further layers
+  /// over the pictures in which a pixel has a number.
   void store(Picture& picture) const;
 
  private:
   int count_ = 0;
   std::vector<double> colour_, visibility_, opacity_;
   std::vector<double> depth_;  // sum of depths weighted by opacity
+  struct LayerSum {
+    std::vector<double> sum;
+    std::vector<int> count;  // of finite numbers
+  };
+  std::vector<LayerSum> layers_;
 };
 
 }  // namespace umbrick

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "umbrick/image/image.h"
+#include "umbrick/image/exr.h"
 #include "umbrick/scene/lights.h"
 #include "umbrick/scene/resolve.h"
 
@@ -79,6 +79,12 @@ struct Picture {
   Image visibility;  // 1 channel: V weighted by opacity, so that V / A is the mean visibility along the ray
   Image depth;    // 1 channel: mean depth along the view axis, world units, weighted by opacity; infinite where A is 0
   Image opacity;  // 1 channel, made with the two above: A without the background, by which depths are averaged
+  /// What other modes than integrate know of a pixel besides:
+  ///   value     of projections, 1 channel: the number itself; where a ray meets nothing, that of empty space. Of
+  ///             isosurfaces, made with the layers above: the value of the nearest surface; NaN where there is none
+  ///   position  of isosurfaces, made with them: where the nearest surface is, world units; NaN where there is none
+  ///   normal    the same: its normal in the world, on the viewer's side
+  std::vector<ImageLayer> layers;
   RenderStats stats;
 };
 

@@ -17,13 +17,14 @@ namespace umbrick {
 struct ImageLayer {
   std::string name;
   Image image;
+  bool exact = false;  // is stored as float32, whatever ExrOptions::pixel is
 };
 
 enum class ExrPixel { half, float32 };
 inline constexpr Name<ExrPixel> kExrPixels[]{{"half", ExrPixel::half}, {"float", ExrPixel::float32}};
 
 struct ExrOptions {
-  ExrPixel pixel = ExrPixel::half;              // of all layers but "Z", which is always float32
+  ExrPixel pixel = ExrPixel::half;              // of all layers but "Z" and exact ones: these are float32
   std::map<std::string, std::string> metadata;  // string attributes of the header, such as {"umbrick.scene", json}
 };
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "umbrick/grid/scalar_grid.h"
-#include "umbrick/image/image.h"
+#include "umbrick/image/exr.h"
 #include "umbrick/scene/lights.h"
 
 namespace umbrick {
@@ -63,6 +63,8 @@ struct ReferencePicture {
   /// 1 channel: mean depth along the view axis, weighted by opacity; infinite where A is 0.
   Image depth;
   Image standardError;  // of colour, 4 channels: estimated by Monte Carlo; 0 with quadrature
+  /// Of other modes than integrate: the layers of Picture by the same names.
+  std::vector<ImageLayer> layers;
   ReferenceStats stats;
   bool complete = true;  // false: the job was stopped, and pixels that were not done are 0
 };
@@ -91,6 +93,9 @@ struct ReferencePicture {
 /// 1965), and from there ratio tracking along one direction, of a light chosen by power (Novák et al. 2014,
 /// doi:10.1145/2661229.2661292). The random numbers come from one stream per pixel, so the picture is the same for any
 /// number of threads.
+///
+/// Other modes than integrate are rendered in double precision, too, whatever the integrator: projections and surfaces
+/// from the cubic that the value is along a ray in each voxel cell, so that no maximum and no surface is missed.
 ///
 /// Sources of the model: Max 1995, doi:10.1109/2945.468400; Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
 /// @param scene  resolved, see resolveScene

@@ -44,6 +44,27 @@ void requireClassification(const SceneSettings& scene);
 /// Tells whether the method can compute the light of the model.
 bool supports(Method method, Model model);
 
+/// What is true of a mode.
+struct ModeTraits {
+  Mode mode;
+  std::string_view meaning;  // for help: "the largest value along each ray"
+  bool projection = false;   // a number a ray, which is the picture's layer "value"
+  bool ofValues = false;     // that number is a value of the grid
+  bool surfaces = false;     // the scene's surfaces are what is seen
+};
+std::span<const ModeTraits> modeTraits();
+const ModeTraits& traitsOf(Mode mode);
+
+/// Tells whether a technique renders pictures of a mode anywhere. @pre not Technique::automatic
+bool supports(Technique technique, Mode mode);
+/// Tells whether a technique renders the scene's mode with its shading.
+bool supportsMode(const SceneSettings& scene, Technique technique);
+/// @throw InvalidArgument  the technique does not render the scene's mode, and which do; or the mode cannot be shaded
+void requireMode(const SceneSettings& scene, Technique technique);
+
+/// Tells whether a picture of the scene reflects light.
+bool isShaded(const SceneSettings& scene);
+
 /// Tells whether light may come from behind what the viewer sees. Then what lies behind the eye occludes, too, and
 /// environments light as a whole; else lights have to be in front of the viewer, and the front half of environments
 /// counts.

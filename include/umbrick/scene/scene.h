@@ -16,6 +16,7 @@
 #include "umbrick/core/names.h"
 #include "umbrick/optics/transfer_function.h"
 #include "umbrick/scene/light_source.h"
+#include "umbrick/scene/mode.h"
 
 namespace umbrick {
 
@@ -186,6 +187,9 @@ struct SceneSettings {
   Model model = Model::emission;
   Method method = Method::lightVolume;
   Technique technique = Technique::automatic;
+  Mode mode = Mode::integrate;
+  std::vector<SceneSurface> surfaces;  // of the mode isosurface; none of a level set: where it is 0
+  ShadingOptions shading;
   glm::dvec3 ambient{1};                 // L_a, radiance from every direction
   std::optional<glm::dvec3> background;  // L_b; when it is set the picture is opaque (alpha 1)
   std::vector<LightSource> lights;       // for the model `lights`, which needs at least one
@@ -219,6 +223,10 @@ struct Scene : SceneSettings {
 ///   model      "emission", "cone", "cone-ray", "ambient", "lights"
 ///   method     "dos", "ordinates", "light-volume"
 ///   technique  "auto", "slices", "rays", "shear-warp"
+///   mode       "integrate", "mip", "minip", "average", "xray", "isosurface"
+///   surfaces   [{value, colour [r, g, b], opacity}, ...]
+///   shading    kind ("auto", "none", "phong"), light ("auto", "headlight", "sources"), ambient, diffuse, specular,
+///              shininess
 ///   light      ambient [r, g, b], background [r, g, b], sources [{type, frame ("view", "world"), ...}, ...]; by type,
 ///                "cone"         axis, theta, radiance ([r, g, b], or one number)
 ///                "directional"  direction, softAngle (of theta's kind), radiance: the same, and printed as a cone

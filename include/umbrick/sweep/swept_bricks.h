@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "umbrick/brick/bricks.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/resolve.h"
 
 namespace umbrick {
@@ -12,6 +13,8 @@ inline BrickOptions sweptBricks(const ResolvedScene& scene) {
   BrickOptions options;
   if (scene.bricks.interior > 0) options.interior = scene.bricks.interior;
   options.gradients = scene.transfer.is2d();
+  // Central differences of a cell's corners look one voxel beyond them.
+  if (traitsOf(scene.mode).surfaces || isShaded(scene)) options.apron = 2;
   return options;
 }
 

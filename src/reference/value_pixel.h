@@ -1,0 +1,79 @@
+// Pixels of modes that show values: projections and isosurfaces, in double precision.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "reference/classifier.h"
+#include "reference/convex_region.h"
+#include "reference/eye_ray.h"
+#include "reference/field.h"
+#include "reference/pixel.h"
+#include "umbrick/grid/scalar_grid.h"
+#include "umbrick/reference/reference.h"
+
+namespace umbrick {
+
+/// What is found out about a pixel, the mean over its samples.
+struct ValueResult {
+  glm::dvec4 colour{0};  // premultiplied, without a background
+  double depth = 0;      // weighted by opacity
+  /// Of projections the number itself; of surfaces that of the nearest one and where it is. NaN: there is none.
+  double value = 0;
+  glm::dvec3 position{0}, normal{0};
+};
+
+/// What the pixels of a picture share. All of it is found in the grid, not in bricks.
+class ValueSpace {
+ public:
+  /// @throw InvalidArgument  surfaces of values that the volume does not have; no light to reflect
+  ValueSpace(const ScalarGrid& grid, const ResolvedScene& scene, bool skipEmpty);
+  ~ValueSpace();
+
+  const ResolvedScene& scene() const { return scene_; }
+  const Field& field() const { return field_; }
+  const EyeRays& rays() const { return rays_; }
+  const ConvexRegion& region() const { return region_; }
+  double background() const { return background_; }
+  glm::dvec3 worldOf(const glm::dvec3& index) const { return glm::dvec3(indexToWorld_ * glm::dvec4(index, 1)); }
+  /// Returns the gradient in the world at a point in index coordinates.
+  glm::dvec3 gradientAt(const glm::dvec3& point) const;
+  glm::dvec3 colourOf(std::size_t surface) const;
+  /// Returns what a surface of that colour sends to the viewer. All directions are unit vectors of the world.
+  glm::dvec3 shaded(const glm::dvec3& colour, const glm::dvec3& normal, const glm::dvec3& viewer) const;
+
+ private:
+  double valueAt(const glm::dvec3& point) const;
+
+  const ScalarGrid& grid_;
+  const ResolvedScene& scene_;
+  glm::dmat4 indexToWorld_;
+  double background_;
+  Classifier classifier_;
+  Field field_;
+  EyeRays rays_;
+  ConvexRegion region_;
+  struct Light {
+    glm::dvec3 towards, radiance;
+  };
+  std::vector<Light> lights_;  // none: from the eye
+};
+
+/// Renders pixels. Each thread has one of its own.
+class ValuePixel {
+ public:
+  ValuePixel(const ValueSpace& space, const std::vector<glm::dvec2>& places);
+  std::optional<ValueResult> integrate(int x, int y);
+  const RayCounts& counts() const { return counts_; }
+
+ private:
+  ValueResult project(const EyeRays::Ray& ray);
+  ValueResult meetSurfaces(const EyeRays::Ray& ray);
+
+  const ValueSpace& space_;
+  const std::vector<glm::dvec2>& places_;
+  Field::Accessor accessor_;
+  RayCounts counts_;
+};
+
+}  // namespace umbrick

@@ -1,0 +1,48 @@
+// Phong's model at the voxels of visible bricks, where light volumes keep their light.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <glm/mat3x3.hpp>
+#include <vector>
+
+#include "sweep/brick_voxels.h"
+#include "umbrick/scene/shading_lights.h"
+#include "umbrick/slice/proxy_slices.h"
+
+namespace umbrick {
+
+/// Computes for each voxel what share of the lights a medium sends to the eye,
+///   ambient + sum over lights of radiance (diffuse N.L + specular (R.V)^shininess)
+/// with the normal from central differences, and keeps it with the bricks in 16 bits a voxel and channel. Rays
+/// interpolate it as they do light. A voxel without a gradient faces the viewer.
+class BrickShading {
+ public:
+  /// Bricks need an apron of this: rays read one voxel of it, whose difference looks at the next.
+  static constexpr int kApron = 2;
+
+  /// @throw InvalidArgument  as shadingLights; the medium is lit in another way, too; the apron is too small
+  static void check(const ResolvedScene& scene, const Bricks& volume);
+
+  /// @pre check()
+  void update(BrickVoxels& voxels, const ResolvedScene& scene);
+
+  int channels() const { return channels_; }
+  float unit() const { return unit_; }  // what a code of 1 stands for
+
+ private:
+  /// What all voxels of a picture share; vectors are of the world.
+  struct View {
+    glm::mat3 gradientToWorld{1};
+    glm::dmat4 indexToWorld{1};
+    glm::dvec3 eye{0};
+    bool perspective = false;
+    glm::vec3 towardsEye{0};  // of a parallel view
+  };
+  void shade(VoxelBrick& brick, const BrickVoxels& voxels, const ShadingOptions& shading, const View& view) const;
+  glm::vec3 reflected(const glm::vec3& normal, const glm::vec3& viewer, const ShadingOptions& shading) const;
+
+  std::vector<ShadingLightRay> lights_;
+  int channels_ = 1;
+  float unit_ = 1;
+};
+
+}  // namespace umbrick

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sweep/value_rays.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <thread>
+#include <utility>
+
+#include "sweep/index_planes.h"
+#include "sweep/packet_kernels.h"
+#include "sweep/surface_rays.h"
+#include "sweep/surface_shader.h"
+#include "sweep/swept_scene.h"
+#include "umbrick/core/error.h"
+#include "umbrick/core/short_number.h"
+#include "umbrick/core/stopwatch.h"
+#include "umbrick/optics/projection_colour.h"
+#include "umbrick/scene/capabilities.h"
+
+namespace umbrick {
+namespace {
+
+// Rays along a face of the box count as in it, whatever rounding makes of them.
+constexpr double kFaceMargin = 1e-6;
+
+ProjectionKind kindOf(Mode mode) {
+  return mode == Mode::mip     ? ProjectionKind::largest
+         : mode == Mode::minip ? ProjectionKind::smallest
+                               : ProjectionKind::sum;
+}
+
+std::vector<double> valuesOf(const ResolvedScene& scene) {
+  std::vector<double> values;
+  for (const SceneSurface& surface : scene.surfaces) values.push_back(surface.value);
+  return values;
+}
+
+// Adds a volume's box, grown by a margin, to half-spaces.
+std::vector<glm::dvec4> within(const IndexBox& box, double margin, std::vector<glm::dvec4> planes) {
+  for (const ClipPlane& plane : boxPlanes({glm::dvec3(box.min) - margin, glm::dvec3(box.max) + margin}))
+    planes.push_back(plane);
+  return planes;
+}
+
+void checkSurfaces(const ResolvedScene& scene, const Bricks& volume) {
+  if (scene.surfaces.empty())
+    throw InvalidArgument("surfaces: is empty, must be one value or more for the mode isosurface");
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
+    const double value = scene.surfaces[i].value;
+    // A surface parts what is larger from what is not.
+    if (value >= volume.value.min && value < volume.value.max) continue;
+    throw InvalidArgument("surfaces[" + std::to_string(i) + "].value: " + shortNumber(value, 9) +
+                          " has no surface, the volume has values from " + shortNumber(volume.value.min, 9) + " to " +
+                          shortNumber(volume.value.max, 9));
+  }
+  if (volume.layout.apron < SurfaceRays::kApron)
+    throw InvalidArgument("bricks: surfaces need an apron of " + std::to_string(SurfaceRays::kApron) +
+                          " voxels, found " + std::to_string(volume.layout.apron));
+}
+
+// Where rays lie on the screen.
+glm::dvec2 screenOf(const IndexView& view, int x, int y) {
+  return view.centre + view.halfExtent * (2.0 * (glm::dvec2(x, y) + 0.5) / glm::dvec2(view.size) - 1.0);
+}
+
+void store(const ResolvedScene& scene, const glm::dvec4& premultiplied, float* out) {
+  const glm::dvec3 behind = scene.background.value_or(glm::dvec3(0));
+  for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(premultiplied[c] + (1 - premultiplied.w) * behind[c]);
+  out[3] = scene.background ? 1 : static_cast<float>(premultiplied.w);
+}
+
+// The ray of a pixel in the world, as ValueRay is in index space.
+struct WorldRay {
+  glm::dvec3 from, along;  // a point is from + depth along
+  glm::dvec3 viewer;       // direction towards the eye, unit length
+};
+
+WorldRay worldRay(const Camera& camera, const CameraFrame& frame, const glm::dvec2& screen) {
+  const glm::dvec3 aside = screen.x * frame.right + screen.y * frame.up;
+  const bool perspective = camera.projection == Projection::perspective;
+  WorldRay ray;
+  ray.from = perspective ? camera.eye : camera.eye + aside;
+  ray.along = perspective ? frame.forward + aside : frame.forward;
+  ray.viewer = -glm::normalize(ray.along);
+  return ray;
+}
+
+// What is known of the nearest surface of each pixel; NaN where there is none.
+class SurfaceLayers {
+ public:
+  SurfaceLayers(int width, int height) : value_(width, height, 1), position_(width, height, 3), normal_(position_) {
+    for (Image* image : {&value_, &position_, &normal_})
+      std::ranges::fill(image->pixels, std::numeric_limits<float>::quiet_NaN());
+  }
+  void keep(int x, int y, double value, const glm::dvec3& position, const glm::dvec3& normal) {
+    *value_.at(x, y) = static_cast<float>(value);
+    for (int c = 0; c < 3; ++c) {
+      position_.at(x, y)[c] = static_cast<float>(position[c]);
+      normal_.at(x, y)[c] = static_cast<float>(normal[c]);
+    }
+  }
+  void moveTo(Picture& picture) {
+    picture.layers.push_back({"value", std::move(value_), true});
+    picture.layers.push_back({"position", std::move(position_), true});
+    picture.layers.push_back({"normal", std::move(normal_), true});
+  }
+
+ private:
+  Image value_, position_, normal_;
+};
+
+}  // namespace
+
+ValueRays::ValueRays(const Bricks& volume, const RenderOptions& options) : options_(options), voxels_(volume, false) {}
+
+void ValueRays::update(const ResolvedScene& next) {
+  const bool surfaces = traitsOf(next.mode).surfaces;
+  if (surfaces) {
+    checkSurfaces(next, voxels_.volume());
+    SurfaceShader(next, voxels_.volume().indexToWorld);  // says whether there is light
+  }
+  const std::vector<double> values = surfaces ? valuesOf(next) : std::vector<double>();
+  if (selected_ && all_ == !surfaces && values_ == values && budgetMiB_ == next.bricks.budgetMiB &&
+      culling_ == next.bricks.culling)
+    return;
+  const Stopwatch watch;
+  const float background = voxels_.volume().background;
+  const auto isWanted = [&](const Range& range) {
+    if (!next.bricks.culling) return true;
+    if (!surfaces) return range.min != background || range.max != background;
+    return std::ranges::any_of(values, [&](double value) { return range.min <= value && range.max > value; });
+  };
+  voxels_.select(isWanted, next.bricks.budgetMiB << 20);
+  table_.emplace(voxels_);
+  selected_ = true;
+  all_ = !surfaces;
+  values_ = values;
+  budgetMiB_ = next.bricks.budgetMiB;
+  culling_ = next.bricks.culling;
+  loadMs_ += watch.elapsedMs();
+  loaded_ += voxels_.loaded();
+}
+
+Picture ValueRays::draw(const ResolvedScene& scene, const RenderSample& sample, int perVoxel) {
+  const bool surfaces = traitsOf(scene.mode).surfaces;
+  Picture picture = emptyPicture(scene, options_.visibilityAndDepth && surfaces);
+  RenderStats& stats = picture.stats;
+  stats.uploadMs = std::exchange(loadMs_, 0);
+  stats.uploadedBricks = std::exchange(loaded_, 0);
+  stats.bricks = voxels_.volume().bricks.size();
+  stats.visibleBricks = stats.brickSlots = voxels_.bricks().size();
+  stats.textureBytes = voxels_.bytes();
+  view_ = indexView(scene.camera, voxels_.volume().indexToWorld);
+  view_.seeThrough(sample.pixel);
+  planes_ = indexPlanes(scene, voxels_.volume(), false);
+  const Stopwatch sweep;
+  if (surfaces)
+    drawSurfaces(scene, picture);
+  else
+    drawProjection(scene, perVoxel, picture);
+  stats.sweepMs = sweep.elapsedMs();
+  stats.bufferBytes = picture.colour.pixels.size() * sizeof(float);
+  return picture;
+}
+
+// Draws rows on all cores and tells how many are done.
+void ValueRays::eachRow(int rows, const std::function<void(int)>& draw) const {
+  std::atomic<int> done{0};
+  const auto caller = std::this_thread::get_id();
+  tbb::parallel_for(tbb::blocked_range<int>(0, rows, 1), [&](const auto& range) {
+    for (int row = range.begin(); row != range.end(); ++row) draw(row);
+    const int finished = done += static_cast<int>(range.size());
+    if (options_.progress && std::this_thread::get_id() == caller)
+      options_.progress(static_cast<double>(finished) / rows);
+  });
+}
+
+void ValueRays::drawProjection(const ResolvedScene& scene, int perVoxel, Picture& picture) {
+  const Bricks& volume = voxels_.volume();
+  const int width = scene.camera.width, height = scene.camera.height;
+  Image values(width, height, 1);
+  // The box of voxel centres: the volume's domain has one more voxel of background around it.
+  ProjectionFrame frame{&voxels_, &*table_, {}, kindOf(scene.mode), perVoxel, scene.bricks.culling};
+  if (!volume.domain.empty()) frame.box = {volume.domain.min + 1, volume.domain.max - 1};
+  const std::vector<glm::dvec4> planes = within(frame.box, kFaceMargin, planes_);
+  tbb::enumerable_thread_specific<ProjectionMarch> marches([&] { return ProjectionMarch(frame); });
+  eachRow((height + kPacketEdge - 1) / kPacketEdge, [&](int row) {
+    ProjectionMarch& march = marches.local();
+    for (int left = 0; left < width; left += kPacketEdge) {
+      ProjectionMarch::Rays rays;
+      for (int i = 0; i < kRayGroup; ++i) {
+        // What would lie outside of the picture goes with its last pixels.
+        const int x = std::min(left + i % kPacketEdge, width - 1),
+                  y = std::min(row * kPacketEdge + i / kPacketEdge, height - 1);
+        ValueRay& ray = rays[static_cast<std::size_t>(i)] = valueRay(view_, screenOf(view_, x, y));
+        if (frame.box.empty())
+          ray.leave = -1;
+        else
+          ray.clip(planes);
+      }
+      ProjectionMarch::Values projected;
+      march.march(rays, projected);
+      for (int i = 0; i < kRayGroup; ++i) {
+        const int x = left + i % kPacketEdge, y = row * kPacketEdge + i / kPacketEdge;
+        if (x >= width || y >= height) continue;
+        const float value = projected[static_cast<std::size_t>(i)];
+        *values.at(x, y) = value;
+        store(scene, value == volume.background ? glm::dvec4(0) : projectionColour(scene.transfer, value),
+              picture.colour.at(x, y));
+      }
+    }
+  });
+  for (const ProjectionMarch& march : marches) picture.stats.fragments += march.samples();
+  picture.layers.push_back({"value", std::move(values), true});
+}
+
+void ValueRays::drawSurfaces(const ResolvedScene& scene, Picture& picture) {
+  const Bricks& volume = voxels_.volume();
+  const int width = scene.camera.width, height = scene.camera.height;
+  std::optional<SurfaceLayers> layers;
+  if (options_.visibilityAndDepth) layers.emplace(width, height);
+  const SurfaceShader shader(scene, volume.indexToWorld);
+  const CameraFrame camera = cameraFrame(scene.camera);
+  const std::vector<glm::dvec4> planes = within(volume.domain, 0, planes_);
+  const double full = 1 - scene.sampling.saturation;
+  tbb::enumerable_thread_specific<SurfaceRays> tracers(
+      [&] { return SurfaceRays(voxels_, *table_, volume.domain, scene.surfaces); });
+  eachRow(height, [&](int y) {
+    SurfaceRays& tracer = tracers.local();
+    for (int x = 0; x < width; ++x) {
+      const glm::dvec2 screen = screenOf(view_, x, y);
+      ValueRay ray = valueRay(view_, screen);
+      ray.clip(planes);
+      const WorldRay world = worldRay(scene.camera, camera, screen);
+      glm::dvec4 pixel(0);
+      double depth = 0;
+      const auto visit = [&](const SurfaceHit& hit) {
+        const ShadedSurface shaded = shader.shade(hit.surface, hit.gradient, world.viewer);
+        const double share = (1 - pixel.w) * scene.surfaces[hit.surface].opacity;
+        if (layers && pixel.w == 0 && share > 0)
+          layers->keep(x, y, scene.surfaces[hit.surface].value, world.from + hit.t * world.along, shaded.normal);
+        pixel += share * glm::dvec4(shaded.colour, 1);
+        depth += share * hit.t;
+        return pixel.w < full;
+      };
+      if (!ray.empty()) tracer.trace(ray, visit);
+      store(scene, pixel, picture.colour.at(x, y));
+      if (!layers) continue;
+      const auto opacity = static_cast<float>(pixel.w);
+      *picture.opacity.at(x, y) = *picture.visibility.at(x, y) = opacity;
+      *picture.depth.at(x, y) =
+          opacity > 0 ? static_cast<float>(depth / pixel.w) : std::numeric_limits<float>::infinity();
+    }
+  });
+  for (const SurfaceRays& tracer : tracers) picture.stats.fragments += tracer.cells();
+  if (layers) layers->moveTo(picture);
+}
+
+}  // namespace umbrick

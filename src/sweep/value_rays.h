@@ -1,0 +1,49 @@
+// Pictures of values by rays: projections and isosurfaces.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "sweep/brick_table.h"
+#include "sweep/brick_voxels.h"
+#include "sweep/projection_march.h"
+#include "umbrick/draw/renderer.h"
+
+namespace umbrick {
+
+/// Renders the modes that look at values and not at a medium: mip, minip, average and isosurface.
+class ValueRays {
+ public:
+  /// @param volume    outlives this
+  ValueRays(const Bricks& volume, const RenderOptions& options);
+
+  /// Takes another scene and holds the bricks that it needs.
+  /// @throw InvalidArgument  surfaces of values that the volume does not have; no light to reflect; the bricks are more
+  ///   than the scene's memory budget
+  void update(const ResolvedScene& next);
+  /// @param perVoxel  slices of a projection between two slices of voxels
+  Picture draw(const ResolvedScene& scene, const RenderSample& sample, int perVoxel);
+
+ private:
+  void drawProjection(const ResolvedScene& scene, int perVoxel, Picture& picture);
+  void drawSurfaces(const ResolvedScene& scene, Picture& picture);
+  void eachRow(int rows, const std::function<void(int)>& draw) const;
+
+  RenderOptions options_;
+  BrickVoxels voxels_;
+  std::optional<BrickTable> table_;
+  // What the bricks that are held were selected for.
+  bool selected_ = false, all_ = false;
+  std::vector<double> values_;
+  std::uint64_t budgetMiB_ = 0;
+  bool culling_ = true;
+  double loadMs_ = 0;
+  std::uint64_t loaded_ = 0;
+  IndexView view_;
+  std::vector<glm::dvec4> planes_;
+};
+
+}  // namespace umbrick
