@@ -1,5 +1,6 @@
-// The integral over the stretches of a transfer function, one after another, as shaders/shade/medium.glsl has it.
-// Highway compiles this for each set of instructions. SPDX-License-Identifier: Apache-2.0
+// The integral over the stretches of a transfer function, one after another, as shaders/shade/medium.glsl has it;
+// Highway compiles this for each set of instructions.
+// SPDX-License-Identifier: Apache-2.0
 
 #if defined(UMBRICK_SWEEP_STRETCHES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef UMBRICK_SWEEP_STRETCHES_INL_H_

@@ -1,5 +1,6 @@
 // How fast the error of light falls: with the number of directions, and with the distance of paths. That with the
-// voxel's edge is in light_volume_test.cpp. SPDX-License-Identifier: Apache-2.0
+// edge of the voxels is in light_volume_test.cpp.
+// SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
