@@ -57,7 +57,12 @@ Scene randomScene(std::mt19937& random) {
   scene.mode = Mode::isosurface;
   scene.surfaces = {{number(-9, 9), vector(0, 1), number(0, 1)}, {number(-1e9, 1e9), {}, 1}};
   scene.shading = {Shading::phong, ShadingLight::headlight, number(0, 1), number(0, 1), number(0, 1), number(1, 99)};
-  scene.sampling = {number(1e-4, 5), Quadrature::midpoint, 5, 16, number(0, 0.1)};
+  scene.sampling = {.spacing = number(1e-4, 5),
+                    .quadrature = Quadrature::midpoint,
+                    .classification = Classification::pre,
+                    .segments = 5,
+                    .bits = 16,
+                    .saturation = number(0, 0.1)};
   scene.spacingUnit = SpacingUnit::world;
   scene.occlusion = {number(0, 1.57), 16, {5, 2, 2, false}, {7, number(0, 4)}};
   scene.clipPlanes = {ClipPlane(vector(-1, 1), number(-9, 9)), ClipPlane(vector(-1, 1), number(-9, 9))};

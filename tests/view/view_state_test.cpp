@@ -57,6 +57,17 @@ TEST_CASE("Steps are undone together and done again", "[view]") {
   CHECK(state.scene() == dragged);
 }
 
+TEST_CASE("The size of a window is part of the scene, and no step", "[view]") {
+  ViewState state(testScene(), testVolume());
+  state.edit({{"camera", {{"size", {50, 40}}}}}, "size");
+  CHECK(state.scene().camera.width == 50);
+  CHECK_FALSE(state.canUndo());
+  state.edit({{"occlusion", {{"theta", 20}}}});
+  state.undo();
+  state.edit({{"camera", {{"size", {60, 40}}}}}, "size");
+  CHECK(state.canRedo());
+}
+
 TEST_CASE("Only so many steps are kept", "[view]") {
   ViewState state(testScene(), testVolume());
   for (std::size_t i = 0; i < kMostSteps + 20; ++i) state.edit({{"occlusion", {{"theta", 1 + 0.1 * double(i)}}}});

@@ -68,7 +68,10 @@ Json fieldList() {
   Json list = Json::array();
   for (const SceneField& field : sceneFields()) {
     const FieldPlace place = placeOf(field, orbiting, placed);
-    const auto [kind, choices] = kindOf(place);
+    auto [kind, choices] = kindOf(place);
+    if (field.range.endsOnly) choices = {field.range.low, field.range.high};
+    Json onlyOf = Json::array();
+    for (const Method method : field.onlyOf) onlyOf.push_back(methodName(method));
     list.push_back({{"path", std::string(field.path)},
                     {"group", std::string(field.group)},
                     {"help", helpText(field)},
@@ -77,6 +80,8 @@ Json fieldList() {
                     {"low", endOf(field.range.low)},
                     {"high", endOf(field.range.high)},
                     {"unit", std::holds_alternative<Angle>(place) ? "degrees" : ""},
+                    {"multipleOf", field.range.multipleOf},
+                    {"onlyOf", onlyOf},
                     {"default", defaultText(field)}});
   }
   return list;

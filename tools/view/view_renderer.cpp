@@ -277,7 +277,8 @@ void ViewRenderer::refine(const ResolvedScene& scene, std::uint64_t version) {
     status.done = done;
     const std::string error = std::isfinite(total) ? "error " + shortNumber(total, 2) : "";
     status.text = done ? "done" + (error.empty() ? error : ": " + error)
-                       : std::to_string(picture.passes) + " samples" + (error.empty() ? error : ", " + error);
+                       : std::to_string(picture.passes) + (picture.passes == 1 ? " sample" : " samples") +
+                             (error.empty() ? error : ", " + error);
     if (done && total > goals_.targetError && picture.error.systematic > samples)
       status.text += " (a smaller spacing lowers it)";
     if (done) done_ = version;

@@ -71,12 +71,15 @@ Scene ViewState::patched(const Json& patch) const {
 
 void ViewState::take(Scene scene, const std::string& step) {
   auto resolved = resolve(scene);
-  if (step.empty() || step != step_ || undo_.empty()) {
+  // A window that takes another size is no edit.
+  if (step != kSizeStep && (step.empty() || step != step_ || undo_.empty())) {
     undo_.push_back(scene_);
     if (undo_.size() > kMostSteps) undo_.pop_front();
   }
-  step_ = step;
-  redo_.clear();
+  if (step != kSizeStep) {
+    step_ = step;
+    redo_.clear();
+  }
   scene_ = std::move(scene);
   resolved_ = std::move(resolved);
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "umbrick/render/volume.h"
@@ -14,6 +15,8 @@ namespace umbrick::view {
 
 /// Changes that can be undone; older ones are forgotten.
 inline constexpr std::size_t kMostSteps = 200;
+/// The step of patches that follow the size of a page's window: they are not undone.
+inline constexpr std::string_view kSizeStep = "size";
 /// Pixels along an edge of a picture that a page may ask for.
 inline constexpr int kMostPixels = 4096;
 
