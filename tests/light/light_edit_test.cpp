@@ -5,16 +5,14 @@
 #include <glm/geometric.hpp>
 
 #include "light/light_edit.h"
+#include "light/lit_medium.h"
 #include "support/field_bricks.h"
 #include "support/test_scenes.h"
-#include "umbrick/light/light_volume.h"
 #include "umbrick/optics/directions.h"
 
 using namespace umbrick;
 
 namespace {
-
-constexpr std::uint64_t kPlenty = std::uint64_t{1} << 32;
 
 // Two layers of wavy medium, and a ball of larger values in a corner.
 double field(const glm::ivec3& i) {
@@ -34,13 +32,6 @@ std::vector<LightDirection> cone(int count, const glm::dvec3& axis = {0.1, 0.2, 
   for (const WeightedDirection& one : spiralDirections(glm::normalize(axis), 40 * kDegree, count))
     result.push_back({one.direction, glm::dvec3(one.weight)});
   return result;
-}
-
-LightMedium mediumOf(const Bricks& volume, const TransferFunction& transfer, std::vector<LightDirection> directions) {
-  LightMedium medium{transfer, std::move(directions), {}, {}};
-  for (const Brick& brick : volume.bricks)
-    if (!transfer.isTransparent(brick.value)) medium.cells.push_back(brick.origin);
-  return medium;
 }
 
 // Largest difference of the light of a medium from that of a fresh sweep, in steps of the codes of either. Both are

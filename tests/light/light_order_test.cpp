@@ -7,21 +7,17 @@
 #include <numbers>
 #include <vector>
 
+#include "light/lit_medium.h"
 #include "support/field_bricks.h"
 #include "support/observed_order.h"
 #include "support/test_scenes.h"
-#include "umbrick/light/light_volume.h"
 #include "umbrick/optics/directions.h"
 
 using namespace umbrick;
 
 namespace {
 
-constexpr int kSize = 64;
-
-TransferFunction proportional(double sigma_t) {
-  return TransferFunction({{0, {glm::dvec3(1), 0}}, {1, {glm::dvec3(1), sigma_t}}});
-}
+constexpr int kEdge = 64;
 
 // The light at voxels of one brick.
 class Light {
@@ -49,8 +45,8 @@ TEST_CASE("The error of light falls with the square of the number of directions 
   // of equal steps of the cosine: the rule of midpoints, of the second order. All go along z most, so that their paths
   // on a slice are alike, and nothing is lost between these.
   const double sigma_t = 0.15, aperture = 44 * kDegree;
-  const FieldBricks volume([](const glm::ivec3&) { return 1.0; }, {glm::ivec3(0), glm::ivec3(kSize - 1)},
-                           FieldOptions{.interior = kSize});
+  const FieldBricks volume([](const glm::ivec3&) { return 1.0; }, {glm::ivec3(0), glm::ivec3(kEdge - 1)},
+                           FieldOptions{.interior = kEdge});
   std::vector<double> steps, errors;
   for (const int count : {2, 4, 8}) {
     LightMedium medium{proportional(sigma_t), {}, {{0, 0, -1, 40}}, {{0, 0, 0}}};
@@ -83,7 +79,7 @@ TEST_CASE("The error of light falls with the square of the distance of paths", "
       return 0.5 + 0.25 * std::sin(2 * std::numbers::pi * x / wave) + 0.25 * std::cos(2 * std::numbers::pi * y / wave);
     };
     const FieldBricks volume([&](const glm::ivec3& p) { return across(p.x, p.y); },
-                             {glm::ivec3(0), glm::ivec3(kSize - 1)}, FieldOptions{.interior = kSize});
+                             {glm::ivec3(0), glm::ivec3(kEdge - 1)}, FieldOptions{.interior = kEdge});
     // Every path runs along z: paths lie on voxels, or, where light is held at every second voxel, on every second.
     LightMedium medium{proportional(0.1), {{glm::dvec3(0, 0, 1), glm::dvec3(1)}}, {{0, 0, -1, 40}}, {{0, 0, 0}}, 2};
     const Light second(volume, medium);

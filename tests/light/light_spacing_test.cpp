@@ -5,17 +5,15 @@
 #include <glm/geometric.hpp>
 #include <string>
 
+#include "light/lit_medium.h"
 #include "support/field_bricks.h"
 #include "support/test_scenes.h"
 #include "umbrick/core/error.h"
-#include "umbrick/light/light_volume.h"
 #include "umbrick/optics/directions.h"
 
 using namespace umbrick;
 
 namespace {
-
-constexpr std::uint64_t kPlenty = std::uint64_t{1} << 32;
 
 // A smooth cloud in a box of `size` voxels.
 auto cloud(int size) {
@@ -24,10 +22,6 @@ auto cloud(int size) {
     const double r2 = 5 * glm::dot(p, p) + 0.1 * std::sin(17 * p.x) * std::sin(13 * p.y);
     return r2 < 1 ? (1 - r2) * (1 - r2) : 0.0;
   };
-}
-
-TransferFunction proportional(double sigma_t) {
-  return TransferFunction({{0, {glm::dvec3(1), 0}}, {1, {glm::dvec3(1), sigma_t}}});
 }
 
 LightMedium mediumOf(const Bricks& volume, const TransferFunction& transfer, int spacing) {

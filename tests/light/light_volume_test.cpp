@@ -1,11 +1,11 @@
 // Light at voxels: closed forms, and what must not change it.
 // SPDX-License-Identifier: Apache-2.0
-#include "umbrick/light/light_volume.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "light/lit_medium.h"
 #include "support/field_bricks.h"
 #include "support/test_scenes.h"
 #include "umbrick/core/error.h"
@@ -15,25 +15,13 @@ using namespace umbrick;
 
 namespace {
 
-constexpr std::uint64_t kPlenty = std::uint64_t{1} << 32;
 const IndexBox kBox{glm::ivec3(0), glm::ivec3(39)};
-
-TransferFunction proportional(double sigma_t) {
-  return TransferFunction({{0, {glm::dvec3(1), 0}}, {1, {glm::dvec3(1), sigma_t}}});
-}
 
 std::vector<LightDirection> cone(const glm::dvec3& axis, int count) {
   std::vector<LightDirection> result;
   for (const WeightedDirection& one : spiralDirections(axis, 60 * kDegree, count))
     result.push_back({one.direction, glm::dvec3(one.weight)});
   return result;
-}
-
-LightMedium mediumOf(const Bricks& volume, const TransferFunction& transfer, std::vector<LightDirection> directions) {
-  LightMedium medium{transfer, std::move(directions), {}, {}};
-  for (const Brick& brick : volume.bricks)
-    if (!transfer.isTransparent(brick.value)) medium.cells.push_back(brick.origin);
-  return medium;
 }
 
 /// The light of a volume, voxel by voxel.

@@ -8,6 +8,7 @@
 #include "support/small_blobs.h"
 #include "sweep/value_picture.h"
 #include "umbrick/core/srgb.h"
+#include "umbrick/grid/float_grid.h"
 #include "umbrick/optics/projection_colour.h"
 
 using namespace umbrick;
