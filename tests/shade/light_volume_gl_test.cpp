@@ -29,8 +29,6 @@ Image exactColour(const ScalarGrid& grid, const ResolvedScene& scene) {
   return renderReference(grid, scene, options).colour;
 }
 
-ScalarGrid blobGrid() { return makeFilled(glm::ivec3(24), {0, 0, 0}, smallBlobs); }
-
 // A slab whose upper face is a slanting plane through voxels, of 200 units inside.
 ScalarGrid slantingSolid(int edge) {
   const glm::dvec3 up = glm::normalize(glm::dvec3(0.25, 0.18, 1)), middle(0.5 * (edge - 1));

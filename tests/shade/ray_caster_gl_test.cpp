@@ -18,8 +18,6 @@ Picture cast(const GlContext& context, const ScalarGrid& grid, const ResolvedSce
   return RayCaster(context, *bricks, scene, options, limits).render(sample);
 }
 
-ScalarGrid blobGrid(const glm::ivec3& origin = glm::ivec3(0)) { return makeFilled(glm::ivec3(24), origin, smallBlobs); }
-
 // Renders with segments of the scene's length and of half of it, and compares with the reference, as
 // checkAgainstReference does for slices.
 void checkRays(const GlContext& context, const ScalarGrid& grid, ResolvedScene scene, double floor = 2e-5,

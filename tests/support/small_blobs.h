@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <vector>
 
+#include "support/test_grids.h"
 #include "support/test_scenes.h"
 #include "umbrick/image/image.h"
 
@@ -21,6 +22,9 @@ inline double coneAt(const glm::ivec3& i, std::initializer_list<glm::dvec4> cone
 
 /// Soft blobs in a box of 24 voxels, nothing at its faces.
 inline double smallBlobs(const glm::ivec3& i) { return coneAt(i, {{9, 8, 15, 7}, {15, 14, 9, 6}, {13, 6, 11, 4}}); }
+inline ScalarGrid blobGrid(const glm::ivec3& origin = glm::ivec3(0)) {
+  return makeFilled(glm::ivec3(24), origin, smallBlobs);
+}
 inline constexpr glm::dvec3 kSmallCentre(12, 11, 12);
 /// Returns a parallel and a perspective camera that look at the box.
 inline std::vector<Camera> smallCameras(int size = 32) {

@@ -12,10 +12,6 @@
 
 namespace umbrick {
 
-inline ScalarGrid blobGrid(const glm::ivec3& origin = glm::ivec3(0)) {
-  return makeFilled(glm::ivec3(24), origin, smallBlobs);
-}
-
 inline std::unique_ptr<Bricks> cpuBricksFor(const ScalarGrid& grid, const ResolvedScene& scene) {
   return cutGrid(grid, sweptBricks(scene), scene.bricks.bricked);
 }
