@@ -11,7 +11,7 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kScene = "ball.vdb --tf ball.json --size 24x20 --azimuth 20 --up z ";
+const std::string kModesScene = "ball.vdb --tf ball.json --size 24x20 --azimuth 20 --up z ";
 
 const ImageLayer* layer(const ExrFile& file, std::string_view name) {
   const auto found = std::ranges::find(file.layers, name, &ImageLayer::name);
@@ -26,7 +26,7 @@ TEST_CASE("Every mode replays from the header of its picture, and is that of the
        {"mip", "minip", "average", "xray", "isosurface --iso 0.3,0.6 --iso-opacity 0.5 --layers"}) {
     CAPTURE(mode);
     const ProgramResult made =
-        at.run("render " + kScene + "--spacing 0.25 --exr-pixel float --mode " + mode + " -o a.exr -o a.png");
+        at.run("render " + kModesScene + "--spacing 0.25 --exr-pixel float --mode " + mode + " -o a.exr -o a.png");
     INFO(made.err);
     REQUIRE(made.status == 0);
     const ExrFile file = at.exr("a.exr");
@@ -60,7 +60,7 @@ TEST_CASE("A level set is drawn where it is 0, and the value may be given", "[to
 TEST_CASE("What a mode cannot do is said in one line", "[tools][modes]") {
   const BallWorkplace at;
   const auto refused = [&](const std::string& arguments) {
-    const ProgramResult result = at.run("render " + kScene + arguments + " -o a.png");
+    const ProgramResult result = at.run("render " + kModesScene + arguments + " -o a.png");
     CHECK(result.status != 0);
     CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
     return result.err;
@@ -77,7 +77,7 @@ TEST_CASE("What a mode cannot do is said in one line", "[tools][modes]") {
   CHECK_THAT(refused("--mode mip --technique slices"),
              Contains("mip is not rendered by the technique slices but by rays"));
   CHECK_THAT(refused("--mode average --shading phong"), Contains("the mode average reflects no light"));
-  const ProgramResult lit = at.run("render " + kScene + "--mode mip --model cone --layers -o a.exr");
+  const ProgramResult lit = at.run("render " + kModesScene + "--mode mip --model cone --layers -o a.exr");
   CHECK(lit.status == 0);
   CHECK_THAT(lit.err, Contains("--model has no effect on the mode mip"));
   CHECK_THAT(lit.err, Contains("has neither V nor Z"));
