@@ -111,14 +111,12 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
     stats.lightSpacing = light_.stats().spacing;
     stats.lightSpacingError = light_.stats().spacingError;
     lights_ = light_.channels();
-    lightUnit_ = light_.unit();
     whole_ = glm::vec3(light_.whole());
   } else if (isShaded(scene)) {
     const Stopwatch shading;
     light_.forget();
     shading_.update(voxels_, scene);
     lights_ = shading_.channels();
-    lightUnit_ = shading_.unit();
     stats.lightMs = shading.elapsedMs();
   }
   if (scene.camera.projection == Projection::orthographic) planes_.push_back(frontPlane(scene, volume()));
@@ -166,7 +164,7 @@ SweptFrame SweptScene::frame(const ResolvedScene& scene, bool aux) const {
   frame.midpoint = scene.sampling.quadrature == Quadrature::midpoint;
   frame.aux = aux;
   frame.lights = lights_;
-  frame.lightUnit = lightUnit_;
+  frame.lightUnit = isShaded(scene) ? shading_.unit() : light_.unit();
   const float sum = whole_.r + whole_.g + whole_.b;
   for (int c = 0; c < 3; ++c) frame.power[static_cast<std::size_t>(c)] = sum > 0 ? whole_[c] / sum : 0;
   return frame;

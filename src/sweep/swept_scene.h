@@ -77,8 +77,7 @@ class SweptScene {
   std::uint64_t loaded_ = 0;  // their number
   IndexView view_;
   std::vector<glm::dvec4> planes_;
-  int lights_ = 0;  // channels of light beside the voxels; 0 where all is lit alike
-  float lightUnit_ = 1;
+  int lights_ = 0;      // channels of light beside the voxels; 0 where all is lit alike
   glm::vec3 whole_{1};  // light that arrives where nothing is in the way
 };
 

@@ -91,6 +91,8 @@ TEST_CASE("Every shader that is not an include compiles by itself, or says where
                                           {"kSegments", 1},
                                           {"kAux", planes > 0},
                                           {"kTaps", 9},
+                                          {"kTextures", 1 + perspective},
+                                          {"kLit", perspective},
                                           {"kAlgorithm", 2 + perspective},
                                           {"kTileEdge", 8},
                                           {"kDirections", 16},
