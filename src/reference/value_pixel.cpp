@@ -209,7 +209,8 @@ ValueResult ValuePixel::project(const EyeRays::Ray& ray) {
     most = std::max(most, background);
   }
   result.value = scene.mode == Mode::mip ? most : scene.mode == Mode::minip ? least : background + sum / length;
-  if (result.value != background) result.colour = projectionColour(scene.transfer, result.value);
+  if (!isBackground(scene.transfer, result.value, background))
+    result.colour = projectionColour(scene.transfer, result.value);
   return result;
 }
 

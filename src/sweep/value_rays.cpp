@@ -210,8 +210,8 @@ void ValueRays::drawProjection(const ResolvedScene& scene, int perVoxel, Picture
         if (x >= width || y >= height) continue;
         const float value = projected[static_cast<std::size_t>(i)];
         *values.at(x, y) = value;
-        store(scene, value == volume.background ? glm::dvec4(0) : projectionColour(scene.transfer, value),
-              picture.colour.at(x, y));
+        const bool nothing = isBackground(scene.transfer, value, volume.background);
+        store(scene, nothing ? glm::dvec4(0) : projectionColour(scene.transfer, value), picture.colour.at(x, y));
       }
     }
   });

@@ -13,6 +13,10 @@ namespace umbrick {
 /// do.
 glm::dvec4 projectionColour(const TransferFunction& transfer, double value);
 
+/// Tells whether a projected value is that of empty space, which is not shown: within a millionth of the window, since
+/// sums of voxels are rounded.
+bool isBackground(const TransferFunction& transfer, double value, double background);
+
 /// Returns linear RGBA, opaque, of a share of light that gets through: as an X-ray film, black where all of it does.
 glm::dvec4 xrayColour(double through);
 
