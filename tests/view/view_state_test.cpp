@@ -68,6 +68,15 @@ TEST_CASE("The size of a window is part of the scene, and no step", "[view]") {
   CHECK(state.canRedo());
 }
 
+TEST_CASE("Surfaces that nobody has named are one in the middle of the function", "[view]") {
+  ViewState state(testScene(), testVolume());
+  state.edit({{"mode", "isosurface"}});
+  REQUIRE(state.scene().surfaces.size() == 1);
+  CHECK(state.scene().surfaces[0].value == Approx(0.65));
+  state.edit(Json::parse(R"({"surfaces": [{"value": 0.5, "opacity": 0.4}, {"value": 0.7}]})"));
+  CHECK(state.scene().surfaces.size() == 2);
+}
+
 TEST_CASE("Only so many steps are kept", "[view]") {
   ViewState state(testScene(), testVolume());
   for (std::size_t i = 0; i < kMostSteps + 20; ++i) state.edit({{"occlusion", {{"theta", 1 + 0.1 * double(i)}}}});

@@ -153,6 +153,20 @@ TEST_CASE("Pages of one viewer share its scene, and nothing is drawn for nobody"
   CHECK(third->takeDone().is_object());
 }
 
+TEST_CASE("Bricks are cut anew for what looks farther than rays do", "[view]") {
+  Looking looking;
+  looking.page->takeDone();
+  for (const Json& patch :
+       {Json{{"mode", "isosurface"}}, Json{{"mode", "mip"}}, Json{{"mode", "integrate"}, {"model", "emission"}},
+        Json{{"shading", {{"kind", "phong"}}}}, Json{{"shading", {{"kind", "auto"}}}, {"technique", "shear-warp"}}}) {
+    INFO(patch.dump());
+    looking.send({{"type", "edit"}, {"patch", patch}});
+    const Json answer = looking.page->take(
+        [](const Json& text) { return text["type"] == "error" || (text["type"] == "status" && text["done"] == true); });
+    CHECK(answer["type"] == "status");
+  }
+}
+
 TEST_CASE("A paused picture goes on", "[view]") {
   Looking looking;
   looking.page->takeDone();

@@ -42,11 +42,17 @@ struct MadeFor {
   std::optional<Method> method;
   Model model;
   bool gradients;
+  bool wideApron;  // surfaces and shading look one voxel farther
   BrickSettings bricks;
   bool operator==(const MadeFor&) const = default;
 };
 MadeFor madeFor(const ResolvedScene& scene) {
-  return {scene.technique, occlusionMethod(scene), scene.model, scene.transfer.is2d(), scene.bricks};
+  return {scene.technique,
+          occlusionMethod(scene),
+          scene.model,
+          scene.transfer.is2d(),
+          traitsOf(scene.mode).surfaces || isShaded(scene),
+          scene.bricks};
 }
 
 }  // namespace

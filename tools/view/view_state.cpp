@@ -24,6 +24,8 @@ void refuseFiles(const Json& patch) {
     throw InvalidArgument("transfer: '" + name.substr(0, 80) + "' is no preset");
 }
 
+double middleOf(const Range& range) { return 0.5 * (static_cast<double>(range.min) + range.max); }
+
 }  // namespace
 
 ViewState::ViewState(Scene scene, std::shared_ptr<const Volume> volume)
@@ -66,6 +68,9 @@ Scene ViewState::patched(const Json& patch) const {
   else if (next.transfer->unit() != scene_.transfer->unit())
     next.transfer = fitted(*next.transfer, *volume_);  // looks at the whole volume
   if (next.orbit) next.orbit = settledOrbit(*next.orbit, volume_->orientation());
+  // A page that asks for surfaces sees one, whose value it can change.
+  if (next.mode == Mode::isosurface && next.surfaces.empty())
+    next.surfaces = {SceneSurface{volume_->grid().isLevelSet() ? 0.0 : middleOf(next.transfer->valueDomain())}};
   return next;
 }
 

@@ -12,6 +12,7 @@ import {infoPanel} from "./info_panel.js";
 import {lightPanel} from "./light_panel.js";
 import {completed, kNewLight} from "./lights.js";
 import {savePanel} from "./save_panel.js";
+import {surfacePanel} from "./surface_panel.js";
 import {transferPanel} from "./transfer_panel.js";
 
 // Edits of fields, with what the chosen model cannot be without.
@@ -62,11 +63,16 @@ export function buildPanels(panel, session, picture, notices) {
   if (light > 1) sections.splice(1, 0, ...sections.splice(light, 1));
   sections.splice(
       2, 0, keep(clipPanel(session)), keep(backgroundPanel(session)), section("Error against time", true, chart.node));
+  const surfaces = surfacePanel(session);
+  sections.splice(1, 0, keep(surfaces));
   sections.push(keep(savePanel(session, note)), infoPanel(session));
   panel.replaceChildren(...sections);
   parts.forEach((part) => part.update());
   // A section that is folded is brought up to date when it is opened.
-  const updateOpen = () => parts.filter((part) => part.node.closest("details").open).forEach((part) => part.update());
+  const updateOpen = () => {
+    parts.filter((part) => part.node.closest("details").open).forEach((part) => part.update());
+    surfaces.update();  // is shown or hidden by the mode
+  };
   for (const each of sections) each.addEventListener("toggle", updateOpen);
   return { update: updateOpen };
 }
