@@ -264,7 +264,7 @@ int render(const RenderCommand& command) {
   const bool progressive = command.passes || command.maxSeconds || command.targetError;
   if (progressive && command.frames > 1) throw UsageError("--frames and --progressive exclude each other");
   const bool occluded = occlusionMethod(scene).has_value();
-  if (progressive && occluded && !(traitsOf(scene.model).directions && traitsOf(scene.method).directions))
+  if (progressive && !canAverage(scene))
     throw UsageError(
         "--progressive, --max-seconds and --target-error need the model emission, or cone, ambient or lights and the "
         "method ordinates or light-volume");

@@ -6,6 +6,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/draw/progressive.h"
 #include "umbrick/render/techniques.h"
+#include "umbrick/sweep/swept_bricks.h"
 
 namespace umbrick {
 namespace {
@@ -30,9 +31,8 @@ double rounding(const RenderStats& slices) { return static_cast<double>(slices.s
 
 Renderer& TechniqueLaw::rendererOf(Technique technique, const ResolvedScene& scene) {
   if (!bricks_) {
-    BrickOptions options;
+    BrickOptions options = sweptBricks(scene);
     options.interior = volume_.sceneEdge;
-    options.gradients = scene.transfer.is2d();
     bricks_ = cutGrid(volume_.grid, options, true);
   }
   std::unique_ptr<Renderer>& renderer = renderers_[technique];

@@ -81,7 +81,7 @@ class Stream {
 
 void check(const ResolvedScene& scene, const ProgressiveOptions& options) {
   const std::optional<Method> method = occlusionMethod(scene);
-  if (method && !(traitsOf(scene.model).directions && traitsOf(*method).directions))
+  if (!canAverage(scene))
     throw InvalidArgument(
         "progressive: needs the model emission, or cone, ambient or lights and the method ordinates or light-volume, "
         "found " +
@@ -101,6 +101,11 @@ void check(const ResolvedScene& scene, const ProgressiveOptions& options) {
 }  // namespace
 
 double ErrorEstimate::total() const { return std::hypot(statistical, systematic); }
+
+bool canAverage(const SceneSettings& scene) {
+  const std::optional<Method> method = occlusionMethod(scene);
+  return !method || (traitsOf(scene.model).directions && traitsOf(*method).directions);
+}
 
 ResolvedScene coarserScene(const ResolvedScene& scene) {
   ResolvedScene coarse = scene;

@@ -53,8 +53,7 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
   const bool transfer =
       !before || before->transfer != next.transfer || before->sampling.classification != next.sampling.classification;
   std::optional<MediumTable> table;
-  // A fourth of a
-  // segment, which is the least part that is taken, hides colours from an optical depth of 1 on.
+  // A fourth of a segment, which is the least part that is taken, hides colours from an optical depth of 1 on.
   if (transfer)
     table.emplace(next.transfer, volume().background, largestExtinction(), 4 / longestVoxelEdge(volume().indexToWorld));
   if (transfer || before->bricks.culling != next.bricks.culling || before->bricks.budgetMiB != next.bricks.budgetMiB) {

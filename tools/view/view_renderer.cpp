@@ -12,6 +12,7 @@
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/shade/prepare.h"
+#include "umbrick/sweep/swept_bricks.h"
 #include "view/frame_encoder.h"
 
 namespace umbrick::view {
@@ -30,29 +31,19 @@ ResolvedScene draftOf(const ResolvedScene& scene, double scale, int directions) 
   return draft;
 }
 
-// Tells whether pictures of a scene can be averaged, see renderProgressive().
-bool canAverage(const ResolvedScene& scene) {
-  const std::optional<Method> method = occlusionMethod(scene);
-  return !method || (traitsOf(scene.model).directions && traitsOf(*method).directions);
-}
-
 // What a renderer and its bricks are made for: another one needs them anew.
 struct MadeFor {
   Technique technique;
   std::optional<Method> method;
   Model model;
   bool gradients;
-  bool wideApron;  // surfaces and shading look one voxel farther
+  int apron;  // that techniques on the CPU need
   BrickSettings bricks;
   bool operator==(const MadeFor&) const = default;
 };
 MadeFor madeFor(const ResolvedScene& scene) {
-  return {scene.technique,
-          occlusionMethod(scene),
-          scene.model,
-          scene.transfer.is2d(),
-          traitsOf(scene.mode).surfaces || isShaded(scene),
-          scene.bricks};
+  return {scene.technique,       occlusionMethod(scene),   scene.model,
+          scene.transfer.is2d(), sweptBricks(scene).apron, scene.bricks};
 }
 
 }  // namespace

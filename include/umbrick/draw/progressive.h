@@ -53,6 +53,9 @@ struct ProgressivePicture {
   bool reachedTarget = false;
 };
 
+/// Tells whether pictures of a scene can be averaged: unlit ones, and those whose light is a set of directions.
+bool canAverage(const SceneSettings& scene);
+
 /// The samples are dealt to so many streams that know nothing of each other. Their spread tells the standard error.
 /// Sample i belongs to stream i modulo this number.
 inline constexpr int kStreams = 4;
