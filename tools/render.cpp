@@ -180,6 +180,13 @@ std::string describe(const ProgressivePicture& picture) {
          ", systematic error " + rounded(picture.error.systematic) + ", together " + rounded(picture.error.total());
 }
 
+// Returns what a picture that was to reach an error could do about it, as the end of a line; may be empty.
+std::string whyNotReached(const ProgressivePicture& picture, double target) {
+  const bool light = occlusionMethod(picture.scene) == Method::lightVolume;
+  if (!light || picture.error.systematic < target) return {};
+  return ": light is known at voxels alone; windows of --method ordinates (--backend osmesa or egl) can be finer";
+}
+
 // Returns the scene that a file names: one sample of a pixel's area is each pass, unless all go through its centre.
 ResolvedScene recordedScene(const ProgressivePicture& picture, const ProgressiveOptions& options) {
   ResolvedScene scene = picture.scene;
@@ -252,7 +259,8 @@ ProgressivePicture renderPasses(const RenderCommand& command, const MakeRenderer
     std::cerr << "the volume is only " << last.picture.stats.slices
               << " slabs deep: the estimated error may be several times too low or too high\n";
   if (command.targetError && !last.reachedTarget)
-    std::cerr << "the error asked for, " << *command.targetError << ", is not reached\n";
+    std::cerr << "the error asked for, " << *command.targetError << ", is not reached"
+              << whyNotReached(last, *command.targetError) << '\n';
   last.scene = recordedScene(last, progressive);
   return last;
 }
@@ -263,23 +271,18 @@ int render(const RenderCommand& command) {
   Scene scene = makeScene(*command.scene, {.model = Model::cone});
   const bool progressive = command.passes || command.maxSeconds || command.targetError;
   if (progressive && command.frames > 1) throw UsageError("--frames and --progressive exclude each other");
-  const bool occluded = occlusionMethod(scene).has_value();
   if (progressive && !canAverage(scene))
     throw UsageError(
         "--progressive, --max-seconds and --target-error need the model emission, or cone, ambient or lights and the "
         "method ordinates or light-volume");
-  if (command.targetError && occluded && command.backend == "cpu")
-    throw UsageError(
-        "--target-error: occlusion on the CPU comes from light volumes, which cannot be refined: give --backend osmesa "
-        "or egl");
-  // Ordinates alone can be refined, so that a target takes them unless the user names a method.
-  if (command.targetError && !command.scene->has("method")) scene.method = Method::ordinates;
+  // Ordinates can be refined further than light at voxels, so that a target takes them where there is OpenGL, unless
+  // the user names a method.
+  if (command.targetError && command.backend != "cpu" && !command.scene->has("method"))
+    scene.method = Method::ordinates;
   // A draft is one of slices, but where these cannot be.
   const bool bySlices =
       command.backend != "cpu" && (scene.technique == Technique::automatic || scene.technique == Technique::slices);
   if (!bySlices && command.scene->quality && !command.scene->has("method")) scene.method = Method::lightVolume;
-  if (command.targetError && occluded && scene.method == Method::lightVolume)
-    throw UsageError("--target-error: needs --method ordinates, whose windows can be refined");
   RenderWatch watch;
   const std::string nothing = "interrupted; nothing was written";
   watch.bar.begin("loading " + scene.volume.file.filename().string());

@@ -86,8 +86,6 @@ void check(const ResolvedScene& scene, const ProgressiveOptions& options) {
         "progressive: needs the model emission, or cone, ambient or lights and the method ordinates or light-volume, "
         "found " +
         modelName(scene.model) + " and " + methodName(*method));
-  if (options.targetError > 0 && method == Method::lightVolume)
-    throw InvalidArgument("progressive: a target error needs the method ordinates, whose windows can be refined");
   if (options.passes < 1)
     throw InvalidArgument("progressive: passes is " + std::to_string(options.passes) + ", must be 1 or more");
   if (options.targetError > 0 && options.passes < kStreams)
@@ -131,6 +129,10 @@ double errorOverDifference(double ratio, const RaySampling& sampling) {
   return 1 / std::sqrt(part(sampling.leastOrder) * part(sampling.mostOrder));
 }
 
+// Light between voxels errs with the square of their distance where the medium is smooth, and with the distance at
+// edges of what is solid.
+constexpr RaySampling kLightOrders = {.leastOrder = 1, .mostOrder = 2};
+
 // Returns the scene of one sample, which has one ray a pixel: the samples are what a pixel is averaged over.
 ResolvedScene onePerPixel(ResolvedScene scene) {
   scene.sampling.pixelSamples = 1;
@@ -170,28 +172,30 @@ class PassSeries {
     means_[stream].add(picture);
     all_.add(picture);
     if (passes_ == 0) choose(picture);
-    // The other picture has the same light; only the distance of its samples differs.
-    if (other_) {
-      renderer_.setScene(onePerPixel(*other_));
-      otherMeans_[stream].add(renderer_.render(sample));
+    // The other pictures have the same directions; only distances differ.
+    for (Comparison& other : others_) {
+      renderer_.setScene(onePerPixel(other.scene));
+      other.means[stream].add(renderer_.render(sample));
     }
     if (++passes_ >= kStreams) error.statistical = standardError();
-    if (passes_ == kStreams && other_) {
-      // The part of the difference that is there by chance, as the streams' spread tells, does not count.
-      const double difference = rootMean(all_.values(), [&](std::size_t i) {
-        const StreamMoments moments =
-            momentsOf([&](std::size_t k) { return otherMeans_[k].colour(i) - means_[k].colour(i); });
-        return moments.mean * moments.mean - moments.variance;
-      });
-      error.systematic = errorOverDifference(ratio_, *sampling_) * difference;
-      other_.reset();
+    if (passes_ == kStreams && !others_.empty()) {
+      error.systematic = lightError_;
+      for (const Comparison& other : others_)
+        error.systematic = std::hypot(error.systematic, other.errorOverDifference * differenceTo(other));
+      others_.clear();
     }
     all_.store(picture);
   }
 
  private:
-  // Chooses the scene that pictures are compared with. Coarser pictures cost less and finer ones more, but finer ones
-  // can be made from bricks with any apron, and of samples that cannot be farther apart.
+  // A scene that pictures are compared with.
+  struct Comparison {
+    ResolvedScene scene;
+    double errorOverDifference = 1;
+    std::array<PictureMean, kStreams> means = {};
+  };
+
+  // Chooses the scenes that pictures are compared with.
   void choose(const Picture& first) {
     // From now on the automatic texel is that of the first picture, so that twice and half of it are what they say.
     sampling_ = renderer_.sampling(scene_);
@@ -200,13 +204,43 @@ class PassSeries {
       scene_.occlusion.ordinates.scale = sampling_->voxelEdge / first.stats.windowTexel;
       sampling_ = renderer_.sampling(scene_);
     }
-    other_ = coarserScene(scene_);
-    std::optional<RaySampling> sampling = renderer_.sampling(*other_);
+    compareSampling();
+    if (occlusionMethod(scene_) == Method::lightVolume) compareLight(first.stats);
+  }
+
+  // Coarser pictures cost less and finer ones more, but finer ones can be made from bricks with any apron, and of
+  // samples that cannot be farther apart.
+  void compareSampling() {
+    std::optional<ResolvedScene> other = coarserScene(scene_);
+    std::optional<RaySampling> sampling = renderer_.sampling(*other);
     if (!sampling || sampling->spacing == sampling_->spacing) {
-      other_ = nextFiner(renderer_, scene_);
-      if (other_) sampling = renderer_.sampling(*other_);
+      other = nextFiner(renderer_, scene_);
+      if (other) sampling = renderer_.sampling(*other);
     }
-    if (other_) ratio_ = sampling->spacing / sampling_->spacing;
+    if (other) others_.push_back({*other, errorOverDifference(sampling->spacing / sampling_->spacing, *sampling_)});
+  }
+
+  // Light at every voxel is compared with light at every second one, and the other way round, unless there is no
+  // memory for more than the latter: then the light's own estimate has to do.
+  void compareLight(const RenderStats& first) {
+    if (scene_.occlusion.ordinates.lightSpacing == 0 && first.lightSpacing == 2) {
+      lightError_ = first.lightSpacingError;
+      return;
+    }
+    const bool everyVoxel = first.lightSpacing == 1;
+    ResolvedScene other = scene_;
+    other.occlusion.ordinates.lightSpacing = everyVoxel ? 2 : 1;
+    others_.push_back({std::move(other), errorOverDifference(everyVoxel ? 2 : 0.5, kLightOrders)});
+  }
+
+  // Returns how far the pictures are from those of another scene. The part of the difference that is there by chance,
+  // as the streams' spread tells, does not count.
+  double differenceTo(const Comparison& other) const {
+    return rootMean(all_.values(), [&](std::size_t i) {
+      const StreamMoments moments =
+          momentsOf([&](std::size_t k) { return other.means[k].colour(i) - means_[k].colour(i); });
+      return moments.mean * moments.mean - moments.variance;
+    });
   }
 
   double standardError() const {
@@ -219,10 +253,10 @@ class PassSeries {
   ResolvedScene scene_;
   bool pixelArea_;
   std::optional<RaySampling> sampling_;
-  std::optional<ResolvedScene> other_;  // with samples `ratio_` times as far apart
-  double ratio_ = 2;
+  std::vector<Comparison> others_;  // until their differences are known
+  double lightError_ = 0;           // of light at every second voxel that is compared with no other light
   std::vector<Stream> streams_;
-  std::array<PictureMean, kStreams> means_, otherMeans_;
+  std::array<PictureMean, kStreams> means_;
   PictureMean all_;
   int passes_ = 0;
 };

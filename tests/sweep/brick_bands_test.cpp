@@ -53,7 +53,7 @@ TEST_CASE("Bands cover all rows once, and their bricks fit", "[sweep]") {
   CHECK_THROWS_WITH(cutBands(two, 20, 1, 10, 19), Catch::Contains("bricks.budgetMiB: the 2 bricks that row 5 of"));
 }
 
-TEST_CASE("A picture in bands is that of all bricks at once", "[sweep][cpu]") {
+TEST_CASE("A picture in bands is that of all bricks at once", "[sweep][cpu][slow]") {
   const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
   INFO(techniqueName(technique));
   // A row of pixels sees up to 5 MiB from within.

@@ -47,7 +47,7 @@ TEST_CASE("A progressive picture that is interrupted keeps the samples that are 
   CHECK(filesIn(folder) == 1);
 }
 
-TEST_CASE("A check that is interrupted tells the invariants that it has measured", "[tools]") {
+TEST_CASE("A check that is interrupted tells the invariants that it has measured", "[tools][slow]") {
   if (!testContext()) return;
   const TemporaryFolder folder;
   const ProgramResult result =

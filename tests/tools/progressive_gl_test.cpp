@@ -130,12 +130,27 @@ TEST_CASE("Samples of a scene without directions are refused in one line and lea
     check("--model cone " + option, 2,
           option.substr(0, option.find(' ')) + ": is for --method dos, found light-volume");
   check("--model cone --occlusion-scale 1", 2, "--occlusion-scale: is for --method ordinates, found light-volume");
-  check("--model cone --method light-volume --target-error 0.1", 2, "--target-error: needs --method ordinates");
-  check("--model cone --backend cpu --target-error 0.1", 2, "--target-error: occlusion on the CPU");
   check("--model cone --method dos --occlusion-scale 1", 2, "--occlusion-scale: is for --method ordinates, found dos");
 }
 
-TEST_CASE("Unlit pictures are refined to a target error, by all techniques", "[tools]") {
+TEST_CASE("A target error of light volumes is reached, or what stands in its way is said", "[tools]") {
+  const BallWorkplace at;
+  const auto asked = [&](const std::string& error) {
+    return at.run(kRenderBall + "--model cone --backend cpu --progressive 16 --target-error " + error +
+                  " -o a.exr --stats s.json");
+  };
+  const ProgramResult easy = asked("0.2");
+  INFO(easy.err);
+  CHECK(easy.status == 0);
+  CHECK(at.json("s.json")["progressive"]["error"] <= 0.2);
+  CHECK(at.json("s.json")["scene"]["method"] == "light-volume");
+  const ProgramResult hard = asked("0.00001");
+  INFO(hard.err);
+  CHECK(hard.status == 1);
+  CHECK_THAT(hard.err, Contains("the error asked for, 1e-05, is not reached: light is known at voxels alone"));
+}
+
+TEST_CASE("Unlit pictures are refined to a target error, by all techniques", "[tools][slow]") {
   const std::string technique = GENERATE("rays", "shear-warp", "slices");
   if (technique == "slices" && !testContext()) return;
   const BallWorkplace at;

@@ -26,9 +26,9 @@ struct ErrorEstimate {
   /// How far the estimate is from the true error is measured in tools/benchmark/README.md. It is lowest where solid
   /// surfaces are seen at a grazing angle under wide light: they are too dark by almost as much with slabs of 2.5
   /// voxels as with 10. For volumes that are few slabs deep the estimate tells little, since errors then follow no
-  /// order: it was from a sixth of the true error to 2.6 times of it, in volumes of four to eight slabs. What the
-  /// spacing of voxels does to a light volume is no part of it, so that no target error can be asked for. It is
-  /// infinite before kStreams samples.
+  /// order: it was from a sixth of the true error to 2.6 times of it, in volumes of four to eight slabs. Of light
+  /// volumes, what the spacing of voxels does to light is found in the same way, from pictures with light at every
+  /// second voxel. The estimate is infinite before kStreams samples.
   double systematic = 0;
   double total() const;  // root of the sum of squares
 };
@@ -74,7 +74,7 @@ inline constexpr int kStreams = 4;
 ///   coarserScene(), see Renderer::sampling(), the systematic error comes from the difference to a finer scene, at a
 ///   higher cost of the first samples.
 /// @param onPass  called after every sample with the picture so far; false stops
-/// @throw InvalidArgument  a method without directions; a target error for light volumes; an option out of range; as
+/// @throw InvalidArgument  a method without directions; an option out of range; as
 ///   Renderer
 ProgressivePicture renderProgressive(Renderer& renderer, const ProgressiveOptions& options,
                                      const std::function<bool(const ProgressivePicture&)>& onPass = {});
