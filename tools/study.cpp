@@ -33,7 +33,7 @@ struct StudyCommand {
   std::shared_ptr<SceneOptions> scene;
   std::filesystem::path folder, earlier;
   std::string backend = "auto";
-  bool quick = false, force = false;
+  bool quick = false, techniques = false, force = false;
   std::vector<std::string> methods, bits;
   std::vector<int> slices, segments, sizes;
   std::vector<double> thetas, scales;
@@ -59,7 +59,9 @@ void apply(const std::vector<T>& option, std::vector<T>& field) {
 }
 
 StudySettings makeSettings(const StudyCommand& command) {
-  StudySettings settings = command.quick ? quickStudySettings() : StudySettings{};
+  StudySettings settings = command.techniques ? techniqueSettings(command.quick)
+                           : command.quick    ? quickStudySettings()
+                                              : StudySettings{};
   // The values of a quick study belong to its own methods.
   if (!command.methods.empty()) {
     settings.methods = command.methods;
@@ -100,9 +102,10 @@ void checkFolder(const StudyCommand& command) {
 
 int study(const StudyCommand& command) {
   checkFolder(command);
-  const StudySettings settings = makeSettings(command);
+  StudySettings settings = makeSettings(command);
   refuseBackdrop(*command.scene);
   const Scene unopened = makeScene(*command.scene);
+  if (command.techniques && settings.thetas.empty()) settings.thetas = {unopened.occlusion.aperture};
   planStudy(settings, unopened.occlusion.aperture);  // refuses wrong settings before a volume is loaded
   StopRequest stop;
   ProgressBar bar("loading " + command.scene->input.filename().string());
@@ -181,7 +184,8 @@ void addSweeps(CLI::App& sub, StudyCommand& c) {
   };
   std::string quickMethods;
   for (const std::string& name : quick.methods) quickMethods += " " + name;
-  sub.add_option("--methods", c.methods, methodNames() + " [all; quick:" + quickMethods + "]")->group(group);
+  sub.add_option("--methods", c.methods, methodNames() + " [all that are not marked; quick:" + quickMethods + "]")
+      ->group(group);
   sub.add_option(
          "--slices", c.slices,
          "through the visible extent along the view axis" + defaults(slicesOfMethods(false), slicesOfMethods(true)))
@@ -211,7 +215,8 @@ void addSweeps(CLI::App& sub, StudyCommand& c) {
                  "of the windows of ordinates: texels per voxel edge, 0.015625 to 64, beside the automatic scale [" +
                      scales + "; quick: none]")
       ->group(group);
-  sub.add_option("--thetas", c.thetas, "half-angles of the cone, degrees, in [0, 90) [the scene's and 80]")
+  sub.add_option("--thetas", c.thetas,
+                 "half-angles of the cone, degrees, in [0, 90) [the scene's and 80; of --techniques the scene's]")
       ->group(group);
 }
 
@@ -260,6 +265,8 @@ Command addStudy(CLI::App& app) {
       ->group("Output");
   addForceOption(*sub, command->force)->group("Output");
   sub->add_flag("--quick", command->quick, "a small study, about two minutes on two cores for the bundled CT");
+  sub->add_flag("--techniques", command->techniques,
+                "all techniques beside each other: the page says which one is the fastest for which error");
   addSweeps(*sub, *command);
   addMeasuring(*sub, *command);
   return {sub, [command] { return study(*command); }};

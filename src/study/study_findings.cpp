@@ -120,6 +120,37 @@ std::vector<Comparison> fewBesideMany(const StudyRecord& record) {
   return comparisons;
 }
 
+const ErrorReached::Way* ErrorReached::best() const {
+  const Way* best = nullptr;
+  for (const Way& way : ways)
+    if (way.fastest && (!best || time(*way.fastest) < time(*best->fastest))) best = &way;
+  return best;
+}
+
+std::vector<ErrorReached> errorsReached(const ComparableCases& group, bool withLight) {
+  const auto time = withLight ? timeWithLight : +[](const CaseResult& result) { return result.timeRatio.median; };
+  const auto isOff = [](const CaseResult* a, const CaseResult* b) { return a->error.rmse < b->error.rmse; };
+  std::vector<ErrorReached> all;
+  if (group.all.empty()) return all;
+  const auto [least, most] = std::minmax_element(group.all.begin(), group.all.end(), isOff);
+  for (const double error : {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003, 0.0001}) {
+    if (error < (*least)->error.rmse || error >= (*most)->error.rmse) continue;
+    ErrorReached reached{error, {}, time};
+    for (const StudyMethod& method : studyMethods()) {
+      ErrorReached::Way way{&method, nullptr};
+      bool measured = false;
+      for (const CaseResult* one : group.all) {
+        if (one->what.method != method.name) continue;
+        measured = true;
+        if (one->error.rmse <= error && (!way.fastest || time(*one) < time(*way.fastest))) way.fastest = one;
+      }
+      if (measured) reached.ways.push_back(way);
+    }
+    all.push_back(std::move(reached));
+  }
+  return all;
+}
+
 double referenceError(const StudyRecord& record, const StudyReference& reference) {
   const ReferenceResult* result = record.find(reference);
   return result ? result->coarser.rmse : 0;

@@ -235,6 +235,22 @@ StudySettings quickStudySettings() {
   return quick;
 }
 
+StudySettings techniqueSettings(bool quick) {
+  StudySettings settings = quick ? quickStudySettings() : StudySettings{};
+  settings.methods.clear();
+  settings.details.clear();
+  for (const StudyMethod& method : studyMethods()) {
+    if (!method.compared) continue;
+    settings.methods.push_back(method.name);
+    if (!method.detail.name.empty()) settings.details[method.detail.name] = {middleOf(method.detail.full)};
+  }
+  settings.bits = {{32, 32}};
+  settings.segments = {1};
+  settings.scales = std::vector<double>();
+  settings.sizes = {settings.sizes.back()};
+  return settings;
+}
+
 std::string StudyCase::id() const {
   const StudyMethod& known = studyMethod(method);
   std::string text = method;

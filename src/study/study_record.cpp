@@ -86,6 +86,7 @@ Json toJson(const CaseResult& result) {
   json["pairs"] = result.pairs;
   json["case_ms"] = result.caseMs;
   json["baseline_ms"] = result.baselineMs;
+  if (result.lightMs > 0) json["light_ms"] = result.lightMs;
   json["load"] = result.load;
   json["bytes"] = {{"buffers", result.bufferBytes}, {"brick_textures", result.textureBytes}};
   json["fragments"] = result.fragments;
@@ -164,6 +165,7 @@ CaseResult readCase(const JsonValue& value, const StudyPlan& plan) {
   result.pairs = value.at("pairs").integer();
   result.caseMs = value.at("case_ms").number();
   result.baselineMs = value.at("baseline_ms").number();
+  if (value.find("light_ms")) result.lightMs = value.at("light_ms").number();
   result.load = value.at("load").number();
   const JsonValue bytes = value.at("bytes");
   result.bufferBytes = bytes.at("buffers").unsignedInteger();
@@ -222,6 +224,10 @@ void checkSame(const StudyRecord& record, const Json& stored, const std::string&
 }
 
 }  // namespace
+
+double timeWithLight(const CaseResult& result) {
+  return result.timeRatio.median + (result.baselineMs > 0 ? result.lightMs / result.baselineMs : 0);
+}
 
 std::array<double, 3> passShares(const PassTimes& passes) {
   const double all = passes.extinctionMs + passes.windowsMs + passes.eyeMs;

@@ -265,8 +265,10 @@ RenderStats StudyRun::countedPicture(const ResolvedScene& scene, bool onCpu) {
   RenderOptions options;
   options.timePasses = true;
   const CaseRenderer made = rendererFor(scene, onCpu, options);
-  made.renderer->render();  // uploads bricks and compiles shaders
-  return made.renderer->render().stats;
+  const double lightMs = made.renderer->render().stats.lightMs;  // uploads bricks and compiles shaders
+  RenderStats stats = made.renderer->render().stats;
+  stats.lightMs = lightMs;
+  return stats;
 }
 
 void StudyRun::measureCase(const StudyCase& what) {
@@ -299,6 +301,7 @@ void StudyRun::measureCase(const StudyCase& what) {
   result.fragments = counted.fragments;
   result.passes = counted.passes;
   result.directions = counted.directions;
+  result.lightMs = counted.lightMs;
   result.windowTexel = counted.windowTexel;
   result.windowBytes = counted.windowBytes;
   result.windowUpdates = counted.windowUpdates;

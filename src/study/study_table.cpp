@@ -53,7 +53,7 @@ std::vector<std::string> header(bool milliseconds) {
                                  "reference",
                                  "reference_error_rmse"};
   names.insert(names.end(), {"window_scale", "window_texel_world", "window_bytes", "window_updates", "fragments",
-                             "extinction_share", "windows_share", "eye_share"});
+                             "extinction_share", "windows_share", "eye_share", "time_ratio_with_light"});
   if (milliseconds) names.insert(names.end(), {"case_ms", "baseline_ms"});
   return names;
 }
@@ -99,6 +99,7 @@ std::vector<std::string> cells(const StudyRecord& record, const CaseResult& resu
     values.insert(values.end(), 4, "");
   values.push_back(std::to_string(result.fragments));
   for (const double share : passShares(result.passes)) values.push_back(cell(share));
+  values.push_back(cell(timeWithLight(result)));
   if (!record.machine.software) {
     values.push_back(cell(result.caseMs));
     values.push_back(cell(result.baselineMs));

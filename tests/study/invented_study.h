@@ -59,6 +59,7 @@ inline StudyRecord inventedStudy(const std::vector<int>& slices = {8, 16, 32}) {
     result.load = 0.5;
     result.fragments = 100'000;
     result.passes = {windows ? 1.0 : 0.0, windows ? 3.0 : 0.0, 4};
+    if (studyMethod(what.method).name == "light-volume") result.lightMs = 100;
     if (windows) {
       result.directions = what.detail;
       result.windowTexel = what.scale > 0 ? 0.25 / what.scale : 0.5;

@@ -72,3 +72,39 @@ TEST_CASE("Few directions in few slices are compared with many slices where both
     CHECK(one.errorRatio() == one.with->error.rmse / one.without->error.rmse);
   }
 }
+
+TEST_CASE("The fastest case of each method is found for each error that some reach, with light and without",
+          "[report]") {
+  StudyRecord record = inventedStudy();
+  // Light of its own makes the cases of one method slower, by different amounts.
+  for (CaseResult& result : record.cases)
+    if (isWith(result)) result.lightMs = result.baselineMs * (5 + result.what.slices);
+  std::size_t found = 0;
+  for (const ComparableCases& group : comparableCases(record))
+    for (const bool withLight : {false, true}) {
+      const auto time = [&](const CaseResult& one) {
+        return one.timeRatio.median + (withLight ? one.lightMs / one.baselineMs : 0);
+      };
+      for (const ErrorReached& reached : errorsReached(group, withLight)) {
+        CHECK(std::any_of(group.all.begin(), group.all.end(),
+                          [&](const CaseResult* one) { return one->error.rmse <= reached.error; }));
+        CHECK(std::any_of(group.all.begin(), group.all.end(),
+                          [&](const CaseResult* one) { return one->error.rmse > reached.error; }));
+        double fastest = 1e300;
+        for (const ErrorReached::Way& way : reached.ways) {
+          const CaseResult* expected = nullptr;
+          for (const CaseResult* one : group.all)
+            if (one->what.method == way.method->name && one->error.rmse <= reached.error &&
+                (!expected || time(*one) < time(*expected)))
+              expected = one;
+          CHECK(way.fastest == expected);
+          if (expected) fastest = std::min(fastest, time(*expected));
+        }
+        REQUIRE(reached.best());
+        CHECK(reached.time(*reached.best()->fastest) == fastest);
+        ++found;
+      }
+    }
+  CHECK(found > 4);
+  CHECK(errorsReached(ComparableCases{}, true).empty());
+}

@@ -197,3 +197,18 @@ TEST_CASE("A plan refuses what cannot be swept", "[report]") {
   CHECK(refusal([](Settings& s) { s.tolerance = 0; }) == "reference tolerance: is 0, must be in [1e-9, 1]");
   CHECK(refusal([](Settings& s) { s.methods = {"emission"}; }) == "no method of this study has footprints to sweep");
 }
+
+// A method that is neither compared nor listed here has been forgotten.
+TEST_CASE("A comparison of techniques has every method but variants of another", "[report]") {
+  const std::set<std::string> variants{"emission-full", "dos-2", "dos-two-pass", "rays-midpoint", "rays-pre"};
+  for (const bool quick : {false, true}) {
+    const StudyPlan plan = planStudy(techniqueSettings(quick), 60 * kDegree);
+    std::set<std::string> methods;
+    for (const StudyCase& one : plan.cases) {
+      methods.insert(one.method);
+      CHECK(one.size == plan.baseSize);
+    }
+    for (const StudyMethod& method : studyMethods())
+      CHECK(methods.contains(method.name) != variants.contains(method.name));
+  }
+}

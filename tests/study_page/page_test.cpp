@@ -53,7 +53,7 @@ TEST_CASE("The page is well-formed, whatever names there are", "[study_page]") {
   CHECK_THAT(page, Contains("data:image/png;base64,iVBORw0KGgo"));
   CHECK_THAT(page, Contains("missing"));  // the pictures that are not there
   CHECK_THAT(page, !Contains("Unfinished"));
-  CHECK_THAT(page, Contains("id=\"comparison\"") && Contains("id=\"windows\""));
+  CHECK_THAT(page, Contains("id=\"comparison\"") && Contains("id=\"windows\"") && Contains("id=\"when\""));
 }
 
 TEST_CASE("The page shows an earlier study in the plots of time and in tables, and says where it has nothing",
@@ -147,4 +147,17 @@ TEST_CASE("A thumbnail keeps the mean of a picture that it divides", "[study_pag
   for (const float p : small.pixels) b += 4 * p;
   CHECK(b == Approx(a).epsilon(1e-6));  // single precision
   CHECK(shrunk(image, 8).pixels == image.pixels);
+}
+
+TEST_CASE("The page says which method is the fastest for an error", "[study_page]") {
+  StudyRecord record = inventedStudy();
+  std::vector<ComparableCases> groups = comparableCases(record);
+  CHECK_THAT(whichWhenTables(record, groups),
+             Contains("cone</h3>") && Contains("<b>ordinates</b>, 3.6 times as fast as dos, Algorithm 3") &&
+                 !Contains("light kept") && !Contains("emission</h3>"));  // of one method there is no choice
+  for (CaseResult& result : record.cases)
+    if (result.what.method == "ordinates") result.lightMs = 100 * result.baselineMs;
+  const std::string lit = whichWhenTables(record, groups);
+  CHECK_THAT(lit, Contains("cone, light computed for the picture") && Contains("cone, light kept from the picture"));
+  CHECK_THAT(lit, Contains("<b>dos, Algorithm 3</b>") && Contains("<b>ordinates</b>"));
 }

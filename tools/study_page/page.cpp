@@ -185,6 +185,7 @@ std::string assembled(const StudyRecord& record, const PageFolder& folder) {
     std::string id, title, html;
   };
   const Part parts[]{
+      {"when", "Which one when", whichWhenTables(record, groups) + methodPictures(record, folder, groups)},
       {"comparison", "Ordinates beside dos", comparisonTables(record, groups)},
       {"base", "Around the base point", aroundBaseTable(record)},
       {"model", "Model error", modelErrorTable(record) + modelPictures(record, folder)},

@@ -32,12 +32,18 @@ std::string modelErrorTable(const StudyRecord& record);
 std::string comparisonTables(const StudyRecord& record, const std::vector<ComparableCases>& groups);
 /// Returns what windows take in memory and in time.
 std::string windowTable(const StudyRecord& record);
+/// Says which method is the fastest for which error, and what it takes in memory. Empty for fewer than two methods.
+std::string whichWhenTables(const StudyRecord& record, const std::vector<ComparableCases>& groups);
 std::string caseTable(const StudyRecord& record, const std::vector<ComparableCases>& groups);
 std::string referenceTable(const StudyRecord& record);
 
 /// Returns reference, case and error of the front of the base groups; and cone, ambient and error of the models.
 std::string casePictures(const StudyRecord& record, const PageFolder& folder, const ComparableCases& group);
 std::string modelPictures(const StudyRecord& record, const PageFolder& folder);
+
+/// Returns reference, picture and error of each method of the base groups, at one error that most of them reach.
+std::string methodPictures(const StudyRecord& record, const PageFolder& folder,
+                           const std::vector<ComparableCases>& groups);
 
 std::string commandList(const StudyRecord& record);
 

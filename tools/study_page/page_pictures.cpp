@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -58,6 +59,36 @@ std::string casePictures(const StudyRecord& record, const PageFolder& folder, co
                 "<b>" + escapeHtml(describeCase(result->what, record.plan)) + "</b><br/>" +
                     printShort(result->timeRatio.median) + " times the baseline<br/>" + errorText(result->error));
   return html + "</div>\n";
+}
+
+std::string methodPictures(const StudyRecord& record, const PageFolder& folder,
+                           const std::vector<ComparableCases>& groups) {
+  std::string html;
+  for (const Model model : {Model::cone, Model::emission}) {
+    const ComparableCases* group = baseGroup(groups, record.plan, model);
+    if (!group) continue;
+    const std::vector<ErrorReached> all = errorsReached(*group, true);
+    const auto reachedBy = [](const ErrorReached& reached) {
+      return std::count_if(reached.ways.begin(), reached.ways.end(),
+                           [](const ErrorReached::Way& way) { return way.fastest != nullptr; });
+    };
+    // Errors fall along the list, and fewer methods reach them: the last of those that most reach.
+    const ErrorReached* shown = nullptr;
+    for (const ErrorReached& reached : all)
+      if (!shown || reachedBy(reached) >= reachedBy(*shown)) shown = &reached;
+    if (!shown || shown->ways.size() < 2) continue;
+    html += "<h3>" + modelName(model) + ": the fastest pictures that are off by at most " + printShort(shown->error) +
+            "</h3>\n" + scaleBar(errorScale(model)) + "<div class=\"pictures\">\n" +
+            heads("reference", "method", "error");
+    for (const ErrorReached::Way& way : shown->ways)
+      if (way.fastest)
+        html += row(folder, record.plan.referenceOf(way.fastest->what).id(), way.fastest->what.id(),
+                    "<b>" + escapeHtml(describeCase(way.fastest->what, record.plan)) + "</b><br/>" +
+                        printShort(timeWithLight(*way.fastest)) + " times the baseline<br/>" +
+                        errorText(way.fastest->error));
+    html += "</div>\n";
+  }
+  return html;
 }
 
 std::string modelPictures(const StudyRecord& record, const PageFolder& folder) {

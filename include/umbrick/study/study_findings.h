@@ -62,6 +62,23 @@ std::vector<Comparison> fastestOfNoLargerError(const ComparableCases& group);
 std::vector<Comparison> fewBesideMany(const StudyRecord& record);
 inline constexpr int kFewDirections = 8, kFewSlices[2]{64, 128}, kManySlices = 1024;
 
+/// What each method of a group needs for an error.
+struct ErrorReached {
+  double error = 0;  // RMSE
+  struct Way {
+    const StudyMethod* method = nullptr;
+    const CaseResult* fastest = nullptr;  // of the method's cases that are off by no more; null: none is
+  };
+  std::vector<Way> ways;                        // of all methods of the group, in the order of studyMethods()
+  double (*time)(const CaseResult&) = nullptr;  // by which ways are compared
+  const Way* best() const;                      // the fastest of all; null: none
+};
+
+/// Returns what the methods of a group need for errors of 0.1, 0.03, 0.01 and so on that some of them reach and not all
+/// of their cases. Where `withLight`, each picture has its light computed for it, as after a change of the transfer
+/// function or where light turns with the camera; else it is there already.
+std::vector<ErrorReached> errorsReached(const ComparableCases& group, bool withLight);
+
 /// Returns the RMSE between the reference and its coarser self; 0: not measured.
 double referenceError(const StudyRecord& record, const StudyReference& reference);
 

@@ -33,6 +33,7 @@ struct StudyMethod {
   bool fineSegments = false;  // at the base: kAutomaticSegments per slab, else the fewest that are swept
   bool windows = false;       // whether it carries light in light windows, whose scale is swept
   bool onCpu = false;         // where it is drawn; else on OpenGL
+  bool compared = false;      // whether it is part of a comparison of techniques
 };
 
 /// Stands for as many segments as segmentsOf() says.
@@ -84,6 +85,10 @@ inline const std::vector<double> kUsualScales{0.25, 0.5, 1, 2};
 
 /// Returns the settings of a small study, of minutes.
 StudySettings quickStudySettings();
+
+/// Returns the settings of a comparison of all techniques, each in a few numbers of slices at one size and theta: where
+/// it is quick, at a smaller size against coarser references.
+StudySettings techniqueSettings(bool quick);
 
 /// One picture that is timed and compared.
 struct StudyCase {

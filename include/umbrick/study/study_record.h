@@ -30,6 +30,7 @@ struct CaseResult {
   ErrorMeasures error;                // against the reference of its model
   Spread timeRatio;                   // time over the baseline
   double caseMs = 0, baselineMs = 0;  // medians
+  double lightMs = 0;                 // to compute a light volume, once, which the times above leave out
   int pairs = 0;                      // timed pairs that the medians are of
   std::uint64_t bufferBytes = 0, textureBytes = 0;
   std::uint64_t fragments = 0;                       // of bricks that passed the depth test, in all passes
@@ -39,6 +40,9 @@ struct CaseResult {
   int directions = 0;                                // directions of the light
   double load = 0;                                   // 1-minute load average when the case was timed
 };
+
+/// Returns the time over the baseline of a picture whose light is computed for it.
+double timeWithLight(const CaseResult& result);
 
 /// Returns the shares of extinction, windows and eye in the time of a picture; they add up to 1.
 std::array<double, 3> passShares(const PassTimes& passes);
