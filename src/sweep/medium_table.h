@@ -15,7 +15,7 @@ namespace umbrick {
 /// A 1D function at whole steps t of the value, and the integral over t from step 0 on. Where the value runs linearly
 /// from step a to step b, the mean medium is (integral(b) - integral(a)) / (b - a), so that no peak in between is
 /// missed. Integrals are whole numbers of 31 bits, since the difference of two floats would keep only 24 bits of the
-/// sum. A 2D function has points alone, on a lattice of steps of value and gradient.
+/// sum. A 2D function has points and integrals over the value for each step of the gradient.
 ///
 /// Extinction is bounded by what is opaque over any segment, which keeps those bits for what is not.
 class MediumTable {
@@ -43,7 +43,7 @@ class MediumTable {
   /// sigma_t, then sigma_s of red, green and blue, 1/world unit, of each step: 4 (steps() + 1) numbers; of a 2D
   /// function for each step of the gradient, value fastest.
   const float* points() const { return points_.data(); }
-  /// The integrals of the same four from step 0 on, in units of sumUnit(); none of a 2D function.
+  /// The integrals of the same four over the value from step 0 on, in units of sumUnit().
   const std::int32_t* sums() const { return sums_.data(); }
   float sumUnit() const { return sumUnit_; }
   /// What sums() leaves of the integrals, in units of sumUnit() / kRests; null where nobody needs it: where extinction
@@ -60,9 +60,11 @@ class MediumTable {
  private:
   void fill1d(const TransferFunction& transfer, double most);
   void fill2d(const TransferFunction& transfer, double most);
-  /// Where counts_ has the number of points with medium below a step of the value and one of the gradient.
-  std::size_t countAt(int value, int gradient) const {
-    return static_cast<std::size_t>(gradient) * static_cast<std::size_t>(steps_ + 2) + static_cast<std::size_t>(value);
+  /// Where counts_ has the number of those with medium before a column, which are the steps of the value and the ways
+  /// behind them in turn, and below a step of the gradient.
+  std::size_t countAt(int column, int gradient) const {
+    return static_cast<std::size_t>(gradient) * static_cast<std::size_t>(2 * steps_ + 3) +
+           static_cast<std::size_t>(column);
   }
 
   double origin_ = 0, perUnit_ = 1, first_ = 0, gradientOrigin_ = 0, gradientPerUnit_ = 1;

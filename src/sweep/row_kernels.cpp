@@ -237,6 +237,49 @@ class LinearMedium {
   float unit_;
 };
 
+// The mean over values from one to another, in steps, of a 2D function for one gradient. Sums are interpolated between
+// steps: rounded ones would be another mean where a peak is thinner than a step.
+HWY_INLINE MeanMedium meanOnRow(Lanes d, const MediumTable& table, Floats from, Floats to, Floats gradient) {
+  const Numbers di;
+  const Floats zero = hn::Zero(d), one = hn::Set(d, 1.0f), last = hn::Set(d, static_cast<float>(table.steps()));
+  const Floats lastRow = hn::Set(d, static_cast<float>(table.gradientSteps()));
+  const auto within = [&](Floats x, Floats most) HWY_ATTR { return hn::Min(hn::Max(x, zero), most); };
+  const Ints row = hn::ConvertTo(di, within(hn::Round(gradient), lastRow));
+  const Ints first = hn::Mul(row, hn::Set(di, table.steps() + 1));
+  const auto entryOf = [&](Floats step) HWY_ATTR { return hn::ShiftLeft<2>(hn::Add(first, hn::ConvertTo(di, step))); };
+  const Floats insideFrom = within(from, last), insideTo = within(to, last);
+  const Floats stepFrom = hn::Min(hn::Floor(insideFrom), hn::Sub(last, one));
+  const Floats stepTo = hn::Min(hn::Floor(insideTo), hn::Sub(last, one));
+  const Floats restFrom = hn::Sub(insideFrom, stepFrom), restTo = hn::Sub(insideTo, stepTo);
+  const Ints a = entryOf(stepFrom), b = entryOf(stepTo);
+  // Over less than a tenth of a step the mean is the medium at the nearest one.
+  const Floats span = hn::Sub(to, from);
+  const auto single = hn::Lt(hn::Abs(span), hn::Set(d, 0.1f));
+  const Ints nearest = entryOf(hn::Round(insideFrom));
+  const Floats share = hn::Div(one, hn::IfThenElse(single, one, span));
+  const Floats perStep = hn::Mul(share, hn::Set(d, table.sumUnit()));
+  // Shares that lie outside of the table, where the function is constant.
+  const Floats below = hn::Mul(share, hn::Sub(hn::Min(to, zero), hn::Min(from, zero)));
+  const Floats above = hn::Mul(share, hn::Sub(hn::Max(to, last), hn::Max(from, last)));
+  const bool outside = !hn::AllFalse(d, hn::Gt(hn::Add(hn::Abs(below), hn::Abs(above)), zero));
+  const auto mean = [&](int c) HWY_ATTR {
+    const std::int32_t *const sums = table.sums() + c, *const next = sums + 4;
+    const float* const points = table.points() + c;
+    const Ints atA = hn::GatherIndex(di, sums, a), atB = hn::GatherIndex(di, sums, b);
+    const Floats wayA = hn::ConvertTo(d, hn::Sub(hn::GatherIndex(di, next, a), atA));
+    const Floats wayB = hn::ConvertTo(d, hn::Sub(hn::GatherIndex(di, next, b), atB));
+    Floats sum = hn::MulAdd(restTo, wayB, hn::NegMulAdd(restFrom, wayA, hn::ConvertTo(d, hn::Sub(atB, atA))));
+    sum = hn::Mul(sum, perStep);
+    if (outside) {
+      sum = hn::MulAdd(below, hn::GatherIndex(d, points, entryOf(zero)), sum);
+      sum = hn::MulAdd(above, hn::GatherIndex(d, points, entryOf(last)), sum);
+    }
+    if (!hn::AllFalse(d, single)) sum = hn::IfThenElse(single, hn::GatherIndex(d, points, nearest), sum);
+    return hn::Max(sum, zero);
+  };
+  return {mean(0), mean(1), mean(2), mean(3)};
+}
+
 // The light that arrives at the middle of a part, by channel.
 struct Arriving {
   Floats red, green, blue, power;
@@ -355,7 +398,6 @@ HWY_INLINE void addClassified(const RowSegment& segment, Accumulator& sum, const
 void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const RowRays& rays, int first, int count,
                      const float* const* front, const float* const* back) {
   const Lanes d;
-  const Numbers di;
   const auto n = static_cast<int>(hn::Lanes(d));
   const LinearMedium linear(table);
   const bool is2d = table.is2d();
@@ -387,23 +429,18 @@ void integrateRowsOf(const MediumTable& table, const RowSegment& segment, const 
       to = hn::Max(hn::Min(to, far), hn::Neg(far));
       if (segment.midpoint) from = to = hn::Mul(half, hn::Add(from, to));
       if (is2d) {
-        // The medium at the middles of two halves.
         const Floats g0 = hn::LoadU(d, front[1] + at), g1 = hn::LoadU(d, back[1] + at);
         Accumulator sum(rays, segment, at);
+        // Two halves, each with the gradient of its middle.
         const Floats part = hn::Mul(half, length);
+        Floats value = from;
         for (const float share : {0.25f, 0.75f}) {
           const Floats place = between(begin, end, hn::Set(d, share));
-          const Floats value = hn::Round(between(from, to, hn::Set(d, segment.midpoint ? 0.5f : share)));
-          const Floats gradient = hn::Round(between(g0, g1, segment.midpoint ? middle : place));
-          const Ints column =
-              hn::ConvertTo(di, hn::Min(hn::Max(value, zero), hn::Set(d, static_cast<float>(table.steps()))));
-          const Ints row = hn::ConvertTo(
-              di, hn::Min(hn::Max(gradient, zero), hn::Set(d, static_cast<float>(table.gradientSteps()))));
-          const Ints entry = hn::ShiftLeft<2>(hn::Add(hn::Mul(row, hn::Set(di, table.steps() + 1)), column));
-          const float* points = table.points();
-          const MeanMedium medium{hn::GatherIndex(d, points, entry), hn::GatherIndex(d, points + 1, entry),
-                                  hn::GatherIndex(d, points + 2, entry), hn::GatherIndex(d, points + 3, entry)};
+          const Floats next = between(from, to, hn::Set(d, share + 0.25f));
+          const MeanMedium medium =
+              meanOnRow(d, table, value, next, between(g0, g1, segment.midpoint ? middle : place));
           sum.add(medium, hn::Mul(medium.sigma_t, part), part, arrivingAt(d, segment, front, back, at, place));
+          value = next;
         }
         sum.store();
         continue;

@@ -35,6 +35,22 @@ TEST_CASE("Layers thinner than a voxel have their optical depth on the CPU", "[s
   }
 }
 
+// The same of a function of value and gradient: between the voxels of a ramp, whose gradient is 1.
+TEST_CASE("Layers of a 2D function that are thinner than a voxel have their optical depth on the CPU", "[sweep][cpu]") {
+  const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
+  INFO(techniqueName(technique));
+  const ScalarGrid grid = fieldGrid({glm::ivec3(-1), glm::ivec3(25)}, [](const glm::dvec3& p) { return p.z; });
+  const Medium none{kAlbedo, 0}, some{kAlbedo, 50};
+  // 0.02 of a voxel, in a domain of 30: less than a step of the table.
+  const TransferFunction transfer({0, 9.3, 9.3, 9.32, 9.32, 30}, {0, 2},
+                                  {none, none, some, some, none, none, none, none, some, some, none, none});
+  ResolvedScene scene = plainScene(transfer, orthographicCamera({12, 12, 60}, {12, 12, 0}, 10, 16), 0.5);
+  scene.clipBox = kInside;
+  const Image picture = renderedOnCpu(technique, grid, scene).colour;
+  CHECK(picture.at(8, 8)[3] == Approx(-std::expm1(-1.0)).margin(5e-3));
+  CHECK(picture.at(8, 8)[0] == Approx(-kAlbedo.r * std::expm1(-1.0)).margin(5e-3));
+}
+
 TEST_CASE("Two slabs seen from both sides have their closed form on the CPU", "[sweep][cpu]") {
   const Technique technique = GENERATE(Technique::rays, Technique::shearWarp);
   INFO(techniqueName(technique));

@@ -69,7 +69,7 @@ TEST_CASE("What a medium table calls transparent is so", "[sweep]") {
         const Range gradient = is2d ? Range{soft, steep} : Range{0, 0};
         const bool isTransparent = transfer.isTransparent({low, high}, gradient);
         const bool found = table.isTransparent({low, high}, gradient);
-        // A 2D function's peaks between two steps of the table are none of it.
+        // What a 2D function shows between two steps of the gradient alone is none of it.
         if (!isTransparent && !is2d) CHECK_FALSE(found);
         if (isTransparent && found) ++transparent;
         if (!isTransparent && !found) ++visible;
