@@ -47,7 +47,7 @@ struct RenderCommand {
 
 // Says which options mean nothing to what draws.
 void tellUnused(const RenderCommand& command, Technique technique, bool onCpu) {
-  if (technique == Technique::slices) return;
+  if (technique == Technique::slices || technique == Technique::stacks) return;
   const std::string where = onCpu ? "on the CPU: it is of slices (--backend osmesa)" : "on rays: it is of slices";
   const auto tell = [&](const std::string& option) { std::cerr << option << " has no effect " << where << '\n'; };
   for (const char* option : {"eye-bits", "texel-format"})

@@ -10,6 +10,8 @@ layout(location = 0) out vec4 eye;
 layout(location = 1) out vec4 aux;
 
 void main() {
+  vec2 p = screenPoint();
+  if (kStack == 2 && !liesInStack(p)) discard;
   eye = evaluateSlab(slab_centre).eye;
-  if (kAux != 0) aux = vec4(eye.a, eye.a * slab_centre.w, 0.0, eye.a);
+  if (kAux != 0) aux = vec4(eye.a, eye.a * viewDepth(slab_centre, p), 0.0, eye.a);
 }

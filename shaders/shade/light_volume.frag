@@ -24,14 +24,15 @@ vec4 arrivingAt(vec3 point) {
 
 void main() {
   vec2 p = screenPoint();
+  if (kStack == 2 && !liesInStack(p)) discard;
   vec3 half_step = slabHalf(p);
   vec2 kept = vec2(-1.0, 1.0);
   if (kClipPlanes > 0) {
-    kept = keptInterval(p, slab_centre.w);
+    kept = keptInterval(p, viewDepth(slab_centre, p), halfDepth(p));
     kept.y = max(kept.x, kept.y);
   }
   float thickness = kept.y - kept.x;
-  float ray = rayStretch(p) * half_spacing * thickness / float(kSegments);  // world length of a segment
+  float ray = rayStretch(p) * halfDepth(p) * thickness / float(kSegments);  // world length of a segment
   vec3 segment = half_step * (thickness / float(kSegments));
   vec3 front = slabMiddle(slab_centre, p) + kept.x * half_step;
   vec4 sum = vec4(0.0);
@@ -53,5 +54,5 @@ void main() {
     seen += through * piece.eye.a * arriving.a;
   }
   eye = vec4(sum.rgb * whole_light / brightest, sum.a);
-  if (kAux != 0) aux = vec4(seen, eye.a * slab_centre.w, 0.0, eye.a);
+  if (kAux != 0) aux = vec4(seen, eye.a * viewDepth(slab_centre, p), 0.0, eye.a);
 }

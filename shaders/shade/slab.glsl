@@ -13,11 +13,11 @@ Slab evaluateSlab(vec4 slab_centre) {
   vec3 half_step = slabHalf(p);
   vec2 kept = vec2(-1.0, 1.0);
   if (kClipPlanes > 0) {
-    kept = keptInterval(p, slab_centre.w);
+    kept = keptInterval(p, viewDepth(slab_centre, p), halfDepth(p));
     kept.y = max(kept.x, kept.y);
   }
   float thickness = kept.y - kept.x;
-  float ray = rayStretch(p) * half_spacing * thickness / float(kSegments);  // world length of a segment
+  float ray = rayStretch(p) * halfDepth(p) * thickness / float(kSegments);  // world length of a segment
   vec3 segment = half_step * (thickness / float(kSegments));
   vec3 front = middle + kept.x * half_step;
   Slab slab = Slab(vec4(0.0), 0.0);

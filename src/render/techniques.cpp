@@ -29,9 +29,16 @@ bool slicesSupport(const SceneSettings& scene) {
          scene.sampling.classification == Classification::post;
 }
 
+bool stacksSupport(const SceneSettings& scene) {
+  const std::optional<Method> method = occlusionMethod(scene);
+  return supportsMode(scene, Technique::stacks) && (!method || *method == Method::lightVolume) &&
+         scene.sampling.classification == Classification::post;
+}
+
 // A new technique is a new row of this table.
 constexpr TechniqueTraits kTraits[]{
     {Technique::slices, "proxy slices across the view, nearest first", makeOnGl<SliceRenderer>, nullptr, slicesSupport},
+    {Technique::stacks, "slices along the volume's own axes", makeOnGl<SliceRenderer>, nullptr, stacksSupport},
     {Technique::rays, "a ray through each pixel", makeOnGl<RayCaster>, makeOnCpu<RayRenderer>, raysSupport},
     {Technique::shearWarp, "rays through the rows of the voxels' own slices", nullptr, makeOnCpu<ShearWarpRenderer>,
      shearWarpSupports},

@@ -93,8 +93,8 @@ const ModeTraits& traitsOf(Mode mode) {
 bool supports(Technique technique, Mode mode) { return mode == Mode::integrate || technique == Technique::rays; }
 
 bool supportsMode(const SceneSettings& scene, Technique technique) {
-  return supports(technique, scene.mode) &&
-         (!isShaded(scene) || scene.mode != Mode::integrate || technique != Technique::slices);
+  return supports(technique, scene.mode) && (!isShaded(scene) || scene.mode != Mode::integrate ||
+                                             (technique != Technique::slices && technique != Technique::stacks));
 }
 
 void requireMode(const SceneSettings& scene, Technique technique) {

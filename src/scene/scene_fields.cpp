@@ -135,7 +135,8 @@ const std::vector<SceneField>& table() {
        "(light-volume)",
        [](Scene& s) -> FieldPlace { return Choice(s.method, kMethods); }},
       {"technique", "technique", "Sampling",
-       "how the picture is computed: slices (across the view, on OpenGL), rays (through each pixel, on OpenGL or the "
+       "how the picture is computed: slices (across the view, on OpenGL), stacks (across the axes of the volume, on "
+       "OpenGL), rays (through each pixel, on OpenGL or the "
        "CPU), shear-warp (rays in rows of voxels, on the CPU: quicker and coarser) or auto",
        [](Scene& s) -> FieldPlace { return Choice(s.technique, kTechniques); }},
 
@@ -167,6 +168,9 @@ const std::vector<SceneField>& table() {
       {"sampling.classification", "classification", "Sampling",
        "post: values are interpolated; pre: the media of voxels, as a comparison, without occlusion, on the CPU",
        [](Scene& s) -> FieldPlace { return Choice(s.sampling.classification, kClassifications); }},
+      {"sampling.stackInterpolation", "stack-interpolation", "Sampling",
+       "of stacks: linear, slices at --spacing along the view, between voxels; none, on the voxels' own slices alone",
+       [](Scene& s) -> FieldPlace { return Choice(s.sampling.stackInterpolation, kStackInterpolations); }},
       {"sampling.segments",
        "segments",
        "Sampling",

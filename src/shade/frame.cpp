@@ -26,7 +26,7 @@ std::uint64_t FragmentCounter::total() const {
   return sum;
 }
 
-void SweepProgress::begin(std::int64_t slices, const glm::ivec2& size) {
+void SweepProgress::begin(std::int64_t slices, const glm::ivec2& size, double done, double share) {
   // So many pixels are drawn in a fraction of a second, for which a driver may be kept waiting: a wait costs little
   // beside them.
   constexpr std::int64_t kPixels = std::int64_t{1} << 23;
@@ -34,20 +34,25 @@ void SweepProgress::begin(std::int64_t slices, const glm::ivec2& size) {
   slices_ = std::max<std::int64_t>(1, slices);
   interval_ = std::clamp<std::int64_t>(kPixels / (std::int64_t{size.x} * size.y), 1, kMostSlices);
   told_ = 0;
+  done_ = done;
+  share_ = share;
 }
 
 void SweepProgress::reached(std::int64_t slice) {
   if (!report_ || slice < told_ + interval_) return;
   told_ = slice;
   gl_.Finish();
-  report_(static_cast<double>(slice) / static_cast<double>(slices_));
+  report_(done_ + share_ * static_cast<double>(slice) / static_cast<double>(slices_));
 }
 
 ShaderConstants slabConstants(const Frame& frame) {
   ShaderConstants constants{{"kPerspective", frame.camera.projection == Projection::perspective},
                             {"kClipPlanes", static_cast<int>(frame.planes.size())},
                             {"kSegments", frame.scene.sampling.segments},
-                            {"kAux", frame.targets.options.aux}};
+                            {"kAux", frame.targets.options.aux},
+                            {"kStack", !frame.stack         ? 0
+                                       : frame.stack->alone ? 1
+                                                            : 2}};
   frame.transfer.setConstants(constants);
   return constants;
 }
@@ -66,6 +71,16 @@ void setSlabUniforms(GlProgram& program, const Frame& frame, const IndexView& vi
   program.set("across_y", glm::vec3(view.toIndex[1] / size));
   program.set("half_forward", glm::vec3(0.5 * frame.slices.spacing * view.toIndex[2] / size));
   program.set("half_spacing", static_cast<float>(0.5 * frame.slices.spacing));
+  if (frame.stack) {
+    program.set("stack_rate", glm::vec3(frame.stack->rate));
+    program.set("stack_point", glm::vec2(frame.stack->point));
+    program.set("per_view_depth", glm::vec3(view.toIndex[2] / size));
+    program.set("index_right", glm::vec3(view.toIndex[0]));
+    program.set("index_up", glm::vec3(view.toIndex[1]));
+    program.set("index_forward", glm::vec3(view.toIndex[2]));
+    program.set("stack_axis", frame.stack->axis);
+    program.set("stack_sign", frame.stack->sign);
+  }
   std::vector<glm::vec4> inShader;
   for (const glm::dvec4& plane : planes) inShader.emplace_back(plane);
   program.set("clip_planes", inShader);

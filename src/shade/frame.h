@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "umbrick/gl/program.h"
 #include "umbrick/scene/resolve.h"
 #include "umbrick/shade/slice_renderer.h"
+#include "umbrick/slice/stack_slices.h"
 
 namespace umbrick {
 
@@ -57,7 +59,8 @@ class PassClock {
 class SweepProgress {
  public:
   SweepProgress(const GlFunctions& gl, const std::function<void(double)>& report) : gl_(gl), report_(report) {}
-  void begin(std::int64_t slices, const glm::ivec2& size);
+  /// @param share  of the picture that these slices are, after `done` of it
+  void begin(std::int64_t slices, const glm::ivec2& size, double done = 0, double share = 1);
   /// Is called when the slices before this one have been handed to the driver, whether or not there was something to
   /// draw on them. @param slice  counted from 0 at the nearest
   void reached(std::int64_t slice);
@@ -66,6 +69,7 @@ class SweepProgress {
   const GlFunctions& gl_;
   const std::function<void(double)>& report_;
   std::int64_t slices_ = 1, interval_ = 1, told_ = 0;
+  double done_ = 0, share_ = 1;
 };
 
 struct Frame {
@@ -87,6 +91,7 @@ struct Frame {
   double diagonal = 1;         // of the volume's domain, world units; the same however it is cut into bricks
   PassClock clock;
   RenderSample sample;
+  std::optional<StackAim> stack;  // of the slices; none: they lie across the view
   SweepProgress progress;
 
   glm::ivec2 size() const { return {camera.width, camera.height}; }

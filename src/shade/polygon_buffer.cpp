@@ -36,7 +36,7 @@ void PolygonBuffer::fill(const ProxySlices& slices, std::int64_t first, std::int
     const int layer = layers.empty() ? 0 : layers[static_cast<std::size_t>(i - first)];
     if (layer < 0) continue;
     const double depth = slices.depth(i);
-    const glm::dvec3 centre = view.eyeIndex + depth * view.toIndex[2];  // of the slice, index coordinates
+    const glm::dvec3 centre = view.eyeIndex + depth * slices.perDepth;  // of the slice, index coordinates
     order.clear();
     for (int p = slices.start[static_cast<std::size_t>(i)]; p < slices.start[static_cast<std::size_t>(i) + 1]; ++p)
       order.push_back(&slices.polygons[static_cast<std::size_t>(p)]);

@@ -51,6 +51,16 @@ struct Dirty {
   }
 };
 
+// Returns the scene as it is drawn: where no values between slices of voxels are looked up, a slab is what its slice
+// is.
+ResolvedScene asDrawn(ResolvedScene scene) {
+  if (scene.technique == Technique::stacks && scene.sampling.stackInterpolation == StackInterpolation::none) {
+    scene.sampling.quadrature = Quadrature::midpoint;
+    scene.sampling.segments = 1;
+  }
+  return scene;
+}
+
 std::unique_ptr<SlicePass> makePass(const ResolvedScene& scene, const Bricks& volume) {
   const std::optional<Method> method = occlusionMethod(scene);
   if (!method) return makeEmissionPass();
@@ -68,8 +78,10 @@ class SliceRenderer::Implementation {
   }
 
   /// Makes anew all that is dirty or, when something throws, nothing.
-  void update(const ResolvedScene& next, const Dirty& dirty) {
-    requireMode(next, Technique::slices);
+  /// @param next  as it is drawn
+  void update(ResolvedScene next) {
+    const Dirty dirty = scene_ ? Dirty(*scene_, next) : Dirty();
+    requireMode(next, next.technique == Technique::stacks ? Technique::stacks : Technique::slices);
     checkScene(next);
     resetGlState(gl_);
     std::optional<TransferLookup> lookup;
@@ -102,6 +114,7 @@ class SliceRenderer::Implementation {
     if (pass) pass_ = std::move(pass);
     backgroundVisible_ = backgroundVisible;
     fits_ = fits;
+    scene_ = std::move(next);
   }
 
   std::optional<RaySampling> sampling(const ResolvedScene& scene) const {
@@ -121,31 +134,23 @@ class SliceRenderer::Implementation {
   }
 
   /// Draws a picture. What throws leaves none to be read.
-  void draw(const ResolvedScene& scene, const RenderSample& sample) {
+  void draw(const RenderSample& sample) {
+    const ResolvedScene& scene = *scene_;
     drawn_ = false;
     stats_ = {};
     resetGlState(gl_);
-    const Stopwatch geometry;
-    prepareFrame(scene, sample);
-    Frame& frame = *frame_;
     const std::uint64_t uploadedBefore = resident_.atlas().uploadedBricks();
-    stats_.geometryMs = geometry.elapsedMs();
-
     targets_->clear(gl_);
-    gl_.Viewport(0, 0, frame.camera.width, frame.camera.height);
-    pass_->begin(frame, runs_);
-    for (const SweepRun& run : runs_) {
-      const Stopwatch upload;
-      selection_->require(run.bricks);
-      pass_->fill(frame, run.first, run.last);
-      stats_.uploadMs += upload.elapsedMs();
-      const Stopwatch sweep;
-      frame.clock.start();
-      pass_->draw(frame, run.first, run.last);
-      frame.clock.lap(&PassTimes::eyeMs);
-      // Only a wait for the last fragment tells the time of the sweep.
-      gl_.Finish();
-      stats_.sweepMs += sweep.elapsedMs();
+    gl_.Viewport(0, 0, scene.camera.width, scene.camera.height);
+    const std::vector<std::optional<StackAim>> sweeps = sweepsOf(scene, sample);
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+      const Stopwatch geometry;
+      prepareFrame(scene, sample, sweeps[i]);
+      frame_->progress.begin(frame_->slices.count(), frame_->size(),
+                             static_cast<double>(i) / static_cast<double>(sweeps.size()),
+                             1 / static_cast<double>(sweeps.size()));
+      stats_.geometryMs += geometry.elapsedMs();
+      drawFrame(*frame_);
     }
     checkGl(gl_, "render");
     stats_.uploadedBricks = resident_.atlas().uploadedBricks() - uploadedBefore;
@@ -153,31 +158,29 @@ class SliceRenderer::Implementation {
   }
 
   /// Cuts the slices of a picture that is not drawn.
-  void cut(const ResolvedScene& scene) {
+  void cut() {
+    const ResolvedScene& scene = *scene_;
     drawn_ = false;
     stats_ = {};
     resetGlState(gl_);
-    prepareFrame(scene, {});
+    prepareFrame(scene, {}, sweepsOf(scene, {}).front());
+    frame_->progress.begin(frame_->slices.count(), frame_->size());
   }
 
-  Picture read(const ResolvedScene& scene) {
+  Picture read() {
+    const ResolvedScene& scene = *scene_;
     if (!frame_ || !drawn_) throw InvalidArgument("render: nothing was drawn since the scene changed");
     resetGlState(gl_);
-    const Frame& frame = *frame_;
     Picture picture;
     const Stopwatch read;
     readLayers(gl_, *targets_, scene, pass_->brightest(), picture);
     RenderStats& stats = picture.stats = stats_;
     stats.readMs = read.elapsedMs();
-    stats.slices = frame.slices.count();
     stats.bricks = volume_.bricks.size();
     stats.visibleBricks = selection_->size();
     stats.brickSlots = selection_->slots();
-    stats.polygons = frame.slices.polygons.size();
-    stats.fragments = frame.fragments.total();
     addTextures(resident_.atlas(), stats);
     stats.bufferBytes = targets_->bytes();
-    stats.passes = frame.clock.times();
     pass_->addTo(stats);
     return picture;
   }
@@ -234,6 +237,10 @@ class SliceRenderer::Implementation {
 
  private:
   void checkScene(const ResolvedScene& scene) const {
+    const std::optional<Method> method = occlusionMethod(scene);
+    if (scene.technique == Technique::stacks && method && *method != Method::lightVolume)
+      throw InvalidArgument("method: " + methodName(*method) +
+                            " takes light from slice to slice across the view; stacks read a light volume");
     if (!supports(Method::lightVolume, scene.model))
       throw InvalidArgument("model: " + modelName(scene.model) +
                             " is integrated by the reference alone; slices render emission, cone, ambient and lights");
@@ -262,25 +269,96 @@ class SliceRenderer::Implementation {
                             " beside this transfer function");
   }
 
-  void prepareFrame(const ResolvedScene& scene, const RenderSample& sample) {
+  // Returns the stacks that a picture is made of, one after another; none for slices across the view.
+  std::vector<std::optional<StackAim>> sweepsOf(const ResolvedScene& scene, const RenderSample& sample) const {
+    if (scene.technique != Technique::stacks) return {std::nullopt};
+    IndexView view = indexView(scene.camera, volume_.indexToWorld);
+    view.seeThrough(sample.pixel);
+    const bool between = scene.sampling.stackInterpolation == StackInterpolation::linear;
+    const std::vector<StackAim> stacks = aimStacks(view, between ? scene.sampling.spacing : 0, sample.phase);
+    return {stacks.begin(), stacks.end()};
+  }
+
+  // Draws the slices of a frame that is prepared.
+  void drawFrame(Frame& frame) {
+    pass_->begin(frame, runs_);
+    for (const SweepRun& run : runs_) {
+      const Stopwatch upload;
+      selection_->require(run.bricks);
+      pass_->fill(frame, run.first, run.last);
+      stats_.uploadMs += upload.elapsedMs();
+      const Stopwatch sweep;
+      frame.clock.start();
+      pass_->draw(frame, run.first, run.last);
+      frame.clock.lap(&PassTimes::eyeMs);
+      // Only a wait for the last fragment tells the time of the sweep.
+      gl_.Finish();
+      stats_.sweepMs += sweep.elapsedMs();
+    }
+    stats_.slices += frame.slices.count();
+    stats_.polygons += frame.slices.polygons.size();
+    stats_.fragments += frame.fragments.total();
+    const PassTimes& times = frame.clock.times();
+    stats_.passes.extinctionMs += times.extinctionMs;
+    stats_.passes.windowsMs += times.windowsMs;
+    stats_.passes.eyeMs += times.eyeMs;
+  }
+
+  // Tells whether slabs of a stack, which are not cut at the eye, reach behind it.
+  bool reachesEye(const IndexView& view, const StackAim& aim, const ProxySlices& slices) const {
+    if (view.projection == Projection::perspective) return aim.phase != 0.5 && slices.first == 0;
+    for (unsigned c = 0; c < 8; ++c) {
+      const glm::dvec3 low(volume_.domain.min), size(volume_.domain.extent());
+      if (view.toView(low + size * glm::dvec3(c & 1, c >> 1 & 1, c >> 2 & 1) - 0.5).z < 0) return true;
+    }
+    return false;
+  }
+
+  void prepareFrame(const ResolvedScene& scene, const RenderSample& sample, std::optional<StackAim> stack) {
     const Camera& camera = scene.camera;
     IndexView view = indexView(camera, volume_.indexToWorld);
     checkReach(view, scene);  // rays through other places in the pixels lie between those at the edges of the image
     view.seeThrough(sample.pixel);
     std::vector<glm::dvec4> planes = viewPlanes(scene, volume_, backgroundVisible_);
-    checkPlanes(planes.size());
     std::vector<glm::dvec4> bounds = viewBounds(scene, volume_, backgroundVisible_, planes);
-    const double spacing = scene.sampling.spacing;
-    ProxySlices slices = cutSlices(view, selection_->origins(), volume_.layout.interior, bounds, spacing);
-    // With another phase the first slab begins in front of or behind the eye, so nothing may be there.
-    if (sample.phase != 0.5 && slices.first > 0)
-      slices = cutSlices(view, selection_->origins(), volume_.layout.interior, bounds, spacing, sample.phase);
-    frame_.emplace(Frame{gl_, scene, camera, view, std::move(planes), std::move(bounds), std::move(slices), *selection_,
-                         selection_->atlas(), *transfer_, *targets_, *polygons_,
-                         FragmentCounter(gl_, options_.countFragments), options_.reverseBricks,
-                         shortestVoxelEdge(volume_.indexToWorld), domainDiagonal(volume_),
-                         PassClock(gl_, options_.timePasses), sample, SweepProgress(gl_, options_.progress)});
-    frame_->progress.begin(frame_->slices.count(), frame_->size());
+    ProxySlices slices;
+    if (stack) {
+      const auto cut = [&] { return cutStack(view, *stack, selection_->origins(), volume_.layout.interior, bounds); };
+      slices = cut();
+      const bool between = scene.sampling.stackInterpolation == StackInterpolation::linear;
+      if (between && slices.first == 0 && stack->phase != 0.5) {
+        stack->phase = 0.5;
+        slices = cut();
+      }
+      if (reachesEye(view, *stack, slices)) planes.emplace_back(0, 0, 1, 0);
+    } else {
+      const double spacing = scene.sampling.spacing;
+      slices = cutSlices(view, selection_->origins(), volume_.layout.interior, bounds, spacing);
+      // With another phase the first slab begins in front of or behind the eye, so nothing may be there.
+      if (sample.phase != 0.5 && slices.first > 0)
+        slices = cutSlices(view, selection_->origins(), volume_.layout.interior, bounds, spacing, sample.phase);
+    }
+    checkPlanes(planes.size());
+    frame_.emplace(Frame{gl_,
+                         scene,
+                         camera,
+                         view,
+                         std::move(planes),
+                         std::move(bounds),
+                         std::move(slices),
+                         *selection_,
+                         selection_->atlas(),
+                         *transfer_,
+                         *targets_,
+                         *polygons_,
+                         FragmentCounter(gl_, options_.countFragments),
+                         options_.reverseBricks,
+                         shortestVoxelEdge(volume_.indexToWorld),
+                         domainDiagonal(volume_),
+                         PassClock(gl_, options_.timePasses),
+                         sample,
+                         stack,
+                         SweepProgress(gl_, options_.progress)});
     pass_->plan(*frame_);
     std::vector<const ProxySlices*> sweeps{&frame_->slices};
     if (pass_->occluders()) sweeps.push_back(pass_->occluders());
@@ -292,6 +370,7 @@ class SliceRenderer::Implementation {
   ResidentVolume& resident_;
   const Bricks& volume_;
   const RenderOptions options_;
+  std::optional<ResolvedScene> scene_;  // as it is drawn
   bool backgroundVisible_ = false;
   bool fits_ = false;  // all visible bricks are resident at once
   std::optional<TransferLookup> transfer_;
@@ -318,9 +397,7 @@ SliceRenderer::SliceRenderer(const GlContext& context, const Bricks& volume, con
 }
 SliceRenderer::~SliceRenderer() = default;
 
-void SliceRenderer::update(const ResolvedScene& next) {
-  implementation_->update(next, hasScene() ? Dirty(scene(), next) : Dirty());
-}
+void SliceRenderer::update(const ResolvedScene& next) { implementation_->update(asDrawn(next)); }
 Picture SliceRenderer::render(const Camera& camera, const RenderSample& sample) {
   setCamera(camera);
   return render(sample);
@@ -328,9 +405,9 @@ Picture SliceRenderer::render(const Camera& camera, const RenderSample& sample) 
 std::optional<RaySampling> SliceRenderer::sampling(const ResolvedScene& scene) const {
   return implementation_->sampling(scene);
 }
-void SliceRenderer::draw(const RenderSample& sample) { implementation_->draw(scene(), sample); }
-Picture SliceRenderer::read() { return implementation_->read(scene()); }
-void SliceRenderer::cut() { implementation_->cut(scene()); }
+void SliceRenderer::draw(const RenderSample& sample) { implementation_->draw(sample); }
+Picture SliceRenderer::read() { return implementation_->read(); }
+void SliceRenderer::cut() { implementation_->cut(); }
 Image SliceRenderer::probe(std::int64_t slice) { return implementation_->probe(slice); }
 std::vector<double> SliceRenderer::sliceDepths() const { return implementation_->sliceDepths(); }
 

@@ -90,6 +90,7 @@ TEST_CASE("Every shader that is not an include compiles by itself, or says where
                                           {"kGradientSteps", 2},
                                           {"kSegments", 1},
                                           {"kAux", planes > 0},
+                                          {"kStack", perspective + (planes > 0)},
                                           {"kTaps", 9},
                                           {"kTextures", 1 + perspective},
                                           {"kLit", perspective},

@@ -265,6 +265,8 @@ TEST_CASE("Samples of a light volume average to finer light", "[shade][light-vol
   CHECK(std::isfinite(mean.error.total()));
   CHECK(rmsDifference(mean.picture.colour, exact) <
         0.85 * rmsDifference(renderGrid(*context, grid, scene).colour, exact));
-  options.targetError = 0.01;
-  CHECK_THROWS_WITH(progressiveSlices(*context, *bricks, scene, options), Catch::Contains("windows can be refined"));
+  // A target above what light at voxels leaves is reached.
+  options.passes = 32;
+  options.targetError = 1.2 * mean.error.total();
+  CHECK(progressiveSlices(*context, *bricks, scene, options).reachedTarget);
 }

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -11,6 +12,7 @@
 #include <string>
 
 #include "umbrick/core/error.h"
+#include "umbrick/slice/stack_slices.h"
 
 using namespace umbrick;
 
@@ -57,15 +59,50 @@ double area(const ProxySlices& slices, const ProxyPolygon& polygon) {
   return 0.5 * std::abs(twice);
 }
 
-}  // namespace
+using Cut = std::function<ProxySlices(const std::vector<glm::ivec3>& origins, const glm::ivec3& interior)>;
 
 // The polygons of one slice tile the cut of the whole box: the areas are the same, and every inner edge has exactly one
 // twin with the same two vertices, to the bit.
+// @param areas  whether the image holds all of them
+void checkTiles(const Cut& cut, const glm::ivec3& cells, int interior, const glm::ivec3& first, bool areas) {
+  const ProxySlices slices = cut(lattice(cells, interior, first), glm::ivec3(interior));
+  const ProxySlices whole = cut({first * interior}, cells * interior);
+  REQUIRE(slices.count() > 10);
+  double worst = 0;
+  std::size_t oddEdges = 0;
+  for (std::int64_t i = 0; i < slices.count(); ++i) {
+    using Point = std::pair<float, float>;
+    std::map<std::pair<Point, Point>, int> edges;
+    double sum = 0;
+    for (int p = slices.start[static_cast<std::size_t>(i)]; p < slices.start[static_cast<std::size_t>(i) + 1]; ++p) {
+      const ProxyPolygon& polygon = slices.polygons[static_cast<std::size_t>(p)];
+      sum += area(slices, polygon);
+      for (int v = 0; v < polygon.vertices; ++v) {
+        const glm::vec2 a = slices.vertices[static_cast<std::size_t>(polygon.firstVertex + v)];
+        const glm::vec2 b = slices.vertices[static_cast<std::size_t>(polygon.firstVertex + (v + 1) % polygon.vertices)];
+        const Point pa{a.x, a.y}, pb{b.x, b.y};
+        if (pa != pb) ++edges[std::minmax(pa, pb)];
+      }
+    }
+    for (const auto& edge : edges) oddEdges += edge.second > 2;
+    const std::int64_t j = i + slices.first - whole.first;
+    double expected = 0;
+    if (j >= 0 && j < whole.count())
+      for (int p = whole.start[static_cast<std::size_t>(j)]; p < whole.start[static_cast<std::size_t>(j) + 1]; ++p)
+        expected += area(whole, whole.polygons[static_cast<std::size_t>(p)]);
+    if (areas) worst = std::max(worst, std::abs(sum - expected));
+  }
+  CHECK(oddEdges == 0);
+  // Vertices are rounded to float: 6e-8 of coordinates of order 1, for some 100 vertices.
+  CHECK(worst < 1e-5);
+}
+
+}  // namespace
+
 TEST_CASE("Polygons of a slice tile the cut of the volume without gap or overlap", "[slice]") {
   const int interior = 8;
   const glm::ivec3 cells(3, 4, 2);
   for (const glm::ivec3 first : {glm::ivec3(0), glm::ivec3(-2, -1, 3), glm::ivec3(125'000, -125'000, 7)}) {
-    const std::vector<glm::ivec3> origins = lattice(cells, interior, first);
     glm::dmat4 transform = glm::rotate(glm::dmat4(1), 0.3, glm::dvec3(1, 2, 3));
     for (const bool rotated : {false, true}) {
       if (!rotated) transform = glm::dmat4(1);
@@ -80,43 +117,51 @@ TEST_CASE("Polygons of a slice tile the cut of the volume without gap or overlap
         Camera wide = camera;                // sees everything, so that no polygon is left out
         wide.width = wide.height = 1 << 16;  // a fine grid, so that areas are not rounded by it
         const IndexView view = indexView(wide, transform);
-        const double spacing = 0.5;
-        const ProxySlices slices = cutSlices(view, origins, glm::ivec3(interior), {}, spacing);
-        const ProxySlices whole = cutSlices(view, std::vector{first * interior}, cells * interior, {}, spacing);
-        REQUIRE(slices.count() > 10);
-        double worst = 0;
-        std::size_t oddEdges = 0;
-        for (std::int64_t i = 0; i < slices.count(); ++i) {
-          using Point = std::pair<float, float>;
-          std::map<std::pair<Point, Point>, int> edges;
-          double sum = 0;
-          for (int p = slices.start[static_cast<std::size_t>(i)]; p < slices.start[static_cast<std::size_t>(i) + 1];
-               ++p) {
-            const ProxyPolygon& polygon = slices.polygons[static_cast<std::size_t>(p)];
-            sum += area(slices, polygon);
-            for (int v = 0; v < polygon.vertices; ++v) {
-              const glm::vec2 a = slices.vertices[static_cast<std::size_t>(polygon.firstVertex + v)];
-              const glm::vec2 b =
-                  slices.vertices[static_cast<std::size_t>(polygon.firstVertex + (v + 1) % polygon.vertices)];
-              const Point pa{a.x, a.y}, pb{b.x, b.y};
-              if (pa != pb) ++edges[std::minmax(pa, pb)];
-            }
+        checkTiles([&](const auto& origins, const glm::ivec3& edge) { return cutSlices(view, origins, edge, {}, 0.5); },
+                   cells, interior, first, name != "inside");
+        for (const double spacing : {0.5, 0.0})
+          for (const StackAim& aim : aimStacks(view, spacing)) {
+            INFO("stack " << aim.axis << ", " << aim.sign << ", spacing " << spacing);
+            if (name == "inside" && (aim.axis == 2 || spacing == 0)) continue;  // of a few slices, or a corner of them
+            checkTiles(
+                [&](const auto& origins, const glm::ivec3& edge) { return cutStack(view, aim, origins, edge, {}); },
+                cells, interior, first, name != "inside");
           }
-          for (const auto& edge : edges) oddEdges += edge.second > 2;
-          const std::int64_t j = i + slices.first - whole.first;
-          double expected = 0;
-          if (j >= 0 && j < whole.count())
-            for (int p = whole.start[static_cast<std::size_t>(j)]; p < whole.start[static_cast<std::size_t>(j) + 1];
-                 ++p)
-              expected += area(whole, whole.polygons[static_cast<std::size_t>(p)]);
-          if (name != "inside") worst = std::max(worst, std::abs(sum - expected));
-        }
-        CHECK(oddEdges == 0);
-        // Vertices are rounded to float: 6e-8 of coordinates of order 1, for some 100 vertices.
-        CHECK(worst < 1e-5);
       }
     }
   }
+}
+
+// Each ray of a view has one stack, which it meets no less often than the voxels' own slices at 55 degrees.
+TEST_CASE("Every ray runs along the axis of one stack", "[slice]") {
+  for (const double fov : {0.3, 1.5, 2.6})
+    for (const double angle : {0.0, 0.4, 0.785, 2.0, 4.0}) {
+      Camera camera;
+      camera.eye = {1, 2, 3};
+      camera.lookAt = camera.eye + glm::dvec3(std::cos(angle), std::sin(angle), 0.3);
+      camera.up = {0, 0, 1};
+      camera.fov = fov;
+      const IndexView view = indexView(camera, glm::rotate(glm::dmat4(1), 0.2, glm::dvec3(1, 0, 2)));
+      const std::vector<StackAim> stacks = aimStacks(view, 1);
+      CHECK(stacks.size() <= 6);
+      for (const StackAim& aim : stacks) CHECK(aim.alone == (stacks.size() == 1));
+      for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 40; ++x) {
+          const glm::dvec2 p = view.halfExtent * (glm::dvec2(x + 0.5, y + 0.5) / 20.0 - 1.0);
+          const glm::dvec3 along = p.x * view.toIndex[0] + p.y * view.toIndex[1] + view.toIndex[2];
+          int found = 0;
+          for (const StackAim& aim : stacks) {
+            const double rate = glm::dot(aim.rate, glm::dvec3(p, 1));
+            CHECK(rate == Approx(aim.sign * along[aim.axis]).margin(1e-12));
+            bool main = rate > 0;
+            for (int axis = 0; axis < 3; ++axis) main = main && rate >= std::abs(along[axis]) - 1e-12;
+            if (!main) continue;
+            ++found;
+            CHECK(rate / glm::length(along) > 0.577);
+          }
+          CHECK(found >= 1);
+        }
+    }
 }
 
 TEST_CASE("A slice that coincides with a face belongs to one of the two bricks", "[slice]") {

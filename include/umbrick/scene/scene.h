@@ -56,12 +56,20 @@ inline constexpr Name<Quadrature> kQuadratures[]{{"preintegrated", Quadrature::p
 enum class Classification { post, pre };
 inline constexpr Name<Classification> kClassifications[]{{"post", Classification::post}, {"pre", Classification::pre}};
 
-/// How a picture is computed: by slices across the view, on OpenGL; by a ray through each pixel, on OpenGL or the CPU;
+/// Where slices of stacks are drawn: linear, at a constant distance along the view, with values interpolated between
+/// the two voxel slices around; none, on the voxel slices alone, whose distance along a ray depends on the view.
+enum class StackInterpolation { linear, none };
+inline constexpr Name<StackInterpolation> kStackInterpolations[]{{"linear", StackInterpolation::linear},
+                                                                 {"none", StackInterpolation::none}};
+
+/// How a picture is computed: by slices across the view, on OpenGL; by stacks of slices along the volume's own axes, on
+/// OpenGL; by a ray through each pixel, on OpenGL or the CPU;
 /// by shear-warp, whose rays lie in rows of voxels and whose picture is warped to the pixels, on the CPU. Automatic:
 /// see chooseEngine() in render/engine.h.
-enum class Technique { automatic, slices, rays, shearWarp };
+enum class Technique { automatic, slices, stacks, rays, shearWarp };
 inline constexpr Name<Technique> kTechniques[]{{"auto", Technique::automatic},
                                                {"slices", Technique::slices},
+                                               {"stacks", Technique::stacks},
                                                {"rays", Technique::rays},
                                                {"shear-warp", Technique::shearWarp}};
 inline std::string techniqueName(Technique technique) { return std::string(nameOf(kTechniques, technique)); }
@@ -102,6 +110,7 @@ struct SamplingOptions {
   double spacing = 0.5;
   Quadrature quadrature = Quadrature::preintegrated;
   Classification classification = Classification::post;
+  StackInterpolation stackInterpolation = StackInterpolation::linear;
   int segments = 1;  // parts of equal length in which a slab is integrated along the ray
   /// Bits of the eye buffer: 32 (float) or 16 (fixed point). A slice rounds 16 bits to steps of 2^-16 and is off by up
   /// to one and a half of them: N slices by at most N 2.3e-5, mostly by much less (an occlusion buffer of 16 bits as
@@ -234,7 +243,7 @@ struct Scene : SceneSettings {
 ///                "environment"  file (EXR), up, front, scale; up and front are [0, 1, 0] and [0, 0, 1] in the view,
 ///                               [0, 0, 1] and [0, -1, 0] in the world, the same at azimuth 0 and elevation 0
 ///   sampling   spacing, unit ("voxel", "world"), quadrature ("preintegrated", "midpoint"),
-///              classification ("post", "pre"), segments, bits, saturation,
+///              classification ("post", "pre"), stackInterpolation ("linear", "none"), segments, bits, saturation,
 ///              pixelSamples (tableSize, of scenes made by earlier versions, is read and means nothing)
 ///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits, directions, scale, lightSpacing
 ///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]

@@ -1,4 +1,4 @@
-// Renders bricks of a volume by proxy slices, nearest first.
+// Renders bricks of a volume by proxy slices, nearest first: across the view, or across the volume's axes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -36,6 +36,10 @@ namespace umbrick {
 /// with a = c / r for the one c that would scatter the same from a solid slab:
 ///   sum_k L_k T_k / (1 + c_k) = sum_k L_k T_k / (1 + c)
 /// Between texels, sums are interpolated with the transmittance along the view axis as their weight.
+///
+/// Scenes of the technique `stacks` have slices across the axes of the volume (slice/stack_slices.h), with emission or
+/// a light volume. Where they lie on voxel slices alone (StackInterpolation::none), a slab has the medium of its slice,
+/// whatever the quadrature.
 /// Sources: Max 1995, doi:10.1109/2945.468400; Schott et al. 2009, doi:10.1111/j.1467-8659.2009.01464.x
 class SliceRenderer : public Renderer {
  public:

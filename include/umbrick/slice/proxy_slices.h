@@ -67,6 +67,8 @@ struct ProxySlices {
   double spacing = 0;  // world units
   double phase = 0.5;
   std::int64_t first = 0;
+  /// How the point of a slice that it is looked up at moves with depth, index coordinates: at depth 0 it is the eye.
+  glm::dvec3 perDepth{0};
   std::vector<std::int32_t> start{0};  // polygons of slice first + i are [start[i], start[i + 1])
   std::vector<ProxyPolygon> polygons;  // those of one slice are in the order of the bricks
   std::vector<glm::vec2> vertices;     // in normalised device coordinates

@@ -47,6 +47,7 @@ inline constexpr int kAutomaticSegments = 0;
 ///   dos-two-pass   Algorithm 3 in two passes per slice
 ///   ordinates      a set of directions, each with a transmittance of its own, in slabs of several segments
 ///   light-volume   the same directions, taken through the voxels before the picture is drawn
+///   stacks, stacks-light-volume                   slices along the volume's axes, as far apart as the others
 ///   rays, shear-warp                              emission by techniques on the CPU; the number of slices stands for
 ///   rays-light-volume, shear-warp-light-volume    how densely they sample, and the last two have light volumes
 ///   rays-midpoint  rays with the medium at the middle of each segment, not the integral over its values
