@@ -20,6 +20,7 @@ const int kVisibilityUnit = 8;         // the light that arrives
 const int kVisibilityWeightUnit = 9;   // how much of that counts, see window_step.comp
 const int kMoreAtlasUnit = 10;         // of rays: the second texture of the atlas, and those that follow
 const int kMoreLightUnit = 13;         // the same for light
+const int kBoundsUnit = 5;             // of projections: what values a cell may have
 
 // Rays read up to so many textures of the atlas in one draw.
 const int kRayTextures = 4;

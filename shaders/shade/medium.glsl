@@ -5,8 +5,7 @@
 //               2  2D function; value and gradient magnitude run linearly from front to back
 //               3  2D function; the medium at the middle
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/constants.glsl"
-layout(binding = kAtlasUnit) uniform sampler3D atlas;      // r: value, g: gradient magnitude, in texel units
+#include "shade/atlas.glsl"
 // RGBA32F, one column for each stretch of the values; the last stretch is repeated up to a power of two. Ends are in
 // texel units, and 1e38 stands for infinity:
 //   row 0     lower end, upper end; 1D: sigma_t at the lower end and at the upper one, 1/world unit

@@ -2,6 +2,7 @@
 // segment are shared with its neighbours, so that a value is read once where slices read it twice.
 // Reads   atlas, more_atlas, transfer (see medium.glsl)   slots (see brick_walk.glsl)
 //         light, more_light  kLit: share of whole_light that reaches a voxel
+//         kShaded: the medium reflects lights by Phong's model, see shaded_voxels.glsl
 // Writes  eye    premultiplied RGBA, blended under what is nearer: (ONE_MINUS_DST_ALPHA, ONE)
 //         count  number of segments, added
 //         aux    kAux: opacity-weighted visibility and depth, blended as eye
@@ -11,11 +12,11 @@
 #include "optics/ramp.glsl"
 #include "shade/brick_walk.glsl"
 #include "shade/medium.glsl"
-layout(binding = kMoreAtlasUnit) uniform sampler3D more_atlas[kRayTextures - 1];
+#include "shade/shaded_voxels.glsl"
+#include "shade/voxel_fetch.glsl"
 layout(binding = kLightUnit) uniform sampler3D light;
 layout(binding = kMoreLightUnit) uniform sampler3D more_light[kRayTextures - 1];
 uniform vec3 whole_light;        // light that arrives where nothing is in the way
-uniform float apron;             // texels
 uniform vec3 inverse_size;       // of the atlas's textures
 uniform float saturation;        // transmittance below which a ray ends
 layout(location = 0) out vec4 eye;
@@ -58,7 +59,8 @@ void main() {
     if (empty) k = until;
     int number = int(slot.w & uint(kWholeBrick - 1)) - 1;
     // Atlas coordinates along the ray.
-    vec3 at = (ray.at - corner + vec3(slot.xyz) + apron) * inverse_size;
+    vec3 to_texels = vec3(slot.xyz) + float(apron) - corner;
+    vec3 at = (ray.at + to_texels) * inverse_size;
     vec3 step = ray.step * inverse_size;
     float front = max(k - 0.5, ray.kept.x);
     End front_end;
@@ -75,6 +77,8 @@ void main() {
         else
           addSegment(piece, front_end, back_end, length_of_this);
         vec4 arriving = kLit != 0 ? arrivingAt(at + middle * step, number) : vec4(1.0);
+        if (kShaded != 0)
+          arriving.rgb = reflectedBetween(ray.at + middle * ray.step + to_texels - 0.5, number, -to_texels);
         float through = 1.0 - sum.a;
         sum += through * vec4(piece.eye.rgb * arriving.rgb, piece.eye.a);
         seen += through * piece.eye.a * vec2(arriving.a, first_depth + middle * segment_depth);

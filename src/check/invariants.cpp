@@ -7,6 +7,7 @@
 #include "check/brick_check.h"
 #include "check/cut_volume.h"
 #include "check/laws.h"
+#include "check/mode_law.h"
 #include "check/picture_laws.h"
 #include "check/sampler_precision.h"
 #include "check/slice_check.h"
@@ -45,7 +46,7 @@ class Checker {
     const double pictures = PictureLaws::picturesOf(volume_);
     steps_.expect(static_cast<double>(volume_.bricks.size()) * kBricksWork + kBorderWork + 1 +
                   static_cast<double>(views_.size()) *
-                      (static_cast<double>(volume_.bricks.size()) * kSlicesWork +
+                      (static_cast<double>(volume_.bricks.size()) * kSlicesWork + ModeLaw::kWork +
                        pictures * (PictureLaws::workOf(Model::emission) + PictureLaws::workOf(Model::cone))));
     try {
       checkBricks();
@@ -53,6 +54,7 @@ class Checker {
       precision_ = samplerPrecision(context_, *volume_.bricks.begin()->second, scenes_.emission.bricks.format);
       checkAllSlices();
       checkPictures();
+      checkModes();
     } catch (const CheckStopped&) {
       // What was measured until now is told.
     }
@@ -109,6 +111,12 @@ class Checker {
       for (const CheckView& view : views_) pictures.check(view, model, laws_.of(model));
       finish(laws_.of(model));
     }
+  }
+
+  void checkModes() {
+    ModeLaw law(context_, volume_, steps_);
+    for (const CheckView& view : views_) law.check(sceneOf(scenes_, view, Model::emission), view.name, laws_.modes);
+    finish(laws_.modes);
   }
 
   const GlContext& context_;

@@ -52,6 +52,9 @@ Laws::Laws(Method method)
       border(makeResult(7, "the border of pieces of the volume is whole",
                         "largest difference of colour from the piece with room around it",
                         "rounding of texture coordinates and sums")),
+      modes(makeResult(8, "rays on OpenGL and on the CPU agree in other modes",
+                       "RMS difference of values, as shares of their range, or of colours",
+                       "twice the change by half the spacing, rounding of places")),
       emission(Model::emission, method),
       cone(Model::cone, method) {}
 
@@ -93,6 +96,7 @@ std::vector<InvariantResult> collect(Laws laws, const std::string& referenceNote
   add(laws.border, "not measured: the background is visible, or no leaf of the grid");
   for (ModelLaws* model : {&laws.emission, &laws.cone})
     add(model->techniques, "not measured: no other technique has this method");
+  add(laws.modes, "");
   return results;
 }
 

@@ -22,6 +22,7 @@ struct Laws {
   InvariantResult aprons, ranges;            // voxels of bricks
   InvariantResult gaps, doubleHits, values;  // single slices
   InvariantResult border;                    // pieces of the volume
+  InvariantResult modes;                     // pictures of values and surfaces
   ModelLaws emission, cone;                  // pictures
 };
 

@@ -47,8 +47,10 @@ Engine chooseEngine(const SceneSettings& scene, EngineKind kind) {
       throw InvalidArgument("technique: " + techniqueName(scene.technique) + " does not run on the CPU but on OpenGL");
     return onCpu(Technique::rays);  // which says in its own words what it cannot do
   }
-  const Technique onGraphics = named ? scene.technique : Technique::slices;
-  const bool forGl = named ? traitsOf(scene.technique).makeOnGl != nullptr : supportsMode(scene, onGraphics);
+  const Technique onGraphics = named                                    ? scene.technique
+                               : supportsMode(scene, Technique::slices) ? Technique::slices
+                                                                        : Technique::rays;
+  const bool forGl = traitsOf(onGraphics).makeOnGl != nullptr;
   if (kind == EngineKind::automatic) {
     if (forGl && traitsOf(onGraphics).supports(scene) && hasGpu()) {
       try {
@@ -58,7 +60,6 @@ Engine chooseEngine(const SceneSettings& scene, EngineKind kind) {
     }
     return onProcessor ? onCpu(onProcessor->technique) : onGl(onGraphics, Backend::automatic);
   }
-  if (!named) requireMode(scene, onGraphics);
   if (!forGl)
     throw InvalidArgument("technique: " + techniqueName(scene.technique) + " does not run on OpenGL but on the CPU");
   return onGl(onGraphics, kind == EngineKind::egl ? Backend::egl : Backend::osmesa);

@@ -33,7 +33,7 @@ std::string modeHelp() {
     list += list.empty() ? "what is seen: " : last ? " or " : ", ";
     list += modeName(traits.mode) + " (" + std::string(traits.meaning) + ")";
   }
-  return list + "; all but integrate by rays on the CPU";
+  return list + "; all but integrate by rays";
 }
 
 const std::vector<SceneField>& table() {

@@ -87,13 +87,10 @@ void BrickParts::read(std::span<const glm::ivec3> origins) {
   for (auto& one : missing) bricks_.insert(std::move(one));
 }
 
-void BrickParts::show(const glm::ivec3& origin, const TransferLookup& transfer, std::span<std::uint8_t> shown) const {
-  if (!divides()) {
-    std::ranges::fill(shown, std::uint8_t{1});
-    return;
-  }
+void BrickParts::each(const glm::ivec3& origin,
+                      const std::function<void(std::size_t, const Range&, const Range&)>& visit) const {
   const std::vector<Ranges>& ranges = bricks_.at(origin);
-  for (std::size_t i = 0; i < ranges.size(); ++i) shown[i] = transfer.isVisible(ranges[i].value, ranges[i].gradient);
+  for (std::size_t i = 0; i < ranges.size(); ++i) visit(i, ranges[i].value, ranges[i].gradient);
 }
 
 }  // namespace umbrick

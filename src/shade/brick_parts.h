@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
-#include "shade/transfer_lookup.h"
 #include "umbrick/brick/bricks.h"
 
 namespace umbrick {
@@ -30,9 +30,10 @@ class BrickParts {
 
   /// Reads the bricks at these origins that were not read yet.
   void read(std::span<const glm::ivec3> origins);
-  /// Tells which parts of a brick show something, x fastest; as bricks do, a part counts what an apron around it holds.
-  /// @param shown  perBrick() flags  @pre the brick was read
-  void show(const glm::ivec3& origin, const TransferLookup& transfer, std::span<std::uint8_t> shown) const;
+  /// Calls visit(part, values, gradients) for the parts of a brick, x fastest. As those of bricks do, ranges count what
+  /// an apron around the part holds. @pre divides(), and the brick was read
+  void each(const glm::ivec3& origin,
+            const std::function<void(std::size_t part, const Range& value, const Range& gradient)>& visit) const;
 
  private:
   struct Ranges {

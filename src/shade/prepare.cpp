@@ -9,6 +9,7 @@
 #include <string>
 
 #include "umbrick/core/error.h"
+#include "umbrick/draw/value_picture.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/resolve.h"
 #include "umbrick/slice/proxy_slices.h"
@@ -50,6 +51,7 @@ BrickOptions requiredBricks(const ResolvedScene& scene, const glm::dmat4& indexT
   options.apron = requiredApron(scene, indexToWorld);
   const double any = apronOfAnyView(scene, indexToWorld);
   if (any <= options.interior) options.apron = std::max(options.apron, static_cast<int>(any));
+  if (traitsOf(scene.mode).surfaces || isShaded(scene)) options.apron = std::max(options.apron, kGradientApron);
   options.gradients = scene.transfer.is2d();
   return options;
 }

@@ -6,14 +6,13 @@
 #include <string>
 #include <utility>
 
-#include "shade/brick_parts.h"
-#include "shade/brick_runs.h"
-#include "shade/constants.h"
 #include "shade/ray_pass.h"
+#include "shade/value_caster.h"
 #include "shade/view_planes.h"
 #include "shade/visible_bricks.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/draw/value_picture.h"
 #include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
@@ -26,6 +25,7 @@ void checkScene(const ResolvedScene& scene, const ResidentVolume& resident) {
   if (occlusionMethod(scene).value_or(Method::lightVolume) != Method::lightVolume)
     throw InvalidArgument("method: " + methodName(scene.method) +
                           " is one of slices; rays take light from a light volume");
+  if (isShaded(scene)) checkShading(scene, resident.volume().layout.apron);
   checkOnGl(scene, resident);
 }
 
@@ -45,14 +45,27 @@ class RayCaster::Implementation {
         resident_(resident),
         volume_(resident.volume()),
         options_(options),
+        codes_(resident),
         light_(resident.volume()),
-        parts_(resident.volume()) {}
+        runs_(resident) {}
 
   /// Makes anew what another scene asks for or, when something throws, nothing.
-  void update(const ResolvedScene& next, const ResolvedScene* before) {
-    checkScene(next, resident_);
+  void update(const ResolvedScene& next) {
+    requireMode(next, Technique::rays);
     resetGlState(gl_);
+    if (showsValues(next.mode)) {
+      if (!values_) values_.emplace(resident_, options_);
+      values_->update(next);
+    } else {
+      ResolvedScene medium = mediumOf(next);
+      updateMedium(medium, medium_ ? &*medium_ : nullptr);
+      medium_ = std::move(medium);
+    }
     drawn_ = false;
+  }
+
+  void updateMedium(const ResolvedScene& next, const ResolvedScene* before) {
+    checkScene(next, resident_);
     const bool lookup = !before || before->transfer != next.transfer ||
                         before->sampling.spacing != next.sampling.spacing ||
                         before->sampling.quadrature != next.sampling.quadrature;
@@ -81,15 +94,38 @@ class RayCaster::Implementation {
   }
 
   std::optional<RaySampling> sampling(const ResolvedScene& scene) const {
+    const double edge = shortestVoxelEdge(volume_.indexToWorld);
+    if (showsValues(scene.mode)) return RaySampling{edge / slicesPerVoxel(scene, volume_), edge};
     const double segment = scene.sampling.spacing / scene.sampling.segments;
     if (!withinApron(indexView(scene.camera, volume_.indexToWorld), segment)) return std::nullopt;
-    return RaySampling{segment, shortestVoxelEdge(volume_.indexToWorld)};
+    return RaySampling{segment, edge};
   }
 
   void draw(const ResolvedScene& scene, const RenderSample& sample) {
     drawn_ = false;
-    stats_ = {};
     resetGlState(gl_);
+    if (showsValues(scene.mode))
+      values_->draw(scene, sample);
+    else
+      drawMedium(*medium_, sample);
+    drawn_ = true;
+  }
+
+  Picture read(const ResolvedScene& scene) {
+    if (!drawn_) throw InvalidArgument("render: nothing was drawn since the scene changed");
+    resetGlState(gl_);
+    if (showsValues(scene.mode)) return values_->read(scene);
+    Picture picture = readMedium(*medium_);
+    if (scene.mode == Mode::xray) {
+      picture.visibility = picture.depth = picture.opacity = Image();
+      showThrough(scene, picture);
+    }
+    return picture;
+  }
+
+ private:
+  void drawMedium(const ResolvedScene& scene, const RenderSample& sample) {
+    stats_ = {};
     const Stopwatch geometry;
     IndexView view = indexView(scene.camera, volume_.indexToWorld);
     if (!withinApron(view, scene.sampling.spacing / scene.sampling.segments))
@@ -111,20 +147,21 @@ class RayCaster::Implementation {
                         *held_.transfer,
                         *held_.bricks,
                         lit ? &light_ : nullptr,
+                        codes_,
+                        volume_,
                         *held_.targets,
                         options_.progress};
     pass_.begin(rays);
     const std::uint64_t uploadedBefore = resident_.atlas().uploadedBricks();
-    drawRuns(rays, sample.phase);
+    runs_.draw(
+        planOf(rays, sample.phase), [&](const RayFrame& frame, const RayRun& run) { drawRun(rays, frame, run); },
+        stats_);
     checkGl(gl_, "render");
     stats_.uploadedBricks = resident_.atlas().uploadedBricks() - uploadedBefore;
     lit_ = lit;
-    drawn_ = true;
   }
 
-  Picture read(const ResolvedScene& scene) {
-    if (!drawn_) throw InvalidArgument("render: nothing was drawn since the scene changed");
-    resetGlState(gl_);
+  Picture readMedium(const ResolvedScene& scene) {
     Picture picture;
     const Stopwatch read;
     readLayers(gl_, held_.targets->picture, scene, 1, picture);
@@ -140,7 +177,6 @@ class RayCaster::Implementation {
     return picture;
   }
 
- private:
   // Tells whether a brick holds all that segments read whose middles lie in it.
   bool withinApron(const IndexView& view, double segment) const {
     const glm::dvec3 reach = slabReach(view, segment);
@@ -155,81 +191,27 @@ class RayCaster::Implementation {
                             " beside this transfer function");
   }
 
-  // What all runs of a picture share.
-  struct Walk {
-    double phase = 0.5;              // of the sample
-    glm::ivec3 parts{1};             // of a brick
-    std::optional<RayFrame> shared;  // coordinates of all runs; none: each has its own
-    double done = 0;                 // share of the bricks that is drawn
-  };
-
-  // Draws all bricks, in as few runs as the atlas, the table of slots and the shader can do with.
-  void drawRuns(const RayScene& rays, double phase) {
-    const BrickSelection& bricks = *held_.bricks;
-    if (bricks.size() == 0) return;
-    Walk walk{phase, glm::ivec3(1), std::nullopt, 0};
-    const glm::ivec3 interior = volume_.layout.interior;
-    // As long as single precision is fine enough for all of the volume, all runs share their coordinates, so that a
-    // segment at a face between two is in exactly one of them.
-    constexpr std::int64_t kMostVoxels = 1 << 16;
-    const CellBox all = cellsAround(bricks.origins(), interior);
-    const glm::i64vec3 extent = all.count * glm::i64vec3(interior);
-    if (std::max({extent.x, extent.y, extent.z}) <= kMostVoxels) walk.shared = frameOf(rays, all, phase);
-    // Cells are parts of bricks, so that rays skip what is empty in a brick, as long as one table holds all of them.
-    if (rays.scene.bricks.culling && SlotTable::fits(cellsAround(bricks.origins(), interior, parts_.count())))
-      walk.parts = parts_.count();
-    BrickRuns(rays.view, bricks.origins()).draw([&](std::span<const std::int32_t> positions) {
-      return drawRun(rays, walk, positions);
-    });
+  RayRunPlan planOf(const RayScene& rays, double phase) {
+    RayRunPlan plan{rays.view, *held_.bricks};
+    plan.fits = fits_;
+    plan.spacing = rays.scene.sampling.spacing;
+    plan.segments = rays.scene.sampling.segments;
+    plan.phase = phase;
+    plan.skips = rays.scene.bricks.culling;
+    plan.version = version_;
+    plan.isShown = [&](const Range& value, const Range& gradient) {
+      return held_.transfer->isVisible(value, gradient);
+    };
+    if (rays.light)
+      plan.require = [&](std::span<const std::int32_t> positions) { light_.require(gl_, *held_.bricks, positions); };
+    return plan;
   }
 
-  RayFrame frameOf(const RayScene& rays, const CellBox& cells, double phase) const {
-    const SamplingOptions& sampling = rays.scene.sampling;
-    return {rays.view, cells, volume_.layout.interior, sampling.spacing, sampling.segments, phase};
-  }
-
-  // Draws bricks in one go, or returns false where they are too many.
-  bool drawRun(const RayScene& rays, Walk& walk, std::span<const std::int32_t> positions) {
-    BrickSelection& bricks = *held_.bricks;
-    std::vector<glm::ivec3> origins;
-    for (const std::int32_t position : positions)
-      origins.push_back(bricks.origins()[static_cast<std::size_t>(position)]);
-    RayRun run;
-    run.cells = {positions, cellsAround(origins, volume_.layout.interior, walk.parts), walk.parts, {}, version_, {}};
-    if (!SlotTable::fits(run.cells.cells)) return false;
-    if (!fits_ && positions.size() > std::max<std::size_t>(1, resident_.atlas().slots())) return false;
-    const Stopwatch upload;
-    bricks.require(positions);
-    if (rays.light) light_.require(gl_, bricks, positions);
-    run.cells.textures = SlotTable::texturesOf(bricks, positions);
-    if (run.cells.textures.size() > static_cast<std::size_t>(kRayTextures)) return false;
-    if (shown_.empty() || !(shownKey_ == std::pair(version_, origins))) {
-      shown_ = shownParts(origins, walk.parts);
-      shownKey_ = {version_, origins};
-    }
-    run.cells.shown = shown_;
-    stats_.uploadMs += upload.elapsedMs();
-    run.done = walk.done;
-    run.share = static_cast<double>(positions.size()) / static_cast<double>(bricks.size());
-    walk.done += run.share;
-    const RayFrame frame =
-        walk.shared ? *walk.shared : frameOf(rays, cellsAround(origins, volume_.layout.interior), walk.phase);
-    if (frame.count == 0) return true;
+  void drawRun(const RayScene& rays, const RayFrame& frame, const RayRun& run) {
     const Stopwatch sweep;
     pass_.draw(rays, frame, run);
     gl_.Finish();  // only a wait for the last ray tells the time
     stats_.sweepMs += sweep.elapsedMs();
-    return true;
-  }
-
-  std::vector<std::uint8_t> shownParts(std::span<const glm::ivec3> origins, const glm::ivec3& parts) {
-    if (parts == glm::ivec3(1)) return std::vector<std::uint8_t>(origins.size(), 1);
-    parts_.read(origins);
-    const std::size_t each = parts_.perBrick();
-    std::vector<std::uint8_t> shown(origins.size() * each);
-    for (std::size_t i = 0; i < origins.size(); ++i)
-      parts_.show(origins[i], *held_.transfer, std::span(shown).subspan(i * each, each));
-    return shown;
   }
 
   const GlFunctions& gl_;
@@ -239,11 +221,12 @@ class RayCaster::Implementation {
   Held held_;
   bool background_ = false;  // is visible
   bool fits_ = false;        // all visible bricks are resident at once
+  const VoxelCodes codes_;
   ResidentLight light_;
-  BrickParts parts_;
-  std::uint64_t version_ = 0;        // of what parts of bricks show
-  std::vector<std::uint8_t> shown_;  // of the last run
-  std::pair<std::uint64_t, std::vector<glm::ivec3>> shownKey_;
+  RayRuns runs_;
+  std::uint64_t version_ = 0;            // of what parts of bricks show
+  std::optional<ResolvedScene> medium_;  // whose medium is held; none: there was no such scene yet
+  std::optional<ValueCaster> values_;    // of modes that look at values; none: there was no such scene yet
   RayPass pass_;
   bool drawn_ = false;  // nothing was thrown on the way, and the scene is the same
   bool lit_ = false;    // what was drawn reads the light
@@ -262,7 +245,7 @@ RayCaster::RayCaster(const GlContext& context, const Bricks& volume, const Resol
 }
 RayCaster::~RayCaster() = default;
 
-void RayCaster::update(const ResolvedScene& next) { implementation_->update(next, hasScene() ? &scene() : nullptr); }
+void RayCaster::update(const ResolvedScene& next) { implementation_->update(next); }
 std::optional<RaySampling> RayCaster::sampling(const ResolvedScene& scene) const {
   return implementation_->sampling(scene);
 }

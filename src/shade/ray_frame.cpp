@@ -26,15 +26,37 @@ CellBox cellsAround(std::span<const glm::ivec3> origins, const glm::ivec3& inter
   return {low, ((high - low) / glm::i64vec3(interior) + std::int64_t{1}) * glm::i64vec3(parts)};
 }
 
+PixelBox pixelsOf(const IndexView& view, const CellBox& cells, const glm::ivec3& edge, double begin) {
+  const PixelBox all{glm::ivec2(0), view.size};
+  glm::dvec2 low(1e300), high(-1e300);
+  for (unsigned c = 0; c < 8; ++c) {
+    const glm::dvec3 corner =
+        glm::dvec3(cells.first) + begin +
+        glm::dvec3(cells.count) * glm::dvec3(edge) * glm::dvec3(c & 1 ? 1 : 0, c & 2 ? 1 : 0, c & 4 ? 1 : 0);
+    glm::dvec3 seen = view.toView(corner);
+    if (view.projection == Projection::perspective) {
+      if (!(seen.z > 0)) return all;  // the box reaches behind the eye
+      seen /= seen.z;
+    }
+    const glm::dvec2 pixel =
+        (glm::dvec2(seen) - view.centre + view.halfExtent) / (2.0 * view.halfExtent) * glm::dvec2(view.size);
+    low = glm::min(low, pixel);
+    high = glm::max(high, pixel);
+  }
+  const glm::dvec2 size(view.size);
+  return {glm::ivec2(glm::clamp(low - 1.0, glm::dvec2(0), size)),
+          glm::ivec2(glm::clamp(high + 2.0, glm::dvec2(0), size))};
+}
+
 RayFrame::RayFrame(const IndexView& view, const CellBox& box, const glm::ivec3& edge, double spacing, int segments,
-                   double phase)
-    : bricks(box), interior(edge), depth(spacing / segments) {
+                   double phase, double begin)
+    : bricks(box), interior(edge), corner(begin), depth(spacing / segments) {
   double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
   const glm::dvec3 extent = glm::dvec3(box.count) * glm::dvec3(edge);
   for (unsigned c = 0; c < 8; ++c) {
-    const glm::dvec3 corner =
-        glm::dvec3(box.first) - 0.5 + extent * glm::dvec3(c & 1 ? 1 : 0, c & 2 ? 1 : 0, c & 4 ? 1 : 0);
-    const double s = view.toView(corner).z;
+    const glm::dvec3 place =
+        glm::dvec3(box.first) + begin + extent * glm::dvec3(c & 1 ? 1 : 0, c & 2 ? 1 : 0, c & 4 ? 1 : 0);
+    const double s = view.toView(place).z;
     nearest = std::min(nearest, s);
     farthest = std::max(farthest, s);
   }
@@ -55,8 +77,8 @@ void RayFrame::setUniforms(GlProgram& program, const IndexView& view, std::span<
   program.set("screen_scale", glm::vec2(pixel));
   program.set("screen_offset", glm::vec2(view.centre - view.halfExtent));
   // The eye may be far from the volume: what is counted in single precision begins at the volume.
-  const glm::dvec3 corner = glm::dvec3(bricks.first) - 0.5;
-  program.set("first_middle", glm::vec3((view.eyeIndex - corner) + firstDepth * view.toIndex[2]));
+  const glm::dvec3 origin = glm::dvec3(bricks.first) + corner;
+  program.set("first_middle", glm::vec3((view.eyeIndex - origin) + firstDepth * view.toIndex[2]));
   program.set("first_depth", static_cast<float>(firstDepth));
   program.set("segment_depth", static_cast<float>(depth));
   program.set("across_x", glm::vec3(view.toIndex[0]));
@@ -64,14 +86,20 @@ void RayFrame::setUniforms(GlProgram& program, const IndexView& view, std::span<
   program.set("forward", glm::vec3(view.toIndex[2]));
   program.set("segment_count", static_cast<float>(count));
   program.set("brick", glm::vec3(interior));
-  program.set("medium_low", glm::vec3(medium.min - corner));
-  program.set("medium_high", glm::vec3(medium.max - corner));
+  program.set("medium_low", glm::vec3(medium.min - origin));
+  program.set("medium_high", glm::vec3(medium.max - origin));
   std::vector<glm::vec4> inShader;
   for (const glm::dvec4& plane : planes) {
     const glm::dvec4 inIndex = planeInIndex(plane, view);
-    inShader.emplace_back(glm::dvec3(inIndex), inIndex.w + glm::dot(glm::dvec3(inIndex), corner));
+    inShader.emplace_back(glm::dvec3(inIndex), inIndex.w + glm::dot(glm::dvec3(inIndex), origin));
   }
   program.set("clip_planes", inShader);
+}
+
+void RayFrame::setCells(GlProgram& program, const CellBox& cells, const glm::ivec3& parts) const {
+  const glm::ivec3 part = interior / parts;
+  program.set("part", glm::vec3(part));
+  program.set("first_cell", glm::ivec3((cells.first - bricks.first) / glm::i64vec3(part)));
 }
 
 }  // namespace umbrick

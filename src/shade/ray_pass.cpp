@@ -5,40 +5,9 @@
 #include <cmath>
 
 #include "shade/constants.h"
-#include "umbrick/core/stopwatch.h"
+#include "shade/phong_uniforms.h"
 
 namespace umbrick {
-namespace {
-
-// Pixels [min, max).
-struct PixelBox {
-  glm::ivec2 min, max;
-};
-
-// Returns the pixels through which cells can be seen.
-PixelBox pixelsOf(const IndexView& view, const CellBox& cells, const glm::ivec3& edge) {
-  const PixelBox all{glm::ivec2(0), view.size};
-  glm::dvec2 low(1e300), high(-1e300);
-  for (unsigned c = 0; c < 8; ++c) {
-    const glm::dvec3 corner =
-        glm::dvec3(cells.first) - 0.5 +
-        glm::dvec3(cells.count) * glm::dvec3(edge) * glm::dvec3(c & 1 ? 1 : 0, c & 2 ? 1 : 0, c & 4 ? 1 : 0);
-    glm::dvec3 seen = view.toView(corner);
-    if (view.projection == Projection::perspective) {
-      if (!(seen.z > 0)) return all;  // the box reaches behind the eye
-      seen /= seen.z;
-    }
-    const glm::dvec2 pixel =
-        (glm::dvec2(seen) - view.centre + view.halfExtent) / (2.0 * view.halfExtent) * glm::dvec2(view.size);
-    low = glm::min(low, pixel);
-    high = glm::max(high, pixel);
-  }
-  const glm::dvec2 size(view.size);
-  return {glm::ivec2(glm::clamp(low - 1.0, glm::dvec2(0), size)),
-          glm::ivec2(glm::clamp(high + 2.0, glm::dvec2(0), size))};
-}
-
-}  // namespace
 
 RayTargets::RayTargets(const GlFunctions& gl, const TargetOptions& options)
     : picture(gl, options), count(makeTexture2d(gl, GL_R32F, options.width, options.height, GL_NEAREST)) {
@@ -73,11 +42,14 @@ void RayPass::begin(const RayScene& rays) {
                             {"kColoured", light && light->coloured()},
                             {"kAux", rays.targets.picture.options.aux}};
   rays.transfer.setConstants(constants);
+  rays.codes.setConstants(constants);
+  setPhongConstants(constants, rays.scene);
   GlProgram& program = program_.get(rays.gl, constants);
   const BrickAtlas& atlas = rays.bricks.atlas();
   rays.transfer.setUniforms(program, atlas);
   if (light) program.set("whole_light", glm::vec3(light->whole()));
-  program.set("apron", static_cast<float>(atlas.layout().apron));
+  rays.codes.setUniforms(program);
+  setPhongUniforms(program, rays.scene, rays.volume.indexToWorld);
   program.set("inverse_size", glm::vec3(1.0 / glm::dvec3(atlas.textureSize())));
   program.set("saturation", static_cast<float>(rays.scene.sampling.saturation));
   program.set("depth", -0.6f);  // in front of what is clear, behind what is marked as saturated
@@ -91,7 +63,6 @@ void RayPass::setState(const RayScene& rays, const RayRun& run) {
   gl.DepthFunc(GL_LESS);
   gl.DepthMask(GL_FALSE);
   gl.Disable(GL_STENCIL_TEST);
-  gl.Enable(GL_SCISSOR_TEST);
   for (const GLuint target : {0u, 1u, 2u}) {
     gl.ColorMaski(target, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     gl.Enablei(GL_BLEND, target);
@@ -99,13 +70,10 @@ void RayPass::setState(const RayScene& rays, const RayRun& run) {
   }
   gl.BindTextureUnit(kTransferUnit, rays.transfer.texture());
   gl.BindTextureUnit(kSlotsUnit, slots_.texture());
-  for (std::size_t i = 0; i < run.cells.textures.size(); ++i) {
-    const auto unit = static_cast<GLuint>(i);
-    gl.BindTextureUnit(i == 0 ? kAtlasUnit : kMoreAtlasUnit + unit - 1,
-                       rays.bricks.atlas().texture(run.cells.textures[i]));
-    if (rays.light)
-      gl.BindTextureUnit(i == 0 ? kLightUnit : kMoreLightUnit + unit - 1, rays.light->texture(run.cells.textures[i]));
-  }
+  bindVoxels(gl, rays.bricks.atlas(), run.cells.textures);
+  for (std::size_t i = 0; rays.light && i < run.cells.textures.size(); ++i)
+    gl.BindTextureUnit(i == 0 ? kLightUnit : kMoreLightUnit + static_cast<GLuint>(i) - 1,
+                       rays.light->texture(run.cells.textures[i]));
   program_.current().use();
   gl.BindVertexArray(nothing_->name());
 }
@@ -121,27 +89,12 @@ void RayPass::draw(const RayScene& rays, const RayFrame& frame, const RayRun& ru
   slots_.fill(gl, rays.bricks, run.cells);
   GlProgram& program = program_.current();
   frame.setUniforms(program, rays.view, rays.planes, rays.medium);
-  const glm::ivec3 part = frame.interior / run.cells.parts;
-  const CellBox& cells = run.cells.cells;
-  program.set("part", glm::vec3(part));
-  program.set("first_cell", glm::ivec3((cells.first - frame.bricks.first) / glm::i64vec3(part)));
+  frame.setCells(program, run.cells.cells, run.cells.parts);
+  const glm::dmat4& toWorld = rays.volume.indexToWorld;
+  program.set("from_eye", glm::vec3(glm::dvec3(toWorld * glm::dvec4(frame.bricks.first, 1)) - rays.scene.camera.eye));
   setState(rays, run);
-  const PixelBox box = pixelsOf(rays.view, cells, part);
-  // A long draw is cut into bands, so that somebody who waits hears of it; what is fast is cut into few.
-  constexpr double kLongMs = 100;
-  int rows = rays.progress ? 64 : box.max.y - box.min.y;
-  for (int y = box.min.y; y < box.max.y;) {
-    const int end = std::min(y + rows, box.max.y);
-    gl.Scissor(box.min.x, y, box.max.x - box.min.x, end - y);
-    const Stopwatch watch;
-    gl.DrawArrays(GL_TRIANGLES, 0, 3);
-    y = end;
-    if (!rays.progress) continue;
-    gl.Finish();
-    if (watch.elapsedMs() < kLongMs) rows *= 2;
-    rays.progress(run.done + run.share * (y - box.min.y) / (box.max.y - box.min.y));
-  }
-  gl.Disable(GL_SCISSOR_TEST);
+  drawPixels(gl, pixelsOf(rays.view, run.cells.cells, frame.interior / run.cells.parts, frame.corner), run,
+             rays.progress);
 }
 
 }  // namespace umbrick

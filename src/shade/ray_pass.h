@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "shade/frame.h"
-#include "shade/ray_frame.h"
+#include "shade/ray_runs.h"
 #include "shade/render_targets.h"
 #include "shade/resident_light.h"
-#include "shade/slot_table.h"
 #include "shade/transfer_lookup.h"
+#include "shade/voxel_codes.h"
 
 namespace umbrick {
 
@@ -40,14 +40,10 @@ struct RayScene {
   const TransferLookup& transfer;
   const BrickSelection& bricks;
   const ResidentLight* light;  // null: all is lit alike
+  const VoxelCodes& codes;
+  const Bricks& volume;
   const RayTargets& targets;
   const std::function<void(double)>& progress;
-};
-
-/// Bricks that are drawn at once; they are resident, and so is their light.
-struct RayRun {
-  SlotCells cells;             // in at most kRayTextures textures
-  double done = 0, share = 1;  // shares of the picture: what was drawn before, and what this is
 };
 
 class RayPass {

@@ -65,15 +65,15 @@ void SlotTable::write(const BrickSelection& bricks, const SlotCells& cells) {
   texels_.assign(
       static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y) * static_cast<std::size_t>(count.z),
       Texel{kFar, 0, 0, 0});
+  numbers_.assign(cells.bounds.empty() ? 0 : texels_.size(), 0.0f);
   for (std::size_t i = 0; i < cells.positions.size(); ++i) {
     const std::int32_t position = cells.positions[i];
     const std::span<const std::uint8_t> shown = cells.shown.subspan(i * perBrick, perBrick);
     const glm::ivec3 first((glm::i64vec3(bricks.origins()[static_cast<std::size_t>(position)]) - cells.cells.first) /
                            glm::i64vec3(edge));
     const BrickAtlas::Slot slot = bricks.slot(position);
-    // A brick that shows something nearly everywhere is taken in one go.
     const auto seen = static_cast<std::size_t>(std::count(shown.begin(), shown.end(), std::uint8_t{1}));
-    const bool whole = 4 * seen >= 3 * perBrick;
+    const bool whole = (cells.joins || perBrick == 1) && 4 * seen >= 3 * perBrick;
     const auto texture =
         static_cast<unsigned>(std::ranges::find(cells.textures, slot.texture) - cells.textures.begin());
     const auto code = static_cast<std::uint16_t>(texture + 1 + (whole ? kWholeBrick : 0));
@@ -84,18 +84,21 @@ void SlotTable::write(const BrickSelection& bricks, const SlotCells& cells) {
           if (!whole && !shown[part]) continue;
           const glm::ivec3 cell = first + glm::ivec3(x, y, z);
           const glm::ivec3 texel = slot.origin + (whole ? glm::ivec3(0) : glm::ivec3(x, y, z) * edge);
-          texels_[(static_cast<std::size_t>(cell.z) * static_cast<std::size_t>(count.y) +
-                   static_cast<std::size_t>(cell.y)) *
-                      static_cast<std::size_t>(count.x) +
-                  static_cast<std::size_t>(cell.x)] = {static_cast<std::uint16_t>(texel.x),
-                                                       static_cast<std::uint16_t>(texel.y),
-                                                       static_cast<std::uint16_t>(texel.z), code};
+          const std::size_t at = (static_cast<std::size_t>(cell.z) * static_cast<std::size_t>(count.y) +
+                                  static_cast<std::size_t>(cell.y)) *
+                                     static_cast<std::size_t>(count.x) +
+                                 static_cast<std::size_t>(cell.x);
+          texels_[at] = {static_cast<std::uint16_t>(texel.x), static_cast<std::uint16_t>(texel.y),
+                         static_cast<std::uint16_t>(texel.z), code};
+          if (!numbers_.empty()) numbers_[at] = cells.bounds[i * perBrick + part];
         }
   }
 }
 
 void SlotTable::fill(const GlFunctions& gl, const BrickSelection& bricks, const SlotCells& cells) {
-  Key key{cells.cells, bricks.atlas().generation(), cells.version, cells.parts, cells.textures, {}, {}};
+  Key key{cells.cells, bricks.atlas().generation(), cells.version,  cells.parts,
+          cells.joins, !cells.bounds.empty(),       cells.textures, {},
+          {}};
   for (const std::int32_t position : cells.positions) {
     key.origins.push_back(bricks.origins()[static_cast<std::size_t>(position)]);
     key.slots.push_back(bricks.slotNumber(position));
@@ -105,6 +108,14 @@ void SlotTable::fill(const GlFunctions& gl, const BrickSelection& bricks, const 
   const glm::ivec3 count(cells.cells.count);
   write(bricks, cells);
   measureDistances(count);
+  upload(gl, count);
+  uploadBounds(gl, count);
+  checkGl(gl, "table of slots");
+  held_ = std::move(key);
+  texels_.clear();
+}
+
+void SlotTable::upload(const GlFunctions& gl, const glm::ivec3& count) {
   if (size_ != count) {
     texture_ = makeTexture3d(gl, GL_RGBA16UI, count.x, count.y, count.z);
     gl.TextureParameteri(texture_.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);  // whole numbers have no mean
@@ -114,14 +125,25 @@ void SlotTable::fill(const GlFunctions& gl, const BrickSelection& bricks, const 
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
   gl.TextureSubImage3D(texture_.name(), 0, 0, 0, 0, count.x, count.y, count.z, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT,
                        texels_.data());
-  checkGl(gl, "table of slots");
-  held_ = std::move(key);
-  texels_.clear();
+}
+
+void SlotTable::uploadBounds(const GlFunctions& gl, const glm::ivec3& count) {
+  if (numbers_.empty()) return;
+  if (boundsSize_ != count) {
+    bounds_ = makeTexture3d(gl, GL_R32F, count.x, count.y, count.z);
+    gl.TextureParameteri(bounds_.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl.TextureParameteri(bounds_.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    boundsSize_ = count;
+  }
+  gl.TextureSubImage3D(bounds_.name(), 0, 0, 0, 0, count.x, count.y, count.z, GL_RED, GL_FLOAT, numbers_.data());
+  numbers_.clear();
 }
 
 std::uint64_t SlotTable::bytes() const {
-  return static_cast<std::uint64_t>(size_.x) * static_cast<std::uint64_t>(size_.y) *
-         static_cast<std::uint64_t>(size_.z) * sizeof(Texel);
+  const auto cells = [](const glm::ivec3& size) {
+    return static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) * static_cast<std::uint64_t>(size.z);
+  };
+  return cells(size_) * sizeof(Texel) + cells(boundsSize_) * sizeof(float);
 }
 
 }  // namespace umbrick

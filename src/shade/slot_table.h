@@ -18,7 +18,9 @@ struct SlotCells {
   CellBox cells;                            // those of the bricks, each in parts; see cellsAround
   glm::ivec3 parts{1};                      // of a brick along each axis
   std::span<const std::uint8_t> shown;      // by brick, then by part: whether there is anything to see
-  std::uint64_t version = 0;                // of `shown`
+  std::span<const float> bounds;            // likewise: numbers that bounds() holds by cell; none: it is not made
+  std::uint64_t version = 0;                // of `shown` and `bounds`
+  bool joins = true;                        // a brick that shows something nearly everywhere is taken in one go
   std::vector<int> textures;                // that they lie in, see SlotTable::texturesOf
 };
 
@@ -35,6 +37,8 @@ class SlotTable {
   /// Takes the slots of bricks; does nothing where all is as at the last call.
   void fill(const GlFunctions& gl, const BrickSelection& bricks, const SlotCells& cells);
   GLuint texture() const { return texture_.name(); }
+  /// R32F, by cell; what no cell of a brick is in has any number.
+  GLuint bounds() const { return bounds_.name(); }
   std::uint64_t bytes() const;
 
  private:
@@ -45,6 +49,7 @@ class SlotTable {
     std::uint64_t generation = 0;  // of the atlas
     std::uint64_t version = 0;
     glm::ivec3 parts{1};
+    bool joins = true, bounds = false;
     std::vector<int> textures;
     std::vector<glm::ivec3> origins;  // by brick
     std::vector<std::int32_t> slots;
@@ -52,10 +57,13 @@ class SlotTable {
   };
   void write(const BrickSelection& bricks, const SlotCells& cells);
   void measureDistances(const glm::ivec3& count);
-  GlTexture texture_;
-  glm::ivec3 size_{0};
+  void upload(const GlFunctions& gl, const glm::ivec3& count);
+  void uploadBounds(const GlFunctions& gl, const glm::ivec3& count);
+  GlTexture texture_, bounds_;
+  glm::ivec3 size_{0}, boundsSize_{0};
   Key held_;
   std::vector<Texel> texels_;
+  std::vector<float> numbers_;  // of bounds_
 };
 
 }  // namespace umbrick

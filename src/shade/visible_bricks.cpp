@@ -39,7 +39,11 @@ void checkOnGl(const ResolvedScene& scene, const ResidentVolume& resident) {
         "sampling.classification: pre is rendered on the CPU, by rays and by shear-warp, and without occlusion");
   if (scene.transfer.is2d() && !resident.volume().hasGradients)
     throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
-  const int most = resident.context().maxTextureEdge2d();
+  checkSize(scene, resident.context());
+}
+
+void checkSize(const ResolvedScene& scene, const GlContext& context) {
+  const int most = context.maxTextureEdge2d();
   if (scene.camera.width > most || scene.camera.height > most)
     throw InvalidArgument("camera.size: " + std::to_string(scene.camera.width) + " x " +
                           std::to_string(scene.camera.height) + " is beyond the driver's limit of " +

@@ -26,6 +26,9 @@ SlotSharing sharingOf(const ResolvedScene& scene);
 ///   there are no gradients for a 2D transfer function, or the medium is to be classified before it is interpolated
 void checkOnGl(const ResolvedScene& scene, const ResidentVolume& resident);
 
+/// @throw InvalidArgument  the picture is larger than the driver's textures
+void checkSize(const ResolvedScene& scene, const GlContext& context);
+
 /// Fills in colour and, where the targets have layers, those.
 /// @param brightest  the radiance that is 1 in the eye buffer
 void readLayers(const GlFunctions& gl, const RenderTargets& targets, const ResolvedScene& scene, double brightest,

@@ -8,11 +8,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <string>
 
-#include "umbrick/core/error.h"
+#include "umbrick/draw/value_picture.h"
 #include "umbrick/optics/phong.h"
-#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
 namespace {
@@ -59,15 +57,7 @@ bool isGrey(const glm::dvec3& colour) { return colour.r == colour.g && colour.g 
 
 }  // namespace
 
-void BrickShading::check(const ResolvedScene& scene, const Bricks& volume) {
-  if (traitsOf(scene.model).occlusion)
-    throw InvalidArgument("shading.kind: phong in a medium goes with the model emission, found " +
-                          modelName(scene.model));
-  if (volume.layout.apron < kApron)
-    throw InvalidArgument("bricks: shading needs an apron of " + std::to_string(kApron) + " voxels, found " +
-                          std::to_string(volume.layout.apron));
-  shadingLights(scene);
-}
+void BrickShading::check(const ResolvedScene& scene, const Bricks& volume) { checkShading(scene, volume.layout.apron); }
 
 void BrickShading::update(BrickVoxels& voxels, const ResolvedScene& scene) {
   const Bricks& volume = voxels.volume();

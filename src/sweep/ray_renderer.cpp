@@ -18,7 +18,7 @@
 #include "sweep/value_rays.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
-#include "umbrick/optics/projection_colour.h"
+#include "umbrick/draw/value_picture.h"
 #include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
@@ -68,34 +68,6 @@ RowSpan rowsOf(const Brick& brick, const IndexView& view, const glm::ivec3& inte
     return static_cast<int>(std::floor(std::clamp(row, -2.0, view.size.y + 2.0)));
   };
   return {rowAt(low) - 1, rowAt(high) + 1};
-}
-
-// Tells whether the mode looks at values and not at a medium.
-bool showsValues(Mode mode) { return traitsOf(mode).ofValues || traitsOf(mode).surfaces; }
-
-// Returns the scene whose medium rays are taken through: light that gets through a medium is all that an X-ray asks
-// for, to the last bit of it.
-ResolvedScene mediumOf(const ResolvedScene& scene) {
-  ResolvedScene medium = scene;
-  if (scene.mode != Mode::xray) return medium;
-  medium.model = Model::emission;
-  medium.sampling.saturation = 0;
-  medium.background.reset();
-  return medium;
-}
-
-// Turns opacities into what gets through, which is the layer "value".
-void showThrough(const ResolvedScene& scene, Picture& picture) {
-  Image through(scene.camera.width, scene.camera.height, 1);
-  const glm::dvec3 behind = scene.background.value_or(glm::dvec3(0));
-  for (std::size_t i = 0; i < through.pixels.size(); ++i) {
-    float* const pixel = &picture.colour.pixels[4 * i];
-    through.pixels[i] = 1 - pixel[3];
-    const glm::dvec4 colour = pixel[3] > 0 ? xrayColour(through.pixels[i]) : glm::dvec4(0);
-    for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(colour[c] + (1 - colour.w) * behind[c]);
-    pixel[3] = scene.background ? 1 : static_cast<float>(colour.w);
-  }
-  picture.layers.push_back({"value", std::move(through), true});
 }
 
 }  // namespace

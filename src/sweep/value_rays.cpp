@@ -16,10 +16,8 @@
 #include "sweep/surface_rays.h"
 #include "sweep/surface_shader.h"
 #include "sweep/swept_scene.h"
-#include "umbrick/core/error.h"
-#include "umbrick/core/short_number.h"
 #include "umbrick/core/stopwatch.h"
-#include "umbrick/optics/projection_colour.h"
+#include "umbrick/draw/value_picture.h"
 #include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
@@ -47,72 +45,10 @@ std::vector<glm::dvec4> within(const IndexBox& box, double margin, std::vector<g
   return planes;
 }
 
-void checkSurfaces(const ResolvedScene& scene, const Bricks& volume) {
-  if (scene.surfaces.empty())
-    throw InvalidArgument("surfaces: is empty, must be one value or more for the mode isosurface");
-  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-    const double value = scene.surfaces[i].value;
-    // A surface parts what is larger from what is not.
-    if (value >= volume.value.min && value < volume.value.max) continue;
-    throw InvalidArgument("surfaces[" + std::to_string(i) + "].value: " + shortNumber(value, 9) +
-                          " has no surface, the volume has values from " + shortNumber(volume.value.min, 9) + " to " +
-                          shortNumber(volume.value.max, 9));
-  }
-  if (volume.layout.apron < SurfaceRays::kApron)
-    throw InvalidArgument("bricks: surfaces need an apron of " + std::to_string(SurfaceRays::kApron) +
-                          " voxels, found " + std::to_string(volume.layout.apron));
-}
-
 // Where rays lie on the screen.
 glm::dvec2 screenOf(const IndexView& view, int x, int y) {
   return view.centre + view.halfExtent * (2.0 * (glm::dvec2(x, y) + 0.5) / glm::dvec2(view.size) - 1.0);
 }
-
-void store(const ResolvedScene& scene, const glm::dvec4& premultiplied, float* out) {
-  const glm::dvec3 behind = scene.background.value_or(glm::dvec3(0));
-  for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(premultiplied[c] + (1 - premultiplied.w) * behind[c]);
-  out[3] = scene.background ? 1 : static_cast<float>(premultiplied.w);
-}
-
-// The ray of a pixel in the world, as ValueRay is in index space.
-struct WorldRay {
-  glm::dvec3 from, along;  // a point is from + depth along
-  glm::dvec3 viewer;       // direction towards the eye, unit length
-};
-
-WorldRay worldRay(const Camera& camera, const CameraFrame& frame, const glm::dvec2& screen) {
-  const glm::dvec3 aside = screen.x * frame.right + screen.y * frame.up;
-  const bool perspective = camera.projection == Projection::perspective;
-  WorldRay ray;
-  ray.from = perspective ? camera.eye : camera.eye + aside;
-  ray.along = perspective ? frame.forward + aside : frame.forward;
-  ray.viewer = -glm::normalize(ray.along);
-  return ray;
-}
-
-// What is known of the nearest surface of each pixel; NaN where there is none.
-class SurfaceLayers {
- public:
-  SurfaceLayers(int width, int height) : value_(width, height, 1), position_(width, height, 3), normal_(position_) {
-    for (Image* image : {&value_, &position_, &normal_})
-      std::ranges::fill(image->pixels, std::numeric_limits<float>::quiet_NaN());
-  }
-  void keep(int x, int y, double value, const glm::dvec3& position, const glm::dvec3& normal) {
-    *value_.at(x, y) = static_cast<float>(value);
-    for (int c = 0; c < 3; ++c) {
-      position_.at(x, y)[c] = static_cast<float>(position[c]);
-      normal_.at(x, y)[c] = static_cast<float>(normal[c]);
-    }
-  }
-  void moveTo(Picture& picture) {
-    picture.layers.push_back({"value", std::move(value_), true});
-    picture.layers.push_back({"position", std::move(position_), true});
-    picture.layers.push_back({"normal", std::move(normal_), true});
-  }
-
- private:
-  Image value_, position_, normal_;
-};
 
 }  // namespace
 
@@ -121,7 +57,7 @@ ValueRays::ValueRays(const Bricks& volume, const RenderOptions& options) : optio
 void ValueRays::update(const ResolvedScene& next) {
   const bool surfaces = traitsOf(next.mode).surfaces;
   if (surfaces) {
-    checkSurfaces(next, voxels_.volume());
+    checkSurfaces(next, voxels_.volume().value, voxels_.volume().layout.apron);
     SurfaceShader(next, voxels_.volume().indexToWorld);  // says whether there is light
   }
   const std::vector<double> values = surfaces ? valuesOf(next) : std::vector<double>();
@@ -210,8 +146,7 @@ void ValueRays::drawProjection(const ResolvedScene& scene, int perVoxel, Picture
         if (x >= width || y >= height) continue;
         const float value = projected[static_cast<std::size_t>(i)];
         *values.at(x, y) = value;
-        const bool nothing = isBackground(scene.transfer, value, volume.background);
-        store(scene, nothing ? glm::dvec4(0) : projectionColour(scene.transfer, value), picture.colour.at(x, y));
+        storeProjected(scene, value, volume.background, picture.colour.at(x, y));
       }
     }
   });
@@ -249,7 +184,7 @@ void ValueRays::drawSurfaces(const ResolvedScene& scene, Picture& picture) {
         return pixel.w < full;
       };
       if (!ray.empty()) tracer.trace(ray, visit);
-      store(scene, pixel, picture.colour.at(x, y));
+      storeOver(scene, pixel, picture.colour.at(x, y));
       if (!layers) continue;
       const auto opacity = static_cast<float>(pixel.w);
       *picture.opacity.at(x, y) = *picture.visibility.at(x, y) = opacity;

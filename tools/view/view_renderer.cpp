@@ -37,13 +37,19 @@ struct MadeFor {
   std::optional<Method> method;
   Model model;
   bool gradients;
-  int apron;  // that techniques on the CPU need
+  int apron;   // that techniques on the CPU need
+  bool byAll;  // techniques can render the mode and its shading; else another one may have to be chosen
   BrickSettings bricks;
   bool operator==(const MadeFor&) const = default;
 };
 MadeFor madeFor(const ResolvedScene& scene) {
-  return {scene.technique,       occlusionMethod(scene),   scene.model,
-          scene.transfer.is2d(), sweptBricks(scene).apron, scene.bricks};
+  return {scene.technique,
+          occlusionMethod(scene),
+          scene.model,
+          scene.transfer.is2d(),
+          sweptBricks(scene).apron,
+          supportsMode(scene, Technique::slices) && supportsMode(scene, Technique::shearWarp),
+          scene.bricks};
 }
 
 }  // namespace

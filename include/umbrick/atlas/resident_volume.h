@@ -52,6 +52,9 @@ class BrickSelection {
   std::size_t slots() const { return slots_; }
   /// First owned voxel of each.
   std::span<const glm::ivec3> origins() const { return origins_; }
+  const Brick& brick(std::int32_t position) const {
+    return atlas_->bricks()[static_cast<std::size_t>(bricks_[static_cast<std::size_t>(position)])];
+  }
   BrickAtlas::Slot slot(std::int32_t position) const {
     return atlas_->slot(bricks_[static_cast<std::size_t>(position)]);
   }

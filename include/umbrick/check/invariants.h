@@ -24,7 +24,7 @@ namespace umbrick {
 ///   6  the order in which the bricks of a slice are drawn does not matter
 ///   7  what lies at the border of a volume is whole: empty space around it changes nothing, however wide the slabs
 ///   8  rays on OpenGL and techniques on the CPU make the picture that slices make, within twice the errors that both
-///   state
+///   state; rays on OpenGL and on the CPU agree in all other modes
 struct InvariantResult {
   int invariant = 0;
   std::string name;       // what must hold, and for which model or bricks
