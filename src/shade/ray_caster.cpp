@@ -45,7 +45,7 @@ class RayCaster::Implementation {
         resident_(resident),
         volume_(resident.volume()),
         options_(options),
-        light_(resident.volume()),
+        light_(resident, options.lightSweep),
         parts_(resident.volume()) {}
 
   /// Makes anew what another scene asks for or, when something throws, nothing.
