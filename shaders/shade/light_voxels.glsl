@@ -2,13 +2,14 @@
 // (umbrick/light/extinction_table.h), which is the CPU's to the last bit.
 // Voxels count from the first one of the first cell of the table of slots.
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/constants.glsl"
-layout(binding = kAtlasUnit) uniform sampler3D atlas;  // r: value, texel units
+#include "optics/slab.glsl"
+#include "optics/ramp.glsl"
+#include "shade/medium.glsl"
 layout(binding = kMoreAtlasUnit) uniform sampler3D more_atlas[kRayTextures - 1];
 // kTableSteps + 2 integrals of sigma_t, kTableSteps + 1 means of it from each step to the next, and kTableSteps + 1
 // numbers of steps before each that have any.
 layout(std430, binding = kExtinctionBuffer) readonly buffer Extinction { float table[]; };
-// Steps are kTableEnds + (code - lowest_code) * steps_per_code, so that values of the first control point are an entry
+// Of a 1D function steps are kTableEnds + (code - lowest_code) * steps_per_code, so that values of the first control point are an entry
 // to the last bit. Codes are texels or, of fixed point, the whole numbers that they stand for, of which kCodes is the
 // largest.
 uniform float lowest_code;
@@ -16,14 +17,22 @@ uniform float steps_per_code;
 uniform vec2 sigma_ends;   // 1/world unit, of values below the table and above it
 uniform vec2 empty_ends;   // there is no medium at values up to the one, and from the other on
 
+// Returns the code of a voxel; of a 2D function (kQuadrature above 1) its sigma_t in steps, which is what is linear between
+// voxels then.
 float codeAt(ivec3 texel, int number) {
-  float value = texelFetch(atlas, texel, 0).r;
+  vec2 value = texelFetch(atlas, texel, 0).rg;
   for (int i = 1; i < kTextures; ++i)
-    if (number == i) value = texelFetch(more_atlas[i - 1], texel, 0).r;
-  return kCodes > 0 ? roundEven(value * float(kCodes)) : value;
+    if (number == i) value = texelFetch(more_atlas[i - 1], texel, 0).rg;
+  if (kQuadrature > 1) {
+    End end = endOf(value);
+    return mediumIn(cellAt(end.stretch), end.value).a * steps_per_code;
+  }
+  return kCodes > 0 ? roundEven(value.r * float(kCodes)) : value.r;
 }
 
-float stepsOf(float code) { return float(kTableEnds) + (code - lowest_code) * steps_per_code; }
+float stepsOf(float code) {
+  return kQuadrature > 1 ? code : float(kTableEnds) + (code - lowest_code) * steps_per_code;
+}
 
 int entryOf(float steps) { return int(clamp(steps, 0.0, float(kTableSteps))); }
 

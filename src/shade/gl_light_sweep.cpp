@@ -51,6 +51,7 @@ struct GlLightSweep::Volume {
   const ResidentVolume& resident;
   const BrickSelection& bricks;
   const LightMedium& medium;
+  const TransferLookup& transfer;
   const LightTextures& light;
   std::vector<std::int32_t> positions;
   std::vector<int> textures;  // of the atlas, that bricks lie in
@@ -67,7 +68,6 @@ std::string GlLightSweep::refusal(const ResidentVolume& resident, const BrickSel
                                   const LightMedium& medium) {
   const BrickAtlas& atlas = resident.atlas();
   if (medium.spacing == 2) return "OpenGL computes it at every voxel alone";
-  if (medium.transfer.is2d()) return "OpenGL knows that of functions of the value alone";
   if (medium.planes.size() > kMostPlanes) return "too many planes cut the medium";
   if (bricks.slots() > atlas.slots()) return "the textures of bricks do not hold the visible ones at once";
   if (atlas.textureCount() > kRayTextures)
@@ -117,7 +117,7 @@ void GlLightSweep::fill(Buffer& buffer, GLuint unit, std::uint64_t bytes, const 
 }
 
 void GlLightSweep::sweep(const ResidentVolume& resident, const BrickSelection& bricks, const LightMedium& medium,
-                         const LightTextures& light) {
+                         const TransferLookup& transfer, const LightTextures& light) {
   updates_ = 0;
   if (bricks.size() == 0) return;
   gl_ = &resident.context().gl();
@@ -129,6 +129,7 @@ void GlLightSweep::sweep(const ResidentVolume& resident, const BrickSelection& b
   Volume volume{resident,
                 bricks,
                 medium,
+                transfer,
                 light,
                 positions,
                 SlotTable::texturesOf(bricks, positions),
@@ -143,6 +144,10 @@ void GlLightSweep::sweep(const ResidentVolume& resident, const BrickSelection& b
                  {"kContinued", continued},
                  {"kColoured", isColoured(medium.directions)}}};
   volume.constants["kTextures"] = static_cast<int>(volume.textures.size());
+  // A 1D function comes from the table.
+  for (const char* name : {"kQuadrature", "kUniformStretches"}) volume.constants[name] = 0;
+  for (const char* name : {"kValueSteps", "kGradientSteps"}) volume.constants[name] = 1;
+  if (medium.transfer.is2d()) transfer.setConstants(volume.constants);
   makeTables(volume);
   const LitBricks lit = findBlocks(volume);
   std::array<std::optional<LightSlabs>, 3> slabs;
@@ -176,6 +181,7 @@ void GlLightSweep::makeTables(const Volume& volume) {
   }
   fill(bricks_, kLitBricksBuffer, places.size() * sizeof(glm::ivec4), places.data());
   gl.BindTextureUnit(kSlotsUnit, slots_.texture());
+  gl.BindTextureUnit(kTransferUnit, volume.transfer.texture());
   const GLenum format = volume.constants.at("kColoured") ? GL_RGBA32F : GL_R32F;
   for (std::size_t i = 0; i < volume.textures.size(); ++i) {
     const auto unit = static_cast<GLuint>(i);
@@ -190,7 +196,9 @@ void GlLightSweep::makeTables(const Volume& volume) {
   for (SpecialisedProgram* each : {&blocksProgram_, &carryProgram_}) {
     GlProgram& program = each->get(gl, volume.constants);
     program.set("lowest_code", static_cast<float>(scale.toTexel(volume.table.low()) * codes));
-    program.set("steps_per_code", static_cast<float>(volume.table.perUnit() * scale.scale / codes));
+    const bool is2d = volume.medium.transfer.is2d();
+    program.set("steps_per_code", static_cast<float>(volume.table.perUnit() * (is2d ? 1 : scale.scale / codes)));
+    if (is2d) volume.transfer.setUniforms(program, volume.resident.atlas());
     program.set("sigma_ends", glm::vec2(volume.table.below(), volume.table.above()));
     program.set("empty_ends", glm::vec2(volume.table.emptyBelow(), volume.table.emptyAbove()));
     program.set("apron", volume.layout().apron);

@@ -35,10 +35,11 @@ class GlLightSweep {
   /// empty where it can.
   static std::string refusal(const ResidentVolume& resident, const BrickSelection& bricks, const LightMedium& medium);
 
-  /// Adds the light of all of a medium. @param light  has textures for the atlas that hold 0
+  /// Adds the light of all of a medium. @param transfer  that of the medium, of a 2D function; light  has textures for
+  /// the atlas that hold 0
   /// @pre the bricks are resident, each in a slot of its own, and nothing speaks against it  @throw GlError
   void sweep(const ResidentVolume& resident, const BrickSelection& bricks, const LightMedium& medium,
-             const LightTextures& light);
+             const TransferLookup& transfer, const LightTextures& light);
 
   /// Returns how many texels of paths were taken through a slice.
   std::uint64_t updates() const { return updates_; }

@@ -15,7 +15,7 @@ class LightVolumePass : public SlicePass {
   LightVolumePass(ResidentVolume& volume, LightSweep sweep) : light_(volume, sweep) {}
 
   void begin(Frame& frame, std::span<const SweepRun> runs) override {
-    light_.update(frame.scene, frame.sample, frame.view, frame.planes, frame.bricks);
+    light_.update(frame.scene, frame.sample, frame.view, frame.planes, frame.transfer, frame.bricks);
     runs_.assign(runs.begin(), runs.end());
     const glm::dvec3 whole = light_.whole();
     brightest_ = frame.scene.sampling.bits == 16 ? std::max({1.0, whole.r, whole.g, whole.b}) : 1;

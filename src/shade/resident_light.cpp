@@ -11,7 +11,7 @@
 namespace umbrick {
 
 void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sample, const IndexView& view,
-                           std::span<const glm::dvec4> planes, BrickSelection& bricks) {
+                           std::span<const glm::dvec4> planes, const TransferLookup& transfer, BrickSelection& bricks) {
   const Stopwatch watch;
   LightMedium medium{
       scene.transfer,
@@ -31,7 +31,7 @@ void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sampl
   const bool onGl = sweep_ == LightSweep::gl || (sweep_ == LightSweep::automatic && !resident_.context().software());
   if (onGl) note_ = GlLightSweep::refusal(resident_, bricks, medium);
   if (onGl && note_.empty()) {
-    computed = sweepOnGl(medium, bricks);
+    computed = sweepOnGl(medium, transfer, bricks);
   } else {
     const std::uint64_t most = std::max<std::uint64_t>(scene.bricks.budgetMiB << 20, std::uint64_t{2} << 30);
     computed = light_.update(medium, most);
@@ -43,7 +43,7 @@ void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sampl
 }
 
 // Computes light on OpenGL, unless the textures have it. @return whether it was computed
-bool ResidentLight::sweepOnGl(const LightMedium& medium, BrickSelection& bricks) {
+bool ResidentLight::sweepOnGl(const LightMedium& medium, const TransferLookup& transfer, BrickSelection& bricks) {
   std::vector<std::int32_t> positions(bricks.size());
   for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = static_cast<std::int32_t>(i);
   bricks.require(positions);
@@ -53,7 +53,7 @@ bool ResidentLight::sweepOnGl(const LightMedium& medium, BrickSelection& bricks)
   swept_.reset();  // whatever fails next
   const GlFunctions& gl = resident_.context().gl();
   textures_.clear(gl, bricks.atlas(), coloured_ ? 3 : 1);
-  glSweep_.sweep(resident_, bricks, medium, textures_);
+  glSweep_.sweep(resident_, bricks, medium, transfer, textures_);
   gl.Finish();  // only a wait for the last voxel tells the time
   swept_ = std::move(next);
   return true;

@@ -27,7 +27,7 @@ class ResidentLight {
   /// @param planes  those that cut the medium, view coordinates
   /// @throw InvalidArgument  as LightVolume::update
   void update(const ResolvedScene& scene, const RenderSample& sample, const IndexView& view,
-              std::span<const glm::dvec4> planes, BrickSelection& bricks);
+              std::span<const glm::dvec4> planes, const TransferLookup& transfer, BrickSelection& bricks);
   /// Brings the light of bricks to their textures. @param positions  in the selection; they are resident
   void require(const GlFunctions& gl, const BrickSelection& bricks, std::span<const std::int32_t> positions) {
     if (!swept_) textures_.require(gl, bricks, light_, version_, positions);
@@ -48,7 +48,7 @@ class ResidentLight {
     std::vector<std::int32_t> slots;
     bool operator==(const Swept&) const = default;
   };
-  bool sweepOnGl(const LightMedium& medium, BrickSelection& bricks);
+  bool sweepOnGl(const LightMedium& medium, const TransferLookup& transfer, BrickSelection& bricks);
   ResidentVolume& resident_;
   const LightSweep sweep_;
   LightVolume light_;  // computed by the CPU

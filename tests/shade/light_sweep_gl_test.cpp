@@ -34,7 +34,8 @@ class GlLight {
         resident_(context, volume, {.format = format, .maxTextureBytes = kPlenty, .maxTextureEdge = maxTextureEdge}) {
     std::vector<std::int32_t> shown;
     for (std::size_t i = 0; i < volume.bricks.size(); ++i)
-      if (!medium.transfer.isTransparent(volume.bricks[i].value)) shown.push_back(static_cast<std::int32_t>(i));
+      if (!medium.transfer.isTransparent(volume.bricks[i].value, volume.bricks[i].gradient))
+        shown.push_back(static_cast<std::int32_t>(i));
     if (background) shown.insert(shown.end(), resident_.background().begin(), resident_.background().end());
     selection_.emplace(resident_.atlas(), shown, SlotSharing::apart);
     REQUIRE(selection_->reserve());
@@ -45,7 +46,8 @@ class GlLight {
     channels_ = isColoured(medium.directions) ? 3 : 1;
     CHECK(GlLightSweep::refusal(resident_, *selection_, medium).empty());
     textures_.clear(gl_, resident_.atlas(), channels_);
-    sweep_.sweep(resident_, *selection_, medium, textures_);
+    const TransferLookup transfer(gl_, medium.transfer, SamplingOptions{}, volume, format);
+    sweep_.sweep(resident_, *selection_, medium, transfer, textures_);
     const glm::ivec3 size = resident_.atlas().textureSize();
     for (int i = 0; i < resident_.atlas().textureCount(); ++i) {
       std::vector<float>& texels = texels_.emplace_back(4 * static_cast<std::size_t>(size.x * size.y * size.z));
@@ -118,7 +120,7 @@ std::vector<bool> readVoxels(const Bricks& volume, const LightMedium& medium, co
       Range range;
       for (unsigned corner = 0; corner < 8; ++corner)
         range.include(values[at(first + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2))]);
-      if (!medium.transfer.isTransparent(range)) isRead[at(i)] = true;
+      if (!medium.transfer.isTransparent(range, volume.gradient)) isRead[at(i)] = true;
     }
   });
   return isRead;
@@ -182,12 +184,18 @@ std::vector<LightDirection> randomLights(TestRandom& random, int count, bool col
   return lights;
 }
 
+// A number in [0, 1) for each voxel: a hash, since a generator of random numbers takes long to seed.
+double noiseAt(const glm::ivec3& i, unsigned seed) {
+  unsigned h = seed + static_cast<unsigned>((i.z * 64 + i.y) * 64 + i.x);
+  for (int round = 0; round < 2; ++round) h = (h ^ h >> 16) * 0x45d9f3bu;
+  return (h ^ h >> 16) / 4294967296.0;
+}
+
 // Blobs and empty space, rough enough that no two voxels have one value.
 FieldBricks::Field roughBlobs(unsigned seed) {
   return [seed](const glm::ivec3& i) {
     const double blob = coneAt(i, {{13, 12, 22, 11}, {30, 24, 14, 12}, {20, 36, 33, 8}});
-    TestRandom noise(seed + static_cast<unsigned>((i.z * 64 + i.y) * 64 + i.x));
-    return blob > 0 ? blob * (0.6 + 0.8 * noise.uniform()) : 0.0;
+    return blob > 0 ? blob * (0.6 + 0.8 * noiseAt(i, seed)) : 0.0;
   };
 }
 
@@ -240,6 +248,26 @@ TEST_CASE("Light of OpenGL is the CPU's in texels of 16 bits", "[shade][light-sw
     LightMedium medium = mediumOf(transfer, randomLights(random, 6, false));
     const GlLight gl(*context, volume, medium, false, VoxelFormat::unorm16);
     CHECK(againstCpu(volume, medium, gl).largest < farApart(volume, medium));
+  }
+}
+
+TEST_CASE("Light of OpenGL is the CPU's for functions of value and gradient", "[shade][light-sweep][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const FieldBricks volume(roughBlobs(8), kBox, {.interior = 16, .gradients = true});
+  const Medium none{kAlbedo, 0};
+  // Where values are steep there is less medium, and none where they are flat.
+  const TransferFunction transfer(
+      {0.05, 0.4, 0.9}, {0.05, 0.2, 0.5},
+      {none, none, none, none, {kAlbedo, 0.3}, {kAlbedo, 0.7}, none, {kAlbedo, 0.1}, {kAlbedo, 0.2}});
+  TestRandom random(11);
+  for (const bool cut : {false, true}) {
+    LightMedium medium = mediumOf(transfer, randomLights(random, 6, cut));
+    if (cut) medium.planes.emplace_back(-0.8113, 0.3019, 0.5227, 10.3);
+    const GlLight gl(*context, volume, medium);
+    const Difference difference = againstCpu(volume, medium, gl);
+    CHECK(difference.lit > difference.voxels / 10);
+    CHECK(difference.largest < farApart(volume, medium, cut ? 3 : 1) + 2e-5);
   }
 }
 
