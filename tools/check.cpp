@@ -27,7 +27,7 @@ constexpr int kPictureEdge = 96;
 struct CheckCommand {
   std::shared_ptr<SceneOptions> scene;
   CheckOptions check;
-  std::string backend = "auto";
+  std::string backend = "auto", lightSweep = "auto";
   bool json = false;
 };
 
@@ -149,6 +149,7 @@ int check(const CheckCommand& command) {
   cone.spacingUnit = lit.spacingUnit;
   cone.occlusion = lit.occlusion;
   options.cone = resolve(cone);
+  options.lightSweep = parseName(kLightSweeps, command.lightSweep, "--light-sweep");
   const auto context = createContext(command.backend);
   bar.clear();
   std::cerr << opened.chosen;
@@ -176,6 +177,7 @@ Command addCheck(CLI::App& app) {
       "check", "Measure on a volume that bricks and culling change nothing and that techniques agree.");
   command->scene = addSceneOptions(*sub);
   addBackendOption(*sub, command->backend);
+  addLightSweepOption(*sub, command->lightSweep);
   // The check decides what is compared: emission and cone, with and without bricks and culling. So these
   // are no options.
   for (const char* option : {"--model", "--unbricked", "--no-culling", "--technique"})

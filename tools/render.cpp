@@ -36,7 +36,7 @@ namespace {
 struct RenderCommand {
   std::shared_ptr<SceneOptions> scene;
   std::shared_ptr<PictureOutput> output;
-  std::string backend = "auto";
+  std::string backend = "auto", lightSweep = "auto";
   int frames = 1;
   bool timePasses = false;
   std::optional<int> passes;  // of a progressive picture: most samples
@@ -47,6 +47,8 @@ struct RenderCommand {
 
 // Says which options mean nothing to what draws.
 void tellUnused(const RenderCommand& command, Technique technique, bool onCpu) {
+  if (onCpu && command.lightSweep != "auto")
+    std::cerr << "--light-sweep has no effect on the CPU: it is of OpenGL (--backend osmesa or egl)\n";
   if (technique == Technique::slices || technique == Technique::stacks) return;
   const std::string where = onCpu ? "on the CPU: it is of slices (--backend osmesa)" : "on rays: it is of slices";
   const auto tell = [&](const std::string& option) { std::cerr << option << " has no effect " << where << '\n'; };
@@ -107,9 +109,13 @@ nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& pict
   json["bytes"] = {
       {"brick_textures", stats.textureBytes}, {"buffers", stats.bufferBytes}, {"peak_memory", peakMemoryBytes()}};
   if (stats.directions > 0 && occlusionMethod(loaded.scene) == Method::lightVolume)
-    json["light"] = {{"directions", stats.directions}, {"ms", stats.lightMs},
-                     {"bytes", stats.windowBytes},     {"updates", stats.windowUpdates},
-                     {"spacing", stats.lightSpacing},  {"spacing_error", stats.lightSpacingError}};
+    json["light"] = {{"directions", stats.directions},
+                     {"ms", stats.lightMs},
+                     {"bytes", stats.windowBytes},
+                     {"updates", stats.windowUpdates},
+                     {"spacing", stats.lightSpacing},
+                     {"spacing_error", stats.lightSpacingError},
+                     {"swept_by", stats.lightOnGl ? "gl" : "cpu"}};
   else if (stats.directions > 0)
     json["windows"] = {{"directions", stats.directions},
                        {"texel_world", stats.windowTexel},
@@ -300,6 +306,7 @@ int render(const RenderCommand& command) {
   options.visibilityAndDepth = output.layers;
   options.countFragments = !output.stats.empty();
   options.timePasses = command.timePasses;
+  options.lightSweep = parseName(kLightSweeps, command.lightSweep, "--light-sweep");
   watch.bar.clear();
   std::vector<double> framesMs;
   Picture picture;
@@ -342,6 +349,8 @@ int render(const RenderCommand& command) {
   if (picture.stats.lightSpacing == 2 && loaded.scene.occlusion.ordinates.lightSpacing == 0)
     std::cerr << "for lack of memory light is held at every second voxel alone, which changes it by about "
               << picture.stats.lightSpacingError << " of the whole (--memory-budget)\n";
+  if (!picture.stats.lightNote.empty())
+    std::cerr << "light is computed on the CPU: " << picture.stats.lightNote << '\n';
   const Stopwatch write;
   writePicture(output, picture, loaded.scene, engine.description,
                passes ? printPasses(*passes, command.seed).dump() : std::string());
@@ -370,6 +379,7 @@ Command addRender(CLI::App& app) {
                        "V (visibility weighted by opacity) and Z (mean depth, world units); of isosurfaces also value, "
                        "position and normal of the nearest one");
   addEngineOption(*sub, command->backend);
+  addLightSweepOption(*sub, command->lightSweep);
   sub->add_option("--frames", command->frames, "render so many times and time each; the last is written")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str()

@@ -420,6 +420,15 @@ void addEngineOption(CLI::App& command, std::string& engine) {
       ->capture_default_str();
 }
 
+void addLightSweepOption(CLI::App& command, std::string& sweep) {
+  command
+      .add_option("--light-sweep", sweep,
+                  "what computes light volumes that OpenGL draws: gl (compute shaders, from bricks that are resident), "
+                  "cpu (SIMD), or auto: gl on a GPU, cpu where OpenGL runs in software; the light is the same")
+      ->check(CLI::IsMember(listNames(kLightSweeps)))
+      ->capture_default_str();
+}
+
 void ContextCloser::operator()(GlContext* context) const {
   if (!stopRequested()) delete context;
 }

@@ -56,6 +56,8 @@ std::vector<std::string> spellOutBackground(std::vector<std::string> arguments);
 void addBackendOption(CLI::App& command, std::string& backend);
 /// Adds --backend, for sub-commands that draw on the CPU, too.
 void addEngineOption(CLI::App& command, std::string& engine);
+/// Adds --light-sweep; the text is one of kLightSweeps.
+void addLightSweepOption(CLI::App& command, std::string& sweep);
 /// Closes a context, unless the program leaves anyway (leaveIfStopped).
 struct ContextCloser {
   void operator()(GlContext* context) const;

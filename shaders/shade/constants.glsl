@@ -31,9 +31,18 @@ const int kWholeBrick = 256;
 const int kWindowsImage = 0;
 const int kVisibilityImage = 1;
 const int kVisibilityWeightImage = 2;
+const int kLightImage = 0;             // of sweeps: light beside the textures of the atlas, one image for each
 
 // Buffers are bound to these units.
 const int kTilesBuffer = 0;
+// Those of sweeps through light volumes, beside kTilesBuffer.
+const int kExtinctionBuffer = 1;       // the transfer function as paths integrate it
+const int kDepthsBuffer = 2;           // optical depths of paths
+const int kThroughBuffer = 3;          // their transmittances on the slices of a slab
+const int kPlacesBuffer = 4;           // where paths lie on each slice
+const int kDirectionsBuffer = 5;
+const int kBlocksBuffer = 6;           // blocks of voxels that get light
+const int kLitBricksBuffer = 7;
 
 // A tile of the light's lattice has so many texels along its edge; a compute shader's group takes one tile.
 const int kLatticeTile = 8;
@@ -43,3 +52,14 @@ const int kTileRowShift = 16;
 // Layers of the texture of windows: the first belongs to the view axis, the others to the directions of the light.
 const int kViewLayer = 0;
 const int kFirstLightLayer = 1;
+
+// A sweep of light volumes takes paths through so many slices at once; the voxels of blocks of such an edge get light
+// together, and a group takes a tile of so many paths along each edge. Tiles count from -kFirstPathTile on, since paths
+// come into the plane within a slab. They are stored as column, row << kPathTileBits and direction << 2 kPathTileBits.
+const int kSlabSlices = 8;
+const int kLitBlock = 4;
+const int kPathTile = 8;
+const int kFirstPathTile = 2;
+const int kPathTileBits = 13;
+const int kMostPathTiles = 8192;       // along an edge
+const int kMostSweptTogether = 16;     // directions

@@ -105,7 +105,7 @@ class Checker {
   }
 
   void checkPictures() {
-    PictureLaws pictures(context_, volume_, scenes_, precision_, steps_);
+    PictureLaws pictures(context_, volume_, scenes_, precision_, steps_, options_.lightSweep);
     referenceNote_ = pictures.chooseReference(views_.front());
     for (const Model model : {Model::emission, Model::cone}) {
       for (const CheckView& view : views_) pictures.check(view, model, laws_.of(model));

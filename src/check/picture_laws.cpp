@@ -16,8 +16,9 @@
 namespace umbrick {
 namespace {
 
-RenderOptions layers(CheckSteps& steps) {
+RenderOptions layers(CheckSteps& steps, LightSweep lightSweep) {
   RenderOptions options;
+  options.lightSweep = lightSweep;
   options.visibilityAndDepth = true;
   options.countFragments = false;
   options.progress = [&steps](double share) { steps.within(share); };
@@ -27,14 +28,14 @@ RenderOptions layers(CheckSteps& steps) {
 }  // namespace
 
 PictureLaws::PictureLaws(const GlContext& context, const CutVolume& volume, const CheckScenes& scenes,
-                         double samplerPrecision, CheckSteps& steps)
+                         double samplerPrecision, CheckSteps& steps, LightSweep lightSweep)
     : context_(context),
       volume_(volume),
       scenes_(scenes),
       toWorld_(volume.grid.indexToWorld()),
       precision_(samplerPrecision),
       steps_(steps),
-      options_(layers(steps)),
+      options_(layers(steps, lightSweep)),
       renderers_(context, scenes.emission.bricks.budgetMiB << 20, options_),
       techniques_(volume, steps) {}
 

@@ -26,7 +26,7 @@ class PictureLaws {
   /// @param samplerPrecision  voxels
   /// Everything outlives this.
   PictureLaws(const GlContext& context, const CutVolume& volume, const CheckScenes& scenes, double samplerPrecision,
-              CheckSteps& steps);
+              CheckSteps& steps, LightSweep lightSweep);
 
   /// Chooses what pictures are compared with: the whole volume as one texture or, where that is too large, the largest
   /// bricks of which one fits.

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/gl/context.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
 #include <utility>
 
 #include "gl/backends.h"
@@ -15,6 +19,13 @@ namespace {
 // compiler and its threads map.
 constexpr double kContextAddresses = 450.0 * (1 << 20), kContextBytes = 100.0 * (1 << 20);
 
+bool isSoftware(std::string renderer) {
+  std::ranges::transform(renderer, renderer.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::array<std::string_view, 5> names{"llvmpipe", "softpipe", "swrast", "swiftshader", "software"};
+  return std::ranges::any_of(names, [&](std::string_view name) { return renderer.find(name) != std::string::npos; });
+}
+
 }  // namespace
 
 GlContext::GlContext() = default;
@@ -28,6 +39,7 @@ void GlContext::initialise(Backend backend, std::unique_ptr<GlFunctions> functio
     return std::string(bytes ? reinterpret_cast<const char*>(bytes) : "unknown");
   };
   renderer_ = text(GL_RENDERER);
+  software_ = isSoftware(renderer_);
   description_ = std::string(backend == Backend::osmesa ? "OSMesa: "
                              : backend == Backend::egl  ? "EGL: "
                                                         : "") +

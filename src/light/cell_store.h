@@ -9,15 +9,9 @@
 #include <vector>
 
 #include "umbrick/brick/bricks.h"
+#include "umbrick/light/light_paths.h"
 
 namespace umbrick {
-
-/// The axes of index space as a sweep sees them: u and v lie in its slices, u fastest in memory; n goes from slice to
-/// slice.
-struct SweepAxes {
-  int u = 0, v = 1, n = 2;
-};
-inline constexpr SweepAxes kSweepAxes[3]{{1, 2, 0}, {0, 2, 1}, {0, 1, 2}};  // by n
 
 /// A part of a plane, half-open.
 struct PlaneWindow {

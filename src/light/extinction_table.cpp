@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "light/extinction_table.h"
+#include "umbrick/light/extinction_table.h"
 
 #include <algorithm>
 #include <cmath>

@@ -175,14 +175,11 @@ class Sweep {
                            lattice_.rowOrigin() + (row + paths.v.share) * spacing_, n);
     cuts_.clear();
     for (const glm::dvec4& plane : bricks_.planes) {
-      const glm::dvec3 normal(plane[axes.u], plane[axes.v], plane[axes.n]), size = glm::abs(normal);
-      double rate = normal.x * direction.u + normal.y * direction.v - normal.z * sign_;
-      if (std::abs(rate) < 1e-6) rate = 1e-6;
-      const double perWorld = glm::length(glm::dvec3(plane) * bricks_.toIndex);
+      const glm::dvec3 normal(plane[axes.u], plane[axes.v], plane[axes.n]);
+      const PathCut cut = pathCut(plane, direction, bricks_.toIndex, spacing_);
       cuts_.push_back({static_cast<float>(glm::dot(normal, place) + plane.w), static_cast<float>(normal.x * spacing_),
-                       static_cast<float>(rate),
-                       static_cast<float>(spacing_ * std::max({size.x, size.y, size.z}) / std::abs(rate)),
-                       static_cast<float>(std::abs(rate) / (perWorld * direction.length))});
+                       static_cast<float>(cut.rate), static_cast<float>(cut.slicesPerPlace),
+                       static_cast<float>(cut.cosine)});
     }
     carryCutRow(before, here, paths.medium, cuts_.data(), static_cast<int>(cuts_.size()), spacing_, depth, through,
                 count);

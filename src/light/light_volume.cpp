@@ -12,17 +12,17 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <iterator>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "light/extinction_table.h"
 #include "light/light_edit.h"
 #include "light/light_sweep.h"
 #include "light/stored_light.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/light/extinction_table.h"
+#include "umbrick/light/light_paths.h"
 
 namespace umbrick {
 namespace {
@@ -36,20 +36,6 @@ constexpr double kMostMediumCost = 0.5, kMostLightCost = 0.8;
 // Each edit may round light by half a step. After so many all is swept again.
 constexpr int kMostEdits = 8;
 
-SweptDirection sweptDirection(const LightDirection& light, const glm::dmat3& toIndex) {
-  const glm::dvec3 direction = toIndex * light.direction;  // per world unit
-  SweptDirection swept;
-  for (int axis = 0; axis < 3; ++axis)
-    if (std::abs(direction[axis]) > std::abs(direction[swept.axis])) swept.axis = axis;
-  const SweepAxes axes = kSweepAxes[swept.axis];
-  const double along = std::abs(direction[axes.n]);
-  swept.sign = direction[axes.n] > 0 ? 1 : -1;
-  swept.u = -direction[axes.u] / along;
-  swept.v = -direction[axes.v] / along;
-  swept.length = 1 / along;
-  return swept;
-}
-
 /// Directions as sweeps take them.
 struct SortedLight {
   std::vector<SweepTask> tasks;
@@ -57,17 +43,11 @@ struct SortedLight {
 };
 SortedLight sortLight(const std::vector<LightDirection>& directions, const glm::dvec3& whole,
                       const glm::dmat4& indexToWorld) {
-  const glm::dmat3 toIndex = glm::inverse(glm::dmat3(indexToWorld));
-  std::map<std::pair<int, int>, std::vector<SweptDirection>> byAxis;
-  for (const LightDirection& light : directions) {
-    SweptDirection swept = sweptDirection(light, toIndex);
-    for (int c = 0; c < 3; ++c)
-      swept.weight[static_cast<std::size_t>(c)] = static_cast<float>(whole[c] > 0 ? light.radiance[c] / whole[c] : 0);
-    byAxis[{swept.axis, swept.sign}].push_back(swept);
-  }
+  const std::vector<SweepSide> sides = sweepSides(directions, whole, indexToWorld);
   SortedLight sorted;
-  sorted.sweeps = static_cast<int>(byAxis.size());
-  for (const auto& [key, list] : byAxis) {
+  sorted.sweeps = static_cast<int>(sides.size());
+  for (const SweepSide& side : sides) {
+    const std::vector<SweptDirection>& list = side.directions;
     const std::size_t count = (list.size() + kDirectionsTogether - 1) / kDirectionsTogether;
     for (std::size_t i = 0; i < count; ++i)
       sorted.tasks.emplace_back().directions.assign(
@@ -75,21 +55,6 @@ SortedLight sortLight(const std::vector<LightDirection>& directions, const glm::
           list.begin() + static_cast<std::ptrdiff_t>(list.size() * (i + 1) / count));
   }
   return sorted;
-}
-
-glm::dvec3 wholeOf(const std::vector<LightDirection>& directions) {
-  glm::dvec3 whole(0);
-  for (const LightDirection& light : directions) whole += light.radiance;
-  return whole;
-}
-
-bool isColoured(const std::vector<LightDirection>& directions, const glm::dvec3& whole) {
-  const double power = whole.r + whole.g + whole.b;
-  return std::ranges::any_of(directions, [&](const LightDirection& light) {
-    const double share = power > 0 ? (light.radiance.r + light.radiance.g + light.radiance.b) / power : 0;
-    const glm::dvec3 tint = glm::abs(light.radiance - share * whole);
-    return std::max({tint.r, tint.g, tint.b}) > 1e-9 * power;
-  });
 }
 
 }  // namespace
@@ -112,8 +77,8 @@ class LightVolume::Implementation {
     const Stopwatch watch;
     std::vector<glm::ivec3> cells = medium.cells;
     std::ranges::sort(cells, comesBefore);
-    const glm::dvec3 whole = wholeOf(medium.directions);
-    const bool coloured = isColoured(medium.directions, whole);
+    const glm::dvec3 whole = wholeLight(medium.directions);
+    const bool coloured = isColoured(medium.directions);
     // Until all is computed nothing is held.
     const std::optional<LightMedium> before = std::exchange(medium_, std::nullopt);
     const glm::dvec3 wholeBefore = std::exchange(whole_, whole);

@@ -3,38 +3,12 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
+#include "umbrick/light/light_paths.h"
+
 namespace umbrick {
-
-/// A direction in index space as a sweep sees it.
-struct SweptDirection {
-  int axis = 2;                   // along which the direction's largest component is
-  int sign = 1;                   // of that component: light comes from there
-  double u = 0, v = 0;            // how a path moves across from slice to slice, away from the light, voxels
-  double length = 1;              // of the path between two slices, world units
-  std::array<float, 3> weight{};  // by channel: share of the whole light
-  bool operator==(const SweptDirection&) const = default;
-};
-
-/// Where the paths of a direction lie on a slice: path p is at p + whole + share, in places of light.
-struct PathPlace {
-  int whole = 0;
-  double share = 0;  // in [0, 1)
-  /// The voxel at or before a path at the beginning of a cell of places, and how far the path lies behind it.
-  int voxel(int spacing) const { return static_cast<int>(share * spacing); }
-  float behindVoxel(int spacing) const { return static_cast<float>(share * spacing - voxel(spacing)); }
-};
-
-/// That depends on the slice alone, so that it is the same however the volume is cut into bricks.
-/// @param across  SweptDirection::u or v
-inline PathPlace pathPlace(int sign, double across, int spacing, int n) {
-  const double moved = -sign * static_cast<double>(n) * across / spacing;
-  const double whole = std::floor(moved);
-  return {static_cast<int>(whole), moved - whole};
-}
 
 /// Depths are 0 at first. A lattice is held in a plane that is larger by kSlack texels along each axis, and moved there
 /// when paths have moved so far.

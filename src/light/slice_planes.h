@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "light/cell_store.h"
-#include "light/extinction_table.h"
+#include "umbrick/light/extinction_table.h"
 
 namespace umbrick {
 

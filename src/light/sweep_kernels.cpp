@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/sweep_kernels.h"
 
-#include "light/extinction_table.h"
+#include "umbrick/light/extinction_table.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "light/sweep_kernels.cpp"

@@ -80,7 +80,7 @@ struct Frame {
   std::vector<glm::dvec4> planes;  // planes that cut slabs, in view coordinates
   std::vector<glm::dvec4> bounds;  // nothing is drawn beyond these: `planes` and the medium's box
   ProxySlices slices;
-  const BrickSelection& bricks;  // the bricks by their position in it, which is how polygons name them
+  BrickSelection& bricks;  // the bricks by their position in it, which is how polygons name them
   const BrickAtlas& atlas;
   const TransferLookup& transfer;
   const RenderTargets& targets;
@@ -130,7 +130,7 @@ std::unique_ptr<SlicePass> makeEmissionPass();
 std::unique_ptr<SlicePass> makeOcclusionPass();
 std::unique_ptr<SlicePass> makeOrdinatesPass();
 /// @param volume  outlives the pass
-std::unique_ptr<SlicePass> makeLightVolumePass(const Bricks& volume);
+std::unique_ptr<SlicePass> makeLightVolumePass(ResidentVolume& volume, LightSweep sweep);
 
 /// Excludes saturated pixels from everything that is drawn later.
 class SaturationTest {

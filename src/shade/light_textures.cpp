@@ -24,6 +24,14 @@ void LightTextures::makeTextures(const GlFunctions& gl, const BrickAtlas& atlas,
            static_cast<std::uint64_t>(size.y) * static_cast<std::uint64_t>(size.z) * (channels == 3 ? 16u : 4u);
 }
 
+void LightTextures::clear(const GlFunctions& gl, const BrickAtlas& atlas, int channels) {
+  makeTextures(gl, atlas, channels);
+  held_.assign(held_.size(), {});
+  for (const GlTexture& texture : textures_)
+    gl.ClearTexImage(texture.name(), 0, channels == 3 ? GL_RGBA : GL_RED, GL_FLOAT, nullptr);
+  checkGl(gl, "textures of light");
+}
+
 void LightTextures::require(const GlFunctions& gl, const BrickSelection& bricks, const LightVolume& light,
                             std::uint64_t version, std::span<const std::int32_t> positions) {
   const BrickAtlas& atlas = bricks.atlas();

@@ -18,6 +18,8 @@ class LightTextures {
   /// @param positions  of the bricks in the selection
   void require(const GlFunctions& gl, const BrickSelection& bricks, const LightVolume& light, std::uint64_t version,
                std::span<const std::int32_t> positions);
+  /// Makes textures for the atlas in which all light is 0, and forgets what they held.
+  void clear(const GlFunctions& gl, const BrickAtlas& atlas, int channels);
   GLuint texture(int index) const { return textures_[static_cast<std::size_t>(index)].name(); }
   std::uint64_t bytes() const { return bytes_; }
   std::uint64_t uploadedBricks() const { return uploaded_; }

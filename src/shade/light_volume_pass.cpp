@@ -1,4 +1,4 @@
-// Light as a volume: how much of it reaches each voxel is computed before the picture is drawn (umbrick/light), and
+// Light as a volume: how much of it reaches each voxel is computed before the picture is drawn (resident_light.h), and
 // lies in textures beside those of the bricks, with the same slots. A slice reads it where it reads values.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
@@ -12,15 +12,15 @@ namespace {
 
 class LightVolumePass : public SlicePass {
  public:
-  explicit LightVolumePass(const Bricks& volume) : light_(volume) {}
+  LightVolumePass(ResidentVolume& volume, LightSweep sweep) : light_(volume, sweep) {}
 
   void begin(Frame& frame, std::span<const SweepRun> runs) override {
-    light_.update(frame.scene, frame.sample, frame.view, frame.planes, frame.bricks);
+    light_.update(frame.scene, frame.sample, frame.view, frame.planes, frame.transfer, frame.bricks);
     runs_.assign(runs.begin(), runs.end());
-    const glm::dvec3 whole = light_.light().whole();
+    const glm::dvec3 whole = light_.whole();
     brightest_ = frame.scene.sampling.bits == 16 ? std::max({1.0, whole.r, whole.g, whole.b}) : 1;
     ShaderConstants constants = slabConstants(frame);
-    constants["kColoured"] = light_.light().coloured();
+    constants["kColoured"] = light_.coloured();
     GlProgram& program = program_.get(frame.gl, constants);
     setSlabUniforms(program, frame);
     program.set("whole_light", glm::vec3(whole));
@@ -59,8 +59,8 @@ class LightVolumePass : public SlicePass {
 
 }  // namespace
 
-std::unique_ptr<SlicePass> makeLightVolumePass(const Bricks& volume) {
-  return std::make_unique<LightVolumePass>(volume);
+std::unique_ptr<SlicePass> makeLightVolumePass(ResidentVolume& volume, LightSweep sweep) {
+  return std::make_unique<LightVolumePass>(volume, sweep);
 }
 
 }  // namespace umbrick

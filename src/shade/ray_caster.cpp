@@ -46,7 +46,7 @@ class RayCaster::Implementation {
         volume_(resident.volume()),
         options_(options),
         codes_(resident),
-        light_(resident.volume()),
+        light_(resident, options.lightSweep),
         runs_(resident) {}
 
   /// Makes anew what another scene asks for or, when something throws, nothing.
@@ -136,7 +136,7 @@ class RayCaster::Implementation {
     checkPlanes(planes.size());
     stats_.geometryMs = geometry.elapsedMs();
     const bool lit = occlusionMethod(scene).has_value();
-    if (lit) light_.update(scene, sample, view, planes, *held_.bricks);
+    if (lit) light_.update(scene, sample, view, planes, *held_.transfer, *held_.bricks);
     held_.targets->clear(gl_);
     const IndexBox medium = mediumBox(scene.transfer, volume_.domain);
     const RayScene rays{gl_,

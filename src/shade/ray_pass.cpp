@@ -34,7 +34,7 @@ std::uint64_t RayTargets::segments(const GlFunctions& gl) const {
 void RayPass::begin(const RayScene& rays) {
   first_ = true;
   if (!nothing_) nothing_.emplace(rays.gl);
-  const LightVolume* light = rays.light ? &rays.light->light() : nullptr;
+  const ResidentLight* light = rays.light;
   ShaderConstants constants{{"kPerspective", rays.view.projection == Projection::perspective},
                             {"kClipPlanes", static_cast<int>(rays.planes.size())},
                             {"kTextures", std::clamp(rays.bricks.atlas().textureCount(), 1, kRayTextures)},

@@ -2,6 +2,7 @@
 #include "shade/resident_light.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "shade/view_planes.h"
 #include "umbrick/core/stopwatch.h"
@@ -10,7 +11,7 @@
 namespace umbrick {
 
 void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sample, const IndexView& view,
-                           std::span<const glm::dvec4> planes, const BrickSelection& bricks) {
+                           std::span<const glm::dvec4> planes, const TransferLookup& transfer, BrickSelection& bricks) {
   const Stopwatch watch;
   LightMedium medium{
       scene.transfer,
@@ -20,21 +21,54 @@ void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sampl
       scene.occlusion.ordinates.lightSpacing};
   for (const glm::dvec4& plane : planes) {
     const glm::dvec4 inIndex = planeInIndex(plane, view);
-    if (cutsMedium(inIndex, medium.cells, volume_.layout.interior)) medium.planes.push_back(inIndex);
+    if (cutsMedium(inIndex, medium.cells, resident_.volume().layout.interior)) medium.planes.push_back(inIndex);
   }
-  const std::uint64_t most = std::max<std::uint64_t>(scene.bricks.budgetMiB << 20, std::uint64_t{2} << 30);
-  const bool computed = light_.update(medium, most);
-  if (computed) ++version_;
+  whole_ = wholeLight(medium.directions);
+  coloured_ = isColoured(medium.directions);
+  directions_ = medium.directions.size();
+  note_.clear();
+  bool computed = false;
+  const bool onGl = sweep_ == LightSweep::gl || (sweep_ == LightSweep::automatic && !resident_.context().software());
+  if (onGl) note_ = GlLightSweep::refusal(resident_, bricks, medium);
+  if (onGl && note_.empty()) {
+    computed = sweepOnGl(medium, transfer, bricks);
+  } else {
+    const std::uint64_t most = std::max<std::uint64_t>(scene.bricks.budgetMiB << 20, std::uint64_t{2} << 30);
+    computed = light_.update(medium, most);
+    // The textures may hold light of OpenGL.
+    if (computed || swept_) ++version_;
+    swept_.reset();
+  }
   ms_ = computed ? watch.elapsedMs() : 0;
 }
 
+// Computes light on OpenGL, unless the textures have it. @return whether it was computed
+bool ResidentLight::sweepOnGl(const LightMedium& medium, const TransferLookup& transfer, BrickSelection& bricks) {
+  std::vector<std::int32_t> positions(bricks.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = static_cast<std::int32_t>(i);
+  bricks.require(positions);
+  Swept next{medium, bricks.atlas().generation(), {}};
+  for (const std::int32_t position : positions) next.slots.push_back(bricks.slotNumber(position));
+  if (swept_ && *swept_ == next) return false;
+  swept_.reset();  // whatever fails next
+  const GlFunctions& gl = resident_.context().gl();
+  textures_.clear(gl, bricks.atlas(), coloured_ ? 3 : 1);
+  glSweep_.sweep(resident_, bricks, medium, transfer, textures_);
+  gl.Finish();  // only a wait for the last voxel tells the time
+  swept_ = std::move(next);
+  return true;
+}
+
 void ResidentLight::addTo(RenderStats& stats) const {
-  stats.directions = light_.stats().directions;
-  stats.windowUpdates = light_.stats().updates;
-  stats.lightSpacing = light_.stats().spacing;
-  stats.lightSpacingError = light_.stats().spacingError;
+  stats.directions = static_cast<int>(directions_);
+  stats.lightOnGl = swept_.has_value();
+  stats.lightNote = note_;
+  stats.windowUpdates = swept_ ? glSweep_.updates() : light_.stats().updates;
+  stats.lightSpacing = swept_ ? 1 : light_.stats().spacing;
+  stats.lightSpacingError = swept_ ? 0 : light_.stats().spacingError;
   stats.windowBytes = textures_.bytes();
   stats.textureBytes += textures_.bytes();
+  stats.bufferBytes += glSweep_.bytes();
   stats.lightMs = ms_;
 }
 

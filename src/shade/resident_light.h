@@ -3,8 +3,12 @@
 #pragma once
 #include <cstdint>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
+#include "shade/gl_light_sweep.h"
 #include "shade/light_textures.h"
 #include "umbrick/draw/renderer.h"
 #include "umbrick/light/light_volume.h"
@@ -14,29 +18,48 @@ namespace umbrick {
 
 class ResidentLight {
  public:
-  /// @param volume  outlives this
-  explicit ResidentLight(const Bricks& volume) : volume_(volume), light_(volume) {}
+  /// @param resident  outlives this
+  ResidentLight(ResidentVolume& resident, LightSweep sweep)
+      : resident_(resident), sweep_(sweep), light_(resident.volume()) {}
 
-  /// Computes the light of a picture, where it is not there yet.
+  /// Computes the light of a picture, where it is not there yet. Where OpenGL computes it, all bricks are made
+  /// resident.
   /// @param planes  those that cut the medium, view coordinates
   /// @throw InvalidArgument  as LightVolume::update
   void update(const ResolvedScene& scene, const RenderSample& sample, const IndexView& view,
-              std::span<const glm::dvec4> planes, const BrickSelection& bricks);
+              std::span<const glm::dvec4> planes, const TransferLookup& transfer, BrickSelection& bricks);
   /// Brings the light of bricks to their textures. @param positions  in the selection; they are resident
   void require(const GlFunctions& gl, const BrickSelection& bricks, std::span<const std::int32_t> positions) {
-    textures_.require(gl, bricks, light_, version_, positions);
+    if (!swept_) textures_.require(gl, bricks, light_, version_, positions);
   }
 
-  const LightVolume& light() const { return light_; }
+  /// Returns what arrives where nothing is in the way.
+  const glm::dvec3& whole() const { return whole_; }
+  bool coloured() const { return coloured_; }
   /// @param index  that of the atlas's texture
   GLuint texture(int index) const { return textures_.texture(index); }
   void addTo(RenderStats& stats) const;
 
  private:
-  const Bricks& volume_;
-  LightVolume light_;
+  // What OpenGL computed the light in the textures for, and where the bricks were.
+  struct Swept {
+    LightMedium medium;
+    std::uint64_t generation = 0;  // of the atlas
+    std::vector<std::int32_t> slots;
+    bool operator==(const Swept&) const = default;
+  };
+  bool sweepOnGl(const LightMedium& medium, const TransferLookup& transfer, BrickSelection& bricks);
+  ResidentVolume& resident_;
+  const LightSweep sweep_;
+  LightVolume light_;  // computed by the CPU
+  GlLightSweep glSweep_;
+  std::optional<Swept> swept_;  // none: the light is the CPU's
+  std::string note_;            // see RenderStats::lightNote
+  glm::dvec3 whole_{0};
+  bool coloured_ = false;
+  std::size_t directions_ = 0;
   LightTextures textures_;
-  std::uint64_t version_ = 0;  // of the light
+  std::uint64_t version_ = 0;  // of the CPU's light
   double ms_ = 0;              // to compute it for the last picture
 };
 

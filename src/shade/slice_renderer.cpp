@@ -61,10 +61,10 @@ ResolvedScene asDrawn(ResolvedScene scene) {
   return scene;
 }
 
-std::unique_ptr<SlicePass> makePass(const ResolvedScene& scene, const Bricks& volume) {
+std::unique_ptr<SlicePass> makePass(const ResolvedScene& scene, ResidentVolume& volume, LightSweep sweep) {
   const std::optional<Method> method = occlusionMethod(scene);
   if (!method) return makeEmissionPass();
-  if (*method == Method::lightVolume) return makeLightVolumePass(volume);
+  if (*method == Method::lightVolume) return makeLightVolumePass(volume, sweep);
   return *method == Method::dos ? makeOcclusionPass() : makeOrdinatesPass();
 }
 
@@ -106,7 +106,7 @@ class SliceRenderer::Implementation {
       options.aux = options_.visibilityAndDepth;
       targets.emplace(gl_, options);
     }
-    std::unique_ptr<SlicePass> pass = dirty.pass ? makePass(next, volume_) : nullptr;
+    std::unique_ptr<SlicePass> pass = dirty.pass ? makePass(next, resident_, options_.lightSweep) : nullptr;
     frame_.reset();  // it refers to what is replaced
     if (lookup) transfer_.emplace(std::move(*lookup));
     if (selection) selection_.emplace(std::move(*selection));

@@ -2,12 +2,9 @@
 #include "umbrick/study/machine.h"
 
 #include <tbb/info.h>
-#include <algorithm>
-#include <array>
-#include <cctype>
+
 #include <cstdlib>
 #include <fstream>
-#include <string_view>
 
 namespace umbrick {
 namespace {
@@ -23,21 +20,13 @@ std::string cpuModel() {
   return "unknown";
 }
 
-bool isSoftware(std::string renderer) {
-  std::transform(renderer.begin(), renderer.end(), renderer.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  constexpr std::array<std::string_view, 5> names{"llvmpipe", "softpipe", "swrast", "swiftshader", "software"};
-  return std::any_of(names.begin(), names.end(),
-                     [&](std::string_view name) { return renderer.find(name) != std::string::npos; });
-}
-
 }  // namespace
 
 Machine describeMachine(const GlContext& context) {
   return {cpuModel(),
           tbb::info::default_concurrency(),
           context.description(),
-          isSoftware(context.renderer()),
+          context.software(),
           UMBRICK_VERSION,
           "C++ compiler " __VERSION__,
           {}};

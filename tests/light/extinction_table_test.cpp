@@ -1,6 +1,6 @@
 // The table from which paths of light take the mean of sigma_t, against the transfer function itself.
 // SPDX-License-Identifier: Apache-2.0
-#include "light/extinction_table.h"
+#include "umbrick/light/extinction_table.h"
 
 #include <catch2/catch.hpp>
 #include <vector>

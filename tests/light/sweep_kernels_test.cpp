@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/baseline_instructions.h"
-#include "light/extinction_table.h"
 #include "umbrick/core/instructions.h"
+#include "umbrick/light/extinction_table.h"
 
 using namespace umbrick;
 

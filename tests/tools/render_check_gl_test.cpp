@@ -107,6 +107,30 @@ TEST_CASE("Rays on OpenGL are drawn where they are asked for", "[tools]") {
   CHECK_THAT(told.err, Contains("--eye-bits has no effect on rays"));
 }
 
+TEST_CASE("Light volumes are swept by OpenGL where it is asked for, and the picture stays", "[tools]") {
+  if (!testContext()) return;
+  const TemporaryFolder folder;
+  const std::string lit =
+      "render " + kSmall +
+      "--azimuth 40 --elevation 20 --model cone --quality draft --method light-volume --stats s.json -o a.exr ";
+  const auto pictureBy = [&](const std::string& options, const std::string& engine) {
+    const ProgramResult result = runProgram(folder, lit + options);
+    CAPTURE(options, result.err);
+    REQUIRE(result.status == 0);
+    CHECK(result.err.empty());
+    CHECK(nlohmann::json::parse(readBytes(folder.path() / "s.json"))["light"]["swept_by"] == engine);
+    return readExr(folder.path() / "a.exr").layers[0].image;
+  };
+  // EXR keeps halves, which are 2^-11 apart.
+  CHECK(maxDifference(pictureBy("--backend osmesa --light-sweep gl", "gl"), pictureBy("--backend osmesa", "cpu")) <
+        6e-4);
+  const ProgramResult coarse = runProgram(folder, lit + "--backend osmesa --light-sweep gl --light-spacing 2");
+  CHECK(coarse.status == 0);
+  CHECK_THAT(coarse.err, Contains("light is computed on the CPU: OpenGL computes it at every voxel alone"));
+  CHECK_THAT(runProgram(folder, lit + "--backend cpu --light-sweep gl").err,
+             Contains("--light-sweep has no effect on the CPU"));
+}
+
 TEST_CASE("Renders that fail say so in one line and leave nothing behind", "[tools]") {
   if (!testContext()) return;
   const TemporaryFolder folder;

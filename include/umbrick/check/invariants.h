@@ -10,6 +10,7 @@
 
 #include "umbrick/brick/brick_grid.h"
 #include "umbrick/brick/bricks.h"
+#include "umbrick/draw/renderer.h"
 #include "umbrick/gl/context.h"
 #include "umbrick/scene/resolve.h"
 
@@ -56,11 +57,12 @@ struct CheckOptions {
   /// What the pictures of the cone are made from, where that has another sampling than the scene has for emission; its
   /// volume, medium, camera, clipping and bricks are the scene's.
   std::optional<ResolvedScene> cone;
-  std::vector<int> edges{8, 16, 32, 64};  // interiors to compare; those narrower than the apron are left out
-  std::vector<CheckView> views;           // empty: checkViews() and the scene's own camera
-  int probedSlices = 24;                  // of each view, spread over the sweep
-  std::size_t comparedBricks = 4000;      // most bricks whose aprons and ranges are read
-  unsigned seed = 1;                      // for what is chosen at random: bricks
+  std::vector<int> edges{8, 16, 32, 64};          // interiors to compare; those narrower than the apron are left out
+  std::vector<CheckView> views;                   // empty: checkViews() and the scene's own camera
+  int probedSlices = 24;                          // of each view, spread over the sweep
+  std::size_t comparedBricks = 4000;              // most bricks whose aprons and ranges are read
+  LightSweep lightSweep = LightSweep::automatic;  // of pictures by slices that are lit by a light volume
+  unsigned seed = 1;                              // for what is chosen at random: bricks
   /// Called before each step and now and then within it. The check stops when it returns false.
   /// @param done  share of the work so far, in [0, 1]
   std::function<bool(const std::string& step, double done)> progress;

@@ -9,13 +9,22 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "umbrick/core/names.h"
 #include "umbrick/image/exr.h"
 #include "umbrick/scene/lights.h"
 #include "umbrick/scene/resolve.h"
 
 namespace umbrick {
+
+/// Where a renderer on OpenGL computes the light of light volumes, which changes it by no more than rounding.
+/// Automatic: on a GPU, where it is used; on the CPU's SIMD where OpenGL runs in software, since both then take the
+/// same cores.
+enum class LightSweep { automatic, cpu, gl };
+inline constexpr Name<LightSweep> kLightSweeps[]{
+    {"auto", LightSweep::automatic}, {"cpu", LightSweep::cpu}, {"gl", LightSweep::gl}};
 
 /// Options of what a renderer makes besides colour, and of what it measures.
 struct RenderOptions {
@@ -23,6 +32,7 @@ struct RenderOptions {
   bool countFragments = true;
   bool timePasses = false;     // RenderStats::passes; waiting for each pass makes a picture slower
   bool reverseBricks = false;  // draw the bricks of a slice in the opposite order, which must change nothing
+  LightSweep lightSweep = LightSweep::automatic;
   /// Called now and then while a sample of a picture is drawn, with the share of its slices that is done, in [0, 1].
   /// What it throws ends the picture, which then cannot be read; the next draw() begins anew.
   std::function<void(double share)> progress = {};
@@ -53,9 +63,11 @@ struct RenderStats {
   // light, part of textureBytes
   std::uint64_t windowBytes = 0;
   std::uint64_t windowUpdates = 0;  // ordinates, light-volume: texels that light was taken through slices in
-  double lightMs = 0;               // light-volume: to compute light on the CPU; 0 where it was there already
+  double lightMs = 0;               // light-volume: to compute light; 0 where it was there already
   int lightSpacing = 0;             // light-volume: voxels between places of light
   double lightSpacingError = 0;     // light-volume: of light at every second voxel, root mean square, an estimate
+  bool lightOnGl = false;           // light-volume: light was computed by OpenGL, not by the CPU
+  std::string lightNote;            // light-volume: why OpenGL left light to the CPU, which it should have computed
   PassTimes passes;                 // only when asked for
   double formatError = 0;           // largest |voxel - texel|, grid units
   double geometryMs = 0;            // to cut slices into polygons

@@ -32,6 +32,8 @@ class GlContext {
   /// Returns a text such as "OSMesa: llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 (Core Profile) Mesa 22.3.6".
   const std::string& description() const { return description_; }
   const std::string& renderer() const { return renderer_; }
+  /// Tells whether OpenGL draws on the CPU, as far as the name of the renderer shows.
+  bool software() const { return software_; }
   virtual void makeCurrent() = 0;
 
   /// Returns the limits to the size of a volume's textures.
@@ -48,6 +50,7 @@ class GlContext {
   std::unique_ptr<GlFunctions> functions_;
   Backend backend_ = Backend::automatic;
   std::string description_, renderer_;
+  bool software_ = false;
   int maxTextureEdge2d_ = 0, maxTextureEdge3d_ = 0;
 };
 

@@ -22,7 +22,8 @@ namespace umbrick {
   X(GETTEXTUREIMAGE, GetTextureImage) X(COPYIMAGESUBDATA, CopyImageSubData) \
   X(BINDBUFFER, BindBuffer) X(BINDSAMPLER, BindSampler) X(BLENDEQUATION, BlendEquation) X(POLYGONMODE, PolygonMode) \
   X(CREATEBUFFERS, CreateBuffers) X(DELETEBUFFERS, DeleteBuffers) X(NAMEDBUFFERDATA, NamedBufferData) \
-  X(NAMEDBUFFERSUBDATA, NamedBufferSubData) \
+  X(NAMEDBUFFERSUBDATA, NamedBufferSubData) X(GETNAMEDBUFFERSUBDATA, GetNamedBufferSubData) \
+  X(CLEARNAMEDBUFFERDATA, ClearNamedBufferData) X(CLEARTEXIMAGE, ClearTexImage) \
   X(CREATEVERTEXARRAYS, CreateVertexArrays) X(DELETEVERTEXARRAYS, DeleteVertexArrays) \
   X(BINDVERTEXARRAY, BindVertexArray) X(VERTEXARRAYVERTEXBUFFER, VertexArrayVertexBuffer) \
   X(VERTEXARRAYELEMENTBUFFER, VertexArrayElementBuffer) X(VERTEXARRAYATTRIBFORMAT, VertexArrayAttribFormat) \

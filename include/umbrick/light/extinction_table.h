@@ -17,6 +17,7 @@ namespace umbrick {
 class ExtinctionTable {
  public:
   static constexpr int kSteps = 4096;
+  static constexpr int kEnds = 4;  // steps before the first control point and behind the last, of a 1D function
   explicit ExtinctionTable(const TransferFunction& transfer);
 
   /// Returns the value of a voxel in steps of the table. For a 2D function this is sigma_t, and means are of its ends.
@@ -46,6 +47,11 @@ class ExtinctionTable {
     return last < kSteps && opaque_[last + 1] - opaque_[first] == static_cast<std::int32_t>(last + 1 - first);
   }
 
+  /// A value of a 1D function is kEnds + (value - low()) * perUnit() steps.
+  double low() const { return low_; }
+  double perUnit() const { return perUnit_; }
+  /// Returns the numbers of steps before each entry over which sigma_t is not 0 everywhere, kSteps + 1.
+  std::span<const std::int32_t> opaqueSteps() const { return opaque_; }
   const float* integrals() const { return integrals_.data(); }  // kSteps + 2
   const float* means() const { return means_.data(); }          // of sigma_t from each step to the next, kSteps + 1
   float below() const { return below_; }                        // sigma_t of values below the table, 1/world unit
@@ -57,7 +63,6 @@ class ExtinctionTable {
 
  private:
   const TransferFunction& transfer_;
-  static constexpr int kEnds = 4;  // steps before the first control point and behind the last
   double low_ = 0, perUnit_ = 1;
   void findEmptyEnds();
   float below_ = 0, above_ = 0, emptyBelow_ = 0, emptyAbove_ = 0;
