@@ -54,13 +54,13 @@ struct Served {
     return parser.release();
   }
   // Returns whether a page may connect.
-  bool mayConnect(const std::string& target, const std::string& origin) {
+  bool mayConnect(const std::string& target, const std::string& origin, const std::string& as = {}) {
     beast::websocket::stream<beast::tcp_stream> socket(connect());
     socket.set_option(beast::websocket::stream_base::decorator([&](beast::websocket::request_type& request) {
       if (!origin.empty()) request.set(http::field::origin, origin);
     }));
     beast::error_code failed;
-    socket.handshake(host(), target, failed);
+    socket.handshake(as.empty() ? host() : as, target, failed);
     return !failed;
   }
 };
@@ -87,12 +87,32 @@ TEST_CASE("Names that are turned to this machine, and pages of others, are refus
   Served served;
   CHECK(served.ask("/secret/", "evil.example").result_int() == 403);
   CHECK(served.ask("/secret/", "evil.example:80").result_int() == 403);
-  CHECK(served.ask("/secret/", "localhost:1234").result_int() == 200);  // the end of a tunnel
+  // Names that are no names of this machine, however much they look like one.
+  for (const char* host : {"localhost.evil.example", "localhost.evil.example:80", "localhost:1@evil.example",
+                           "localhost:", "localhost:123456", "localhost:80:80", "127.0.0.1.evil.example", "127.0.0.11",
+                           "::1", "[::1]x", "evil.example/localhost", "0.0.0.0"}) {
+    INFO(host);
+    CHECK(served.ask("/secret/", host).result_int() == 403);
+  }
   CHECK(served.mayConnect("/secret/socket", "http://" + served.host()));
   CHECK_FALSE(served.mayConnect("/secret/socket", "http://evil.example"));
   CHECK_FALSE(served.mayConnect("/secret/socket", ""));
   CHECK_FALSE(served.mayConnect("/other/socket", "http://" + served.host()));
   CHECK_FALSE(served.mayConnect("/secret/", "http://" + served.host()));
+}
+
+// As with ssh -L 1234:localhost:PORT: the browser knows the other end alone.
+TEST_CASE("A tunnel ends at another port of this machine's own names, and its page may connect", "[view]") {
+  Served served;
+  for (const std::string host : {"localhost:1234", "127.0.0.1:1234", "[::1]:1234", "localhost"}) {
+    INFO(host);
+    CHECK(served.ask("/secret/", host).result_int() == 200);
+    CHECK(served.mayConnect("/secret/socket", "http://" + host, host));
+    // The page of another server behind another port of the same name is another page.
+    CHECK_FALSE(served.mayConnect("/secret/socket", "http://localhost:4321", host));
+    CHECK_FALSE(served.mayConnect("/secret/socket", "http://" + served.host(), host));
+  }
+  CHECK_FALSE(served.mayConnect("/secret/socket", "http://evil.example:1234", "evil.example:1234"));
 }
 
 TEST_CASE("Frames wait until the one before is shown", "[view]") {

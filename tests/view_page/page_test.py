@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Uses the page of `umbrick view` in headless Chromium as a person would: looks, drags, undoes, clips, saves.
+"""Uses the page of `umbrick view` in headless Chromium as a person would: looks, drags, undoes, clips, compares, saves.
 
-page_test.py ADDRESS [--folder FOLDER] [--screenshots FOLDER] [--patience SECONDS]
+page_test.py ADDRESS [--folder FOLDER] [--screenshots FOLDER] [--patience SECONDS] [--only STEP ...]
 ADDRESS is what `umbrick view` prints. FOLDER is where the server was started, where saved files are looked for. One
 line is printed for each step. Exit status 0: all steps passed, 1: one failed, 77: there is no Chromium or no selenium.
 """
 # SPDX-License-Identifier: Apache-2.0
 import argparse
+import functools
 import os
 import shutil
 import sys
@@ -147,6 +148,19 @@ class Page:
             if summary.text == title and summary.find_element(By.XPATH, "..").get_attribute("open") is None:
                 summary.click()
                 time.sleep(0.3)  # what is in it is brought up to date when it has opened
+
+    def select_in(self, selector, choice):
+        select = self.find(selector)
+        self.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", select)
+        for option in select.find_elements(By.TAG_NAME, "option"):
+            if option.text == choice:
+                option.click()
+                return
+        raise AssertionError(f"{selector} has no choice '{choice}'")
+
+    def select(self, label, choice):
+        name = self.driver.find_element(By.XPATH, f"//label[text()='{label}']").get_attribute("for")
+        self.select_in(f"#{name}", choice)
 
     def press(self, text):
         for button in self.driver.find_elements(By.TAG_NAME, "button"):
@@ -330,12 +344,17 @@ def no_console_errors(page):
     assert not errors, errors
 
 
+def name_of(step):
+    return getattr(step, "func", step).__name__
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("address")
     parser.add_argument("--folder")
     parser.add_argument("--screenshots")
     parser.add_argument("--patience", type=float, default=PATIENCE)
+    parser.add_argument("--only", nargs="+", help="these steps, besides the first")
     arguments = parser.parse_args()
     try:
         driver = start_chromium(1280, 800)
@@ -343,7 +362,9 @@ def main():
         print(f"skipped: Chromium does not start: {error.msg.splitlines()[0]}")
         return SKIPPED
     steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, light, probe, pause,
-             lambda page: save(page, arguments.folder), refuse, help_list, narrow, no_console_errors]
+             functools.partial(save, folder=arguments.folder), refuse, help_list, narrow, no_console_errors]
+    if arguments.only:
+        steps = [step for step in steps if name_of(step) in ["open_page", *arguments.only]]
     try:
         try:
             page = Page(driver, arguments.address, arguments.screenshots, arguments.patience)
@@ -351,7 +372,7 @@ def main():
             print(f"failed: {arguments.address} cannot be opened: {error.msg.splitlines()[0]}")
             return 1
         for step in steps:
-            name = "save" if step.__name__ == "<lambda>" else step.__name__
+            name = name_of(step)
             began = time.monotonic()
             try:
                 step(page)

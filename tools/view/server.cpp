@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/server.h"
 
+#include <algorithm>
 #include <array>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -13,7 +14,9 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
+#include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <random>
 #include <string_view>
@@ -39,7 +42,7 @@ using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
 
 constexpr auto kPatience = std::chrono::seconds(20);  // for the rest of a request, and for a page to take an answer
-constexpr std::size_t kMostTexts = 1000;              // that wait for one page: it does not read any more
+constexpr std::size_t kMostTexts = 1000;  // that wait for one page: it does not read any more
 
 std::string randomToken() {
   std::random_device random;
@@ -62,6 +65,19 @@ const char* mimeOf(std::string_view name) {
   if (name.ends_with(".html")) return "text/html; charset=utf-8";
   if (name.ends_with(".css")) return "text/css; charset=utf-8";
   return "text/javascript; charset=utf-8";
+}
+
+// Whether a Host is a name that every machine has for itself, with a port or without. A tunnel (ssh -L) ends at any
+// port of such a name; nobody can turn the name itself to another address.
+bool isLoopback(std::string_view host) {
+  for (const std::string_view name : {"localhost", "127.0.0.1", "[::1]"}) {
+    if (!host.starts_with(name)) continue;
+    const std::string_view port = host.substr(name.size());
+    const bool digits =
+        std::all_of(port.begin() + !port.empty(), port.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (port.empty() || (port.front() == ':' && port.size() > 1 && port.size() <= 6 && digits)) return true;
+  }
+  return false;
 }
 
 // A page that is connected. All but text() and frame() is of the thread that serves.
@@ -259,10 +275,7 @@ class ViewServer::Implementation : public std::enable_shared_from_this<Implement
     const std::string ending = ":" + std::to_string(port());
     for (const std::string& name : {host_, std::string("localhost"), std::string("127.0.0.1"), std::string("[::1]")})
       if (host == name + ending) return true;
-    // A tunnel (ssh -L) ends at another port.
-    const std::size_t colon = host.rfind(':');
-    const std::string_view name = host.substr(0, colon);
-    return name == "localhost" || name == "127.0.0.1" || name == "[::1]";
+    return isLoopback(host);
   }
 
   // Returns what follows the token in a path; nothing where that is not ours.

@@ -21,8 +21,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr int kDeepest = 32;  // levels of objects and lists in a message
-
 Json vectorOf(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 Json numberOrNull(double number) { return std::isfinite(number) ? Json(number) : Json(); }
@@ -57,24 +55,6 @@ Value field(const Json& message, const char* name) {
 }
 
 }  // namespace
-
-Json parseMessage(std::string_view text) {
-  if (text.size() > kMostMessageBytes)
-    throw InvalidArgument("message: longer than " + std::to_string(kMostMessageBytes));
-  const auto shallow = [](int depth, nlohmann::detail::parse_event_t, const Json&) {
-    if (depth > kDeepest) throw InvalidArgument("message: nested more than " + std::to_string(kDeepest) + " deep");
-    return true;
-  };
-  Json message;
-  try {
-    message = Json::parse(text, shallow);
-  } catch (const nlohmann::json::exception&) {
-    throw InvalidArgument("message: is no JSON");
-  }
-  if (!message.is_object() || !message.contains("type") || !message["type"].is_string())
-    throw InvalidArgument("message: has no type");
-  return message;
-}
 
 Viewer::Viewer(Scene scene, std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals,
                fs::path folder)

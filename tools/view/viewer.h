@@ -20,13 +20,11 @@
 #include <string_view>
 #include <vector>
 
+#include "view/page_message.h"
 #include "view/view_renderer.h"
 #include "view/view_state.h"
 
 namespace umbrick::view {
-
-/// Longest message of a page, bytes. A transfer function of some ten thousand points is shorter.
-inline constexpr std::size_t kMostMessageBytes = 1 << 20;
 
 /// A page that is connected. Its functions may be called by any thread.
 class ViewClient {
@@ -36,9 +34,6 @@ class ViewClient {
   /// Takes a frame. One that is not sent before the next one comes is dropped.
   virtual void frame(const std::shared_ptr<const ViewFrame>& frame) = 0;
 };
-
-/// Reads a message of a page. @throw InvalidArgument  no object with a type, or too deeply nested
-nlohmann::ordered_json parseMessage(std::string_view text);
 
 class Viewer {
  public:
