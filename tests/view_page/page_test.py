@@ -269,6 +269,30 @@ def clip(page):
     page.wait("the whole again", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
 
 
+def compare(page):
+    """The reference is computed beside the picture, and given up when the scene changes."""
+    page.unfold("Against the reference")
+    state = page.driver.find_element(By.XPATH, "//summary[text()='Against the reference']/..")
+    page.press("Compare with reference")
+    page.wait("it runs", lambda: state.get_attribute("data-state") == "running")
+    page.wait("three pictures", lambda: state.get_attribute("data-state") == "done"
+              and len(state.find_elements(By.CSS_SELECTOR, "figure img")) == 3)
+    verdict = state.find_element(By.CSS_SELECTOR, ".verdict").text
+    assert verdict.startswith("RMSE 0.0"), verdict
+    page.driver.execute_script("arguments[0].scrollIntoView({block: 'end'})", state)
+    page.shot("compared")
+    state.find_element(By.CSS_SELECTOR, "figure button").click()
+    page.wait("the pictures side by side", lambda: page.find("dialog.compared").is_displayed())
+    page.shot("compared-large")
+    page.find("dialog.compared button").click()
+    page.press("Compare with reference")
+    page.keys("1")
+    page.wait("another scene ends it", lambda: state.get_attribute("data-state") == "none"
+              and "the scene has changed" in state.text)
+    page.keys("r")
+    page.picture_at_rest()
+
+
 def light(page):
     before = page.picture_at_rest()
     page.unfold("Light")
@@ -361,7 +385,7 @@ def main():
     except WebDriverException as error:
         print(f"skipped: Chromium does not start: {error.msg.splitlines()[0]}")
         return SKIPPED
-    steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, light, probe, pause,
+    steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, light, probe, pause, compare,
              functools.partial(save, folder=arguments.folder), refuse, help_list, narrow, no_console_errors]
     if arguments.only:
         steps = [step for step in steps if name_of(step) in ["open_page", *arguments.only]]

@@ -60,9 +60,17 @@ Viewer::Viewer(Scene scene, std::shared_ptr<const Volume> volume, EngineKind eng
                fs::path folder)
     : state_(std::move(scene), volume), folder_(std::move(folder)), about_(aboutVolume(*volume)) {
   renderer_ = std::make_unique<ViewRenderer>(std::move(volume), engine, goals, sink());
+  comparison_ = std::make_unique<ReferenceComparison>([this](std::uint64_t number, const Json& news) {
+    const std::lock_guard lock(mutex_);
+    if (!comparison_->isCurrent(number)) return;  // was dropped meanwhile
+    compared_ = news;
+    compared_["type"] = "comparison";
+    toAll(compared_);
+  });
 }
 
-Viewer::~Viewer() { renderer_.reset(); }
+// The jobs end first: they use what is declared before them.
+Viewer::~Viewer() = default;
 
 ViewSink Viewer::sink() {
   const auto each = [this](const auto& call) {
@@ -144,6 +152,7 @@ void Viewer::join(const std::shared_ptr<ViewClient>& client) {
     renderer_->pause(false);
     renderer_->show(state_.resolved(), false);
   }
+  if (!compared_.is_null()) client->text(compared_.dump());
   renderer_->repeat();
 }
 
@@ -152,9 +161,11 @@ void Viewer::leave(const ViewClient& client) {
   std::erase_if(clients_, [&](const auto& one) { return one.get() == &client; });
   // Nobody looks: what is drawn now would be for nothing.
   renderer_->pause(clients_.empty());
+  if (clients_.empty()) dropComparison({});
 }
 
 void Viewer::show(bool moving) {
+  dropComparison("the scene has changed");
   toAll(sceneMessage());
   renderer_->show(state_.resolved(), moving);
 }
@@ -186,12 +197,30 @@ void Viewer::message(std::string_view text, const std::shared_ptr<ViewClient>& f
       probe(message, from);
     } else if (type == "save") {
       save(message, from);
+    } else if (type == "compare") {
+      compare();
+    } else if (type == "stopCompare") {
+      dropComparison("stopped");
     } else {
       throw InvalidArgument("message: no type '" + printable(type.substr(0, 40)) + "'");
     }
   } catch (const Error& error) {
     from->text(errorText(asUtf8(error.what())));
   }
+}
+
+void Viewer::compare() {
+  comparison_->start(state_.share(), state_.resolved(), *renderer_);
+  const Camera& camera = comparedScene(state_.resolved()).camera;
+  compared_ = {{"type", "comparison"}, {"state", "running"}, {"share", 0}, {"size", {camera.width, camera.height}}};
+  toAll(compared_);
+}
+
+void Viewer::dropComparison(const std::string& why) {
+  if (compared_.is_null()) return;
+  comparison_->drop();
+  compared_ = Json();
+  toAll({{"type", "comparison"}, {"state", "none"}, {"text", why}});
 }
 
 Json Viewer::probed(const ViewProbe& probe) const {

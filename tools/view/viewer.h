@@ -6,9 +6,10 @@
 //   {"type": "rest"}  {"type": "undo"}  {"type": "redo"}  {"type": "reset"}  {"type": "pause"}  {"type": "resume"}
 //   {"type": "shown", "frame": n}                a frame is on the screen: the next one may be sent
 //   {"type": "probe", "x": px, "y": px}          from the upper left of a picture of the scene's size
+//   {"type": "compare"}  {"type": "stopCompare"}  with the reference, see ReferenceComparison
 //   {"type": "save", "what": "picture" | "scene", "name": "...", "size": [w, h], "samples": n}
-// To pages: hello, scene, status, probe, saved, note, error; and frames, which are binary: four bytes with the length
-// of a JSON text, little-endian, that text, and the bytes of an image.
+// To pages: hello, scene, status, probe, comparison, saved, note, error; and frames, which are binary: four bytes with
+// the length of a JSON text, little-endian, that text, and the bytes of an image.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
@@ -21,6 +22,7 @@
 #include <vector>
 
 #include "view/page_message.h"
+#include "view/reference_comparison.h"
 #include "view/view_renderer.h"
 #include "view/view_state.h"
 
@@ -56,6 +58,8 @@ class Viewer {
   void show(bool moving);
   void probe(const Json& message, const std::shared_ptr<ViewClient>& from);
   void save(const Json& message, const std::shared_ptr<ViewClient>& from);
+  void compare();
+  void dropComparison(const std::string& why);
   Json probed(const ViewProbe& probe) const;
   std::filesystem::path place(const std::string& name, const std::vector<std::string>& endings) const;
   ViewSink sink();
@@ -65,8 +69,10 @@ class Viewer {
   std::string engine_;
   std::vector<std::shared_ptr<ViewClient>> clients_;
   std::filesystem::path folder_;
-  Json about_;  // what hello says of the volume
+  Json about_;      // what hello says of the volume
+  Json compared_;   // the last message on the comparison; null: there is none
   std::unique_ptr<ViewRenderer> renderer_;
+  std::unique_ptr<ReferenceComparison> comparison_;
 };
 
 }  // namespace umbrick::view
