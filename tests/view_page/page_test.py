@@ -293,6 +293,31 @@ def compare(page):
     page.picture_at_rest()
 
 
+def open_files(page, folder):
+    """Another volume keeps the page: from the folder of the server, and sent from this side."""
+    if not folder or not os.path.isfile(os.path.join(folder, "below", "ball.mha")):
+        return
+    page.driver.execute_script("window.stayed = true")
+    page.find("#open").click()
+    entries = (By.CSS_SELECTOR, ".files button")
+    page.wait("a listing", lambda: [each for each in page.driver.find_elements(*entries) if each.text == "below/"])
+    page.shot("files")
+    page.press("below/")
+    page.wait("what is below", lambda: [each.text for each in page.driver.find_elements(*entries)] == ["ball.mha"])
+    page.press("ball.mha")
+    page.wait("the other volume", lambda: "ball.mha" in page.driver.title)
+    page.picture_at_rest()
+    page.shot("other-volume")
+    page.driver.find_element(By.CSS_SELECTOR, ".open-file input[type=file]").send_keys(
+        os.path.join(folder, "sent", "box.mha"))
+    page.wait("the volume that was sent", lambda: "box.mha" in page.driver.title)
+    page.picture_at_rest()
+    assert page.driver.execute_script("return window.stayed"), "the page was loaded anew"
+    before = page.pixels()
+    page.keys("5")
+    page.change("a key", before)
+
+
 def light(page):
     before = page.picture_at_rest()
     page.unfold("Light")
@@ -386,7 +411,8 @@ def main():
         print(f"skipped: Chromium does not start: {error.msg.splitlines()[0]}")
         return SKIPPED
     steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, light, probe, pause, compare,
-             functools.partial(save, folder=arguments.folder), refuse, help_list, narrow, no_console_errors]
+             functools.partial(save, folder=arguments.folder), refuse, help_list,
+             functools.partial(open_files, folder=arguments.folder), narrow, no_console_errors]
     if arguments.only:
         steps = [step for step in steps if name_of(step) in ["open_page", *arguments.only]]
     try:

@@ -38,11 +38,15 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
 using asio::ip::tcp;
-using Request = http::request<http::string_body>;
+using Request = http::request<http::empty_body>;
 using Response = http::response<http::string_body>;
 
 constexpr auto kPatience = std::chrono::seconds(20);  // for the rest of a request, and for a page to take an answer
+constexpr auto kLongestUpload = std::chrono::minutes(10);
 constexpr std::size_t kMostTexts = 1000;  // that wait for one page: it does not read any more
+
+// The path of a file that a page sends begins so, behind the token.
+constexpr std::string_view kUpload = "upload/";
 
 std::string randomToken() {
   std::random_device random;
@@ -241,10 +245,19 @@ class ViewServer::Implementation : public std::enable_shared_from_this<Implement
     try {
       beast::flat_buffer buffer;
       for (bool more = true; more;) {
-        http::request_parser<http::string_body> parser;
-        parser.body_limit(0);
+        http::request_parser<http::empty_body> parser;
+        // The size of a body is looked at below, before any of it is read. Boost 1.74 takes no limit for a limit of 0.
+        parser.body_limit(std::numeric_limits<std::uint64_t>::max());
         stream.expires_after(kPatience);
-        co_await http::async_read(stream, buffer, parser, asio::use_awaitable);
+        co_await http::async_read_header(stream, buffer, parser, asio::use_awaitable);
+        if (isUpload(parser.get())) {
+          Response response = co_await takeUpload(stream, buffer, parser);
+          stream.expires_after(kPatience);
+          co_await http::async_write(stream, response, asio::use_awaitable);
+          co_await drain(stream);
+          break;
+        }
+        if (!parser.is_done()) break;  // nothing else has a body
         Request request = parser.release();
         if (websocket::is_upgrade(request) && mayConnect(request) && pages_ < kMostPages) {
           stream.expires_never();
@@ -299,13 +312,83 @@ class ViewServer::Implementation : public std::enable_shared_from_this<Implement
            headerOf(request, http::field::origin) == "http://" + std::string(host);
   }
 
-  Response answer(const Request& request) const {
-    Response response{http::status::ok, request.version()};
-    response.keep_alive(request.keep_alive());
+  // --- files that pages send ---
+
+  bool isUpload(const Request& request) const {
+    const std::optional<std::string> name = nameOf(request);
+    return request.method() == http::verb::post && name && name->starts_with(kUpload) && viewer_.opensFiles();
+  }
+
+  // Takes a file to a temporary place, piece by piece, and lets the viewer open it. One at a time: so there is never
+  // more than one of kMostUploadBytes on the disk.
+  asio::awaitable<Response> takeUpload(beast::tcp_stream& stream, beast::flat_buffer& buffer,
+                                       http::request_parser<http::empty_body>& head) {
+    const auto answered = [version = head.get().version()](http::status status, const std::string& why) {
+      Response response = plainResponse(status, version);
+      response.set(http::field::content_type, "text/plain; charset=utf-8");
+      response.keep_alive(false);
+      response.body() = why;
+      response.prepare_payload();
+      return response;
+    };
+    const std::string name = nameOf(head.get())->substr(kUpload.size());
+    const std::string_view host = headerOf(head.get(), http::field::host);
+    if (!isOurName(host) || headerOf(head.get(), http::field::origin) != "http://" + std::string(host))
+      co_return answered(http::status::forbidden, "not a page of this server");
+    const auto length = head.content_length();
+    if (!length) co_return answered(http::status::length_required, "its length is not stated");
+    if (*length > kMostUploadBytes)
+      co_return answered(http::status::payload_too_large, "larger than a page may send: open it by its path");
+    if (uploading_) co_return answered(http::status::conflict, "another file is on its way");
+    uploading_ = true;
+    const auto end = [this](void*) { uploading_ = false; };
+    const std::unique_ptr<void, decltype(end)> ending(this, end);
+    try {
+      auto file = std::make_shared<UploadedFile>(name);
+      http::request_parser<http::file_body> parser(std::move(head));
+      parser.body_limit(kMostUploadBytes);
+      beast::error_code failed;
+      parser.get().body().open(file->path().c_str(), beast::file_mode::write_new, failed);
+      if (failed) co_return answered(http::status::insufficient_storage, failed.message());
+      const auto until = std::chrono::steady_clock::now() + kLongestUpload;
+      while (!parser.is_done()) {
+        if (std::chrono::steady_clock::now() > until) co_return answered(http::status::request_timeout, "too slow");
+        stream.expires_after(kPatience);
+        co_await http::async_read_some(stream, buffer, parser, asio::redirect_error(asio::use_awaitable, failed));
+        // A disk that is full, for example, or a page that has gone.
+        if (failed) co_return answered(http::status::insufficient_storage, failed.message());
+      }
+      parser.get().body().close();
+      viewer_.upload(std::move(file));
+      co_return answered(http::status::ok, "opening " + name);
+    } catch (const Error& error) {
+      co_return answered(http::status::bad_request, error.what());
+    }
+  }
+
+  // Reads what is still on its way, for a little while: a connection that is closed before is reset, and the answer
+  // may be lost.
+  static asio::awaitable<void> drain(beast::tcp_stream& stream) {
+    boost::system::error_code ended;
+    stream.socket().shutdown(tcp::socket::shutdown_send, ended);
+    stream.expires_after(std::chrono::seconds(2));
+    std::array<char, 4096> rest{};
+    while (!ended)
+      co_await stream.async_read_some(asio::buffer(rest), asio::redirect_error(asio::use_awaitable, ended));
+  }
+
+  static Response plainResponse(http::status status, unsigned version) {
+    Response response{status, version};
     response.set(http::field::cache_control, "no-store");
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Referrer-Policy", "no-referrer");
     response.set("Cross-Origin-Resource-Policy", "same-origin");
+    return response;
+  }
+
+  Response answer(const Request& request) const {
+    Response response = plainResponse(http::status::ok, request.version());
+    response.keep_alive(request.keep_alive());
     response.set("Content-Security-Policy",
                  "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; connect-src 'self' "
                  "ws:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
@@ -341,6 +424,7 @@ class ViewServer::Implementation : public std::enable_shared_from_this<Implement
   asio::io_context io_{1};
   tcp::acceptor acceptor_;
   int connections_ = 0, pages_ = 0;
+  bool uploading_ = false;
 };
 
 ViewServer::ViewServer(Viewer& viewer, const ServerOptions& options)

@@ -68,6 +68,8 @@ class ViewRenderer {
 
   /// Draws another scene; what is drawn of one before is given up. @param moving  more changes follow soon
   void show(const ResolvedScene& scene, bool moving);
+  /// Looks at another volume from now on; what is drawn of the one before is given up.
+  void open(std::shared_ptr<const Volume> volume, const ResolvedScene& scene);
   /// Nothing moves any more.
   void rest();
   /// Stops at the picture that there is, or goes on.

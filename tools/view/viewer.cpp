@@ -45,6 +45,16 @@ Json aboutVolume(const Volume& volume) {
           {"bounds", {vectorOf(bounds.min), vectorOf(bounds.max)}}};
 }
 
+Json probed(const ViewProbe& probe, const Volume& volume) {
+  const auto value = probe.world ? sampleAt(volume.grid(), *probe.world) : std::nullopt;
+  return {{"type", "probe"},
+          {"x", probe.x},
+          {"y", probe.y},
+          {"value", value ? numberOrNull(*value) : Json()},
+          {"world", probe.world ? vectorOf(*probe.world) : Json()},
+          {"depth", probe.world ? Json(probe.depth) : Json()}};
+}
+
 template <class Value>
 Value field(const Json& message, const char* name) {
   try {
@@ -57,7 +67,7 @@ Value field(const Json& message, const char* name) {
 }  // namespace
 
 Viewer::Viewer(Scene scene, std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals,
-               fs::path folder)
+               fs::path folder, OpenVolume open)
     : state_(std::move(scene), volume), folder_(std::move(folder)), about_(aboutVolume(*volume)) {
   renderer_ = std::make_unique<ViewRenderer>(std::move(volume), engine, goals, sink());
   comparison_ = std::make_unique<ReferenceComparison>([this](std::uint64_t number, const Json& news) {
@@ -67,6 +77,7 @@ Viewer::Viewer(Scene scene, std::shared_ptr<const Volume> volume, EngineKind eng
     compared_["type"] = "comparison";
     toAll(compared_);
   });
+  if (open) startOpening(std::move(open));
 }
 
 // The jobs end first: they use what is declared before them.
@@ -116,8 +127,14 @@ ViewSink Viewer::sink() {
 }
 
 Json Viewer::hello() const {
-  return {{"type", "hello"},  {"version", UMBRICK_VERSION},   {"engine", engine_},
-          {"volume", about_}, {"presets", transferPresets()}, {"fields", fieldList()}};
+  return {{"type", "hello"},
+          {"version", UMBRICK_VERSION},
+          {"engine", engine_},
+          {"volume", about_},
+          {"presets", transferPresets()},
+          {"fields", fieldList()},
+          {"folder", opening_ ? Json(asUtf8(opening_->folder().string())) : Json()},
+          {"mostUpload", kMostUploadBytes}};
 }
 
 // A scene of the state, and how to make its picture without this program's window.
@@ -201,6 +218,12 @@ void Viewer::message(std::string_view text, const std::shared_ptr<ViewClient>& f
       compare();
     } else if (type == "stopCompare") {
       dropComparison("stopped");
+    } else if (type == "files") {
+      Json listing = opening().list(field<std::string>(message, "path"));
+      listing["type"] = "files";
+      from->text(listing.dump());
+    } else if (type == "open") {
+      opening().open(field<std::string>(message, "path"));
     } else {
       throw InvalidArgument("message: no type '" + printable(type.substr(0, 40)) + "'");
     }
@@ -223,22 +246,51 @@ void Viewer::dropComparison(const std::string& why) {
   toAll({{"type", "comparison"}, {"state", "none"}, {"text", why}});
 }
 
-Json Viewer::probed(const ViewProbe& probe) const {
-  const auto value = probe.world ? sampleAt(state_.volume().grid(), *probe.world) : std::nullopt;
-  return {{"type", "probe"},
-          {"x", probe.x},
-          {"y", probe.y},
-          {"value", value ? numberOrNull(*value) : Json()},
-          {"world", probe.world ? vectorOf(*probe.world) : Json()},
-          {"depth", probe.world ? Json(probe.depth) : Json()}};
-}
-
 void Viewer::probe(const Json& message, const std::shared_ptr<ViewClient>& from) {
   const std::weak_ptr<ViewClient> waiting = from;
   const int x = field<int>(message, "x"), y = field<int>(message, "y");
-  renderer_->probe(x, y, [this, waiting](const ViewProbe& probe) {
-    if (const auto client = waiting.lock()) client->text(probed(probe).dump());
+  renderer_->probe(x, y, [volume = state_.share(), waiting](const ViewProbe& probe) {
+    if (const auto client = waiting.lock()) client->text(probed(probe, *volume).dump());
   });
+}
+
+// --- other volumes ---
+
+FileOpening& Viewer::opening() const {
+  if (!opening_) throw InvalidArgument("open: this viewer shows one volume alone");
+  return *opening_;
+}
+
+void Viewer::upload(std::shared_ptr<UploadedFile> file) { opening().open(std::move(file)); }
+
+void Viewer::startOpening(OpenVolume open) {
+  FileOpening::Sink sink;
+  sink.news = [this](std::uint64_t number, Json news) {
+    const std::lock_guard lock(mutex_);
+    if (!opening_ || !opening_->isCurrent(number)) return;  // was dropped meanwhile
+    news["type"] = "opening";
+    toAll(news);
+  };
+  sink.opened = [this](std::uint64_t number, OpenedVolume opened, const std::string& name) {
+    take(number, std::move(opened), name);
+  };
+  opening_ = std::make_unique<FileOpening>(folder_, std::move(open), std::move(sink));
+}
+
+void Viewer::take(std::uint64_t number, OpenedVolume opened, const std::string& name) {
+  // What looks at all voxels is done while pages still look at the volume before.
+  ViewState state(std::move(opened.scene), opened.volume);
+  Json about = aboutVolume(*opened.volume);
+  about["file"] = asUtf8(name);
+  const std::lock_guard lock(mutex_);
+  if (!opening_ || !opening_->isCurrent(number)) return;
+  dropComparison("another volume is shown");
+  state_ = std::move(state);
+  about_ = std::move(about);
+  renderer_->open(opened.volume, state_.resolved());
+  toAll(hello());
+  toAll(sceneMessage());
+  toAll({{"type", "opening"}, {"state", "done"}, {"name", asUtf8(name)}, {"text", asUtf8(opened.chosen)}});
 }
 
 // A page names a file in the folder and nothing else: no other folder, nothing hidden, nothing that is there already.

@@ -7,9 +7,10 @@
 //   {"type": "shown", "frame": n}                a frame is on the screen: the next one may be sent
 //   {"type": "probe", "x": px, "y": px}          from the upper left of a picture of the scene's size
 //   {"type": "compare"}  {"type": "stopCompare"}  with the reference, see ReferenceComparison
+//   {"type": "files", "path": "..."}  {"type": "open", "path": "..."}   of the folder of the server, see OpenFolder
 //   {"type": "save", "what": "picture" | "scene", "name": "...", "size": [w, h], "samples": n}
-// To pages: hello, scene, status, probe, comparison, saved, note, error; and frames, which are binary: four bytes with
-// the length of a JSON text, little-endian, that text, and the bytes of an image.
+// To pages: hello, scene, status, probe, comparison, files, opening, saved, note, error; and frames, which are binary:
+// four bytes with the length of a JSON text, little-endian, that text, and the bytes of an image.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
@@ -21,6 +22,7 @@
 #include <string_view>
 #include <vector>
 
+#include "view/file_opening.h"
 #include "view/page_message.h"
 #include "view/reference_comparison.h"
 #include "view/view_renderer.h"
@@ -40,15 +42,19 @@ class ViewClient {
 class Viewer {
  public:
   /// @param scene   with a transfer function, as openScene() completes it
-  /// @param folder  where pictures and scenes are saved
+  /// @param folder  where pictures and scenes are saved, and from which files are opened
+  /// @param open    opens other volumes; none: there is this one alone
   Viewer(Scene scene, std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals,
-         std::filesystem::path folder);
+         std::filesystem::path folder, OpenVolume open = {});
   ~Viewer();
 
   void join(const std::shared_ptr<ViewClient>& client);
   void leave(const ViewClient& client);
   /// Does what a message asks for. What is wrong with it is said to the page that sent it.
   void message(std::string_view text, const std::shared_ptr<ViewClient>& from);
+  /// Shows a file that a page has sent.
+  void upload(std::shared_ptr<UploadedFile> file);
+  bool opensFiles() const { return opening_ != nullptr; }
 
  private:
   using Json = nlohmann::ordered_json;
@@ -60,7 +66,9 @@ class Viewer {
   void save(const Json& message, const std::shared_ptr<ViewClient>& from);
   void compare();
   void dropComparison(const std::string& why);
-  Json probed(const ViewProbe& probe) const;
+  void startOpening(OpenVolume open);
+  void take(std::uint64_t number, OpenedVolume opened, const std::string& name);
+  FileOpening& opening() const;
   std::filesystem::path place(const std::string& name, const std::vector<std::string>& endings) const;
   ViewSink sink();
 
@@ -73,6 +81,7 @@ class Viewer {
   Json compared_;   // the last message on the comparison; null: there is none
   std::unique_ptr<ViewRenderer> renderer_;
   std::unique_ptr<ReferenceComparison> comparison_;
+  std::unique_ptr<FileOpening> opening_;
 };
 
 }  // namespace umbrick::view
