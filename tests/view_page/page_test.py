@@ -269,6 +269,48 @@ def clip(page):
     page.wait("the whole again", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
 
 
+def clip_by_handle(page):
+    """A face of the clip box is dragged in the picture, towards the face across from it."""
+    before = page.picture_at_rest()
+    page.unfold("Clipping")
+    page.driver.find_element(By.XPATH, "//label[text()='clip box']/..//input").click()
+    handle, other = page.find('#clip [data-face="z1"]'), page.find('#clip [data-face="z0"]')
+    page.wait("handles appear", handle.is_displayed)
+    value = float(page.labelled("z to").get_attribute("value"))
+    a, b = handle.rect, other.rect
+    page.drag(handle, (a["width"] / 2, a["height"] / 2),
+              (int(0.35 * (b["x"] - a["x"])) // 5 * 5, int(0.35 * (b["y"] - a["y"])) // 5 * 5))
+    page.wait("the face moves", lambda: float(page.labelled("z to").get_attribute("value")) < value)
+    low = float(page.labelled("z from").get_attribute("value"))
+    share = (value - float(page.labelled("z to").get_attribute("value"))) / (value - low)
+    assert 0.2 < share < 0.5, f"the face went {share} of the way, and the pointer 0.35 in the picture"
+    page.change("a dragged face", before)
+    page.shot("clip-handles")
+    page.find("#undo").click()
+    page.find("#undo").click()
+    page.wait("undo takes the box away", lambda: not handle.is_displayed())
+    page.wait("the whole again", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
+
+
+def surfaces(page):
+    """The value of an isosurface is a line over the histogram, which is dragged."""
+    before = page.picture_at_rest()
+    page.unfold("Mode")
+    page.select_in('[data-path="mode"] select', "isosurface")
+    plot = page.find("#surfaces")
+    page.wait("a line over the histogram", lambda: plot.is_displayed() and plot.get_attribute("data-lines"))
+    surface = page.change("a surface", before)
+    page.shot("surface")
+    x = int(plot.get_attribute("data-lines").split()[0])
+    page.drag(plot, (x, 40), (50, 0))
+    page.wait("the line moves", lambda: int(plot.get_attribute("data-lines").split()[0]) > x + 30)
+    page.change("another value", surface)
+    page.shot("surface-dragged")
+    page.find("#undo").click()
+    page.find("#undo").click()
+    page.wait("undo brings the medium back", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
+
+
 def compare(page):
     """The reference is computed beside the picture, and given up when the scene changes."""
     page.unfold("Against the reference")
@@ -410,8 +452,8 @@ def main():
     except WebDriverException as error:
         print(f"skipped: Chromium does not start: {error.msg.splitlines()[0]}")
         return SKIPPED
-    steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, light, probe, pause, compare,
-             functools.partial(save, folder=arguments.folder), refuse, help_list,
+    steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, clip_by_handle, surfaces, light,
+             probe, pause, compare, functools.partial(save, folder=arguments.folder), refuse, help_list,
              functools.partial(open_files, folder=arguments.folder), narrow, no_console_errors]
     if arguments.only:
         steps = [step for step in steps if name_of(step) in ["open_page", *arguments.only]]

@@ -319,6 +319,7 @@ void ViewRenderer::tell(ViewStatus status) {
     const std::lock_guard lock(mutex_);
     status.paused = paused_;
   }
+  status.targetError = goals_.targetError;
   lastStatus_ = status;
   sink_.status(lastStatus_);
 }

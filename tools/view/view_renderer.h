@@ -32,6 +32,7 @@ struct ViewFrame {
 struct ViewStatus {
   int samples = 0;                     // 0: a draft
   std::optional<ErrorEstimate> error;  // none: not known
+  double targetError = 0;              // at which samples end, or where they cannot lower what is left
   double ms = 0;                       // since the scene was changed last
   bool draft = false, done = false, paused = false;
   std::string text;  // for people: "done: error 0.004"

@@ -104,6 +104,7 @@ ViewSink Viewer::sink() {
         {"standardError", known ? numberOrNull(status.error->statistical) : Json()},
         {"systematicError", known ? numberOrNull(status.error->systematic) : Json()},
         {"error", known ? numberOrNull(status.error->total()) : Json()},
+        {"targetError", status.targetError},
         {"ms", status.ms},
         {"draft", status.draft},
         {"done", status.done},

@@ -58,6 +58,14 @@ export const kKeyList = [
       ["Page up, Page down", "choose the point before, after"],
     ]
   ],
+  [
+    "Clip box, isosurfaces",
+    [
+      ["drag a handle in the picture", "moves a face of the clip box"],
+      ["drag a line of the histogram", "changes the value of a surface"],
+      ["double click, right click there", "add, remove a surface"],
+    ]
+  ],
 ];
 
 const isText = (target) =>

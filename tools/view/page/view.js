@@ -1,5 +1,6 @@
 // The page of `umbrick view`: connects what the server says with what is shown, and what is done with what is sent.
 // SPDX-License-Identifier: Apache-2.0
+import {ClipHandles} from "./clip_handles.js";
 import {Connection} from "./connection.js";
 import {EditPacer} from "./edit_pacer.js";
 import {filesDialog} from "./files_dialog.js";
@@ -22,6 +23,8 @@ const pacer = new EditPacer(send, (step) => requestAnimationFrame(step), () => p
 const session = new Session(send, pacer);
 const picture = new Picture(at("stage"), at("picture"), session, problem);
 new PictureInput(picture, session);
+const clipHandles = new ClipHandles(at("clip"), picture, session);
+picture.onFit = () => session.scene && clipHandles.update();
 
 const help = helpDialog();
 const files = filesDialog(session, notices);
@@ -75,6 +78,7 @@ const refresh = () => {
   if (!panels || !session.scene) return;  // of a volume that is not shown any more
   panels.update();
   const view = session.view();
+  clipHandles.update();
   drawTriad(at("axes"), view.axes);
   drawScaleBar(at("scale"), view, at("picture").clientHeight);
 };
