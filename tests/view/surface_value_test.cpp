@@ -1,4 +1,4 @@
-// The value of a surface that nobody has named.
+// Values to begin with: of a surface that nobody has named, and of the axes of a function of gradients.
 // SPDX-License-Identifier: Apache-2.0
 #include "view/surface_value.h"
 
@@ -6,7 +6,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numeric>
 
+#include "support/temporary_folder.h"
 #include "support/test_grids.h"
+#include "view/gradient_histogram.h"
 #include "view/view_fixture.h"
 
 using namespace umbrick;
@@ -63,3 +65,49 @@ TEST_CASE("A volume of one value still has a surface within its axis", "[view]")
   CHECK(partingValue(survey) <= survey.high);
 }
 
+TEST_CASE("A ramp has one gradient, in grid units per world unit", "[view]") {
+  // 3 a voxel along x, and voxels that are 2 world units long there.
+  const ScalarGrid ramp = makeFilled({12, 12, 12}, {4, 5, 6}, [](const glm::ivec3& at) { return 1 + 3.0 * at.x; });
+  const ScalarGrid grid = withTransform(ramp, glm::scale(glm::dmat4(1), glm::dvec3(2, 1, 1)));
+  const GradientHistogram found = surveyGradients(grid, 1, 34);
+  REQUIRE(found.counts.size() == static_cast<std::size_t>(found.values * found.gradients));
+  CHECK(std::accumulate(found.counts.begin(), found.counts.end(), 0.0) == 12 * 12 * 12);
+  // The faces are steeper; all that is inside is in the row of 1.5.
+  CHECK(found.most > 1.5);
+  const auto row = static_cast<std::size_t>(1.5 / found.most * found.gradients);
+  const auto begin = found.counts.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(found.values));
+  CHECK(std::accumulate(begin, begin + found.values, 0.0) >= 10 * 10 * 10);
+}
+
+TEST_CASE("A page that asks for gradients gets them once they are counted, and at once the next time", "[view]") {
+  TemporaryFolder folder;
+  Viewer viewer(testScene(), testVolume(), EngineKind::cpu, {.targetError = 0.05, .mostSamples = 4}, folder.path());
+  const auto page = std::make_shared<NotingClient>();
+  viewer.join(page);
+  for (int time = 0; time < 2; ++time) {
+    viewer.message(R"({"type": "gradients"})", page);
+    const auto found = page->take("gradients");
+    REQUIRE(found.is_object());
+    CHECK(found["counts"].size() == found["values"].get<std::size_t>() * found["gradients"].get<std::size_t>());
+    CHECK(found["most"] > 0);
+  }
+}
+
+TEST_CASE("A lattice that a page makes of shapes comes back as it was sent, and is drawn", "[view]") {
+  TemporaryFolder folder;
+  Viewer viewer(testScene(), testVolume(), EngineKind::cpu, {.targetError = 0.05, .mostSamples = 4}, folder.path());
+  const auto page = std::make_shared<NotingClient>();
+  viewer.join(page);
+  page->takeDone();
+  // Numbers of seven digits, as the page rounds them: it knows its shapes again by them.
+  const auto patch = nlohmann::ordered_json::parse(R"({"transfer": {"points": null,
+    "values": [0.1234567, 0.5, 0.7654321, 1], "gradients": [0, 0.0123457],
+    "albedo": [[0.9, 0.5, 0.123457], [0.9, 0.5, 0.1], [1, 1, 1], [0.3, 0.2, 0.1],
+               [0.9, 0.5, 0.1], [0.9, 0.5, 0.1], [1, 1, 1], [0.3, 0.2, 0.1]],
+    "sigma_t": [0, 0.333333, 0.25, 0, 0, 0.1, 0.7, 0]}})");
+  viewer.message(nlohmann::ordered_json{{"type", "edit"}, {"patch", patch}}.dump(), page);
+  const auto scene = page->take("scene")["scene"];
+  for (const char* name : {"values", "gradients", "albedo", "sigma_t"})
+    CHECK(nlohmann::json(scene["transfer"][name]) == nlohmann::json(patch["transfer"][name]));
+  CHECK(page->takeDone()["samples"] > 0);
+}

@@ -292,6 +292,34 @@ def clip_by_handle(page):
     page.wait("the whole again", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
 
 
+def shapes(page):
+    """A function of value and gradient magnitude, as shapes that come back with undo."""
+    before = page.picture_at_rest()
+    page.select("function of", "value and gradient")
+    plot = page.find("#shapes")
+    said = page.driver.find_element(By.XPATH, "//canvas[@id='shapes']/following-sibling::p")
+    page.wait("a first shape", lambda: said.text == "Shape 1 of 1, a rectangle")
+    one = page.change("a function of gradients", before)
+    page.shot("rectangle")
+    x, y = map(int, plot.get_attribute("data-corners").split()[0].split(","))
+    page.drag(plot, (x, y), (-60, 0))
+    page.wait("a corner moves", lambda: int(plot.get_attribute("data-corners").split(",")[0]) < x - 40)
+    page.change("a dragged corner", one)
+    page.press("Add triangle")
+    page.wait("two shapes", lambda: said.text == "Shape 2 of 2, a triangle")
+    page.picture_at_rest()
+    page.shot("triangle")
+    page.find("#undo").click()
+    page.wait("undo takes the triangle away", lambda: said.text == "Shape 1 of 1, a rectangle")
+    page.find("#redo").click()
+    page.wait("redo brings it back, a shape still", lambda: said.text == "Shape 2 of 2, a triangle")
+    plot.send_keys(Keys.DELETE)
+    page.wait("it is removed", lambda: said.text == "Shape 1 of 1, a rectangle")
+    page.select("function of", "value")
+    page.wait("the function of the value again", lambda: page.find("#transfer").is_displayed())
+    page.wait("the first picture", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
+
+
 def surfaces(page):
     """The value of an isosurface is a line over the histogram, which is dragged."""
     before = page.picture_at_rest()
@@ -452,8 +480,8 @@ def main():
     except WebDriverException as error:
         print(f"skipped: Chromium does not start: {error.msg.splitlines()[0]}")
         return SKIPPED
-    steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, clip_by_handle, surfaces, light,
-             probe, pause, compare, functools.partial(save, folder=arguments.folder), refuse, help_list,
+    steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, clip_by_handle, shapes, surfaces,
+             light, probe, pause, compare, functools.partial(save, folder=arguments.folder), refuse, help_list,
              functools.partial(open_files, folder=arguments.folder), narrow, no_console_errors]
     if arguments.only:
         steps = [step for step in steps if name_of(step) in ["open_page", *arguments.only]]

@@ -13,6 +13,7 @@
 #include "umbrick/image/png.h"
 #include "umbrick/render/suggest_transfer.h"
 #include "view/field_list.h"
+#include "view/gradient_histogram.h"
 #include "view/sample_grid.h"
 
 namespace umbrick::view {
@@ -215,6 +216,8 @@ void Viewer::message(std::string_view text, const std::shared_ptr<ViewClient>& f
       probe(message, from);
     } else if (type == "save") {
       save(message, from);
+    } else if (type == "gradients") {
+      sendGradients(from);
     } else if (type == "compare") {
       compare();
     } else if (type == "stopCompare") {
@@ -255,6 +258,19 @@ void Viewer::probe(const Json& message, const std::shared_ptr<ViewClient>& from)
   });
 }
 
+void Viewer::sendGradients(const std::shared_ptr<ViewClient>& from) {
+  if (!gradients_.is_null()) return from->text(gradients_.dump());
+  surveying_->start([this, volume = state_.share(), low = about_["low"].get<double>(),
+                     high = about_["high"].get<double>()](std::uint64_t number) {
+    const GradientHistogram found = surveyGradients(volume->grid(), low, high);
+    const std::lock_guard lock(mutex_);
+    if (!surveying_->isCurrent(number)) return;
+    gradients_ = {{"type", "gradients"}, {"values", found.values}, {"gradients", found.gradients}, {"low", found.low},
+                  {"high", found.high},  {"most", found.most},     {"counts", found.counts}};
+    toAll(gradients_);
+  });
+}
+
 // --- other volumes ---
 
 FileOpening& Viewer::opening() const {
@@ -288,6 +304,8 @@ void Viewer::take(std::uint64_t number, OpenedVolume opened, const std::string& 
   dropComparison("another volume is shown");
   state_ = std::move(state);
   about_ = std::move(about);
+  surveying_->drop();
+  gradients_ = Json();
   renderer_->open(opened.volume, state_.resolved());
   toAll(hello());
   toAll(sceneMessage());

@@ -6,11 +6,12 @@
 //   {"type": "rest"}  {"type": "undo"}  {"type": "redo"}  {"type": "reset"}  {"type": "pause"}  {"type": "resume"}
 //   {"type": "shown", "frame": n}                a frame is on the screen: the next one may be sent
 //   {"type": "probe", "x": px, "y": px}          from the upper left of a picture of the scene's size
+//   {"type": "gradients"}                        asks for the histogram of value and gradient magnitude
 //   {"type": "compare"}  {"type": "stopCompare"}  with the reference, see ReferenceComparison
 //   {"type": "files", "path": "..."}  {"type": "open", "path": "..."}   of the folder of the server, see OpenFolder
 //   {"type": "save", "what": "picture" | "scene", "name": "...", "size": [w, h], "samples": n}
-// To pages: hello, scene, status, probe, comparison, files, opening, saved, note, error; and frames, which are binary:
-// four bytes with the length of a JSON text, little-endian, that text, and the bytes of an image.
+// To pages: hello, scene, status, probe, comparison, gradients, files, opening, saved, note, error; and frames, which
+// are binary: four bytes with the length of a JSON text, little-endian, that text, and the bytes of an image.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
@@ -23,6 +24,7 @@
 #include <vector>
 
 #include "view/file_opening.h"
+#include "view/latest_job.h"
 #include "view/page_message.h"
 #include "view/reference_comparison.h"
 #include "view/view_renderer.h"
@@ -65,6 +67,7 @@ class Viewer {
   void probe(const Json& message, const std::shared_ptr<ViewClient>& from);
   void save(const Json& message, const std::shared_ptr<ViewClient>& from);
   void compare();
+  void sendGradients(const std::shared_ptr<ViewClient>& from);
   void dropComparison(const std::string& why);
   void startOpening(OpenVolume open);
   void take(std::uint64_t number, OpenedVolume opened, const std::string& name);
@@ -78,10 +81,12 @@ class Viewer {
   std::vector<std::shared_ptr<ViewClient>> clients_;
   std::filesystem::path folder_;
   Json about_;      // what hello says of the volume
+  Json gradients_;  // the histogram of value and gradient magnitude; null: nobody has asked for it
   Json compared_;   // the last message on the comparison; null: there is none
   std::unique_ptr<ViewRenderer> renderer_;
   std::unique_ptr<ReferenceComparison> comparison_;
   std::unique_ptr<FileOpening> opening_;
+  std::unique_ptr<LatestJob> surveying_ = std::make_unique<LatestJob>();
 };
 
 }  // namespace umbrick::view

@@ -117,6 +117,9 @@ export class Session {
     this.send_(message);
   }
 
+  /// Asks for the histogram of value and gradient magnitude.
+  askGradients() { this.send_({ type: "gradients" }); }
+
   /// Asks what is in a folder below that of the server.
   files(path) { this.send_({ type: "files", path }); }
 

@@ -112,26 +112,3 @@ export function drawTransferPlot(canvas, plot) {
   context.fillRect(area.left, area.top + area.height, area.width, 1);
   if (plot.points) drawPoints(context, area, plot.places, plot.points, plot.chosen);
 }
-
-/// Draws a function of value (to the right) and gradient magnitude (up) as a map: colours by sigma_t.
-export function drawLattice(canvas, {values, gradients, albedo, sigma_t}) {
-  const width = canvas.clientWidth, height = canvas.clientHeight;
-  Object.assign(canvas, { width, height });
-  const context = canvas.getContext("2d"), area = plotArea(width, height);
-  const most = Math.max(...sigma_t) || 1;
-  const nearest = (list, share) => {
-    const at = list[0] + share * (list.at(-1) - list[0]);
-    return list.reduce((best, x, i) => (Math.abs(x - at) < Math.abs(list[best] - at) ? i : best), 0);
-  };
-  const kCell = 4;  // pixels
-  for (let y = 0; y < area.height; y += kCell)
-    for (let x = 0; x < area.width; x += kCell) {
-      const i = nearest(gradients, 1 - y / area.height) * values.length + nearest(values, x / area.width);
-      context.globalAlpha = Math.sqrt(sigma_t[i] / most);
-      context.fillStyle = hexOfLinear(albedo[i]);
-      context.fillRect(area.left + x, area.top + y, kCell, kCell);
-    }
-  context.globalAlpha = 1;
-  context.font = "11px system-ui, sans-serif";
-  drawNumbers(context, area, [values[0], values.at(-1)]);
-}
