@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "command.h"
 #include "opened_scene.h"
@@ -35,6 +37,20 @@ void openBrowser(const std::string& address) {
   if (std::system(command.c_str()) != 0) std::cerr << "no browser was opened\n";
 }
 
+// Opens what a page asks for, as if it had been given on the command line without options. A header or a scene of a
+// stranger cannot bring in files from elsewhere.
+view::OpenedVolume openForPage(const std::filesystem::path& file, const std::function<void(double)>& progress) {
+  SceneOptions options;
+  options.input = file;
+  options.volume.besideOnly = true;
+  try {
+    OpenedScene opened = openScene(options, makeScene(options, {.model = Model::cone}), progress);
+    return {std::move(opened.scene), std::move(opened.volume), std::move(opened.chosen)};
+  } catch (const UsageError& error) {
+    throw InvalidArgument(error.what());
+  }
+}
+
 int run(const ViewCommand& command) {
   Scene scene = makeScene(*command.scene, {.model = Model::cone});
   StopRequest stop;
@@ -47,7 +63,7 @@ int run(const ViewCommand& command) {
   goals.draftMs = 1000 / command.framesPerSecond;
   goals.targetError = command.targetError;
   view::Viewer viewer(opened.scene, opened.volume, parseName(kEngineKinds, command.backend, "--backend"), goals,
-                      std::filesystem::current_path());
+                      std::filesystem::current_path(), openForPage);
   view::ViewServer server(viewer, command.server);
   const std::string port = std::to_string(server.port());
   if (command.server.host == "127.0.0.1" || command.server.host == "::1")
@@ -57,7 +73,8 @@ int run(const ViewCommand& command) {
     std::cerr << "warning: " << command.server.host
               << " may be open to other machines; the address is the password, and "
               << "nothing is encrypted\n";
-  std::cerr << "pictures and scenes are saved in " << std::filesystem::current_path().string() << "; Ctrl-C ends\n";
+  std::cerr << "pictures and scenes are saved in, and files opened from, " << std::filesystem::current_path().string()
+            << "; Ctrl-C ends\n";
   std::cout << server.address() << std::endl;
   if (!command.noBrowser) openBrowser(server.address());
   server.run([&] { return stop.requested(); });

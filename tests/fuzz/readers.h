@@ -145,6 +145,9 @@ std::map<std::string, NamedTarget> gridTargets();
 /// The record of a study, "study", in study_target.cpp: changes to a good one, too.
 std::map<std::string, NamedTarget> studyTargets();
 
+/// What a page of `umbrick view` says, "message", in message_target.cpp.
+std::map<std::string, NamedTarget> messageTargets();
+
 /// Makes the changes that gridTargets() speaks of.
 inline std::string patched(std::string bytes, std::string_view changes) {
   for (std::size_t i = 0; i + 5 <= changes.size(); i += 5) {

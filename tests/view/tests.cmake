@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 if(UMBRICK_TOOLS)
-  umbrick_tests(view server_test.cpp view_state_test.cpp viewer_test.cpp)
+  umbrick_tests(view comparison_test.cpp file_opening_test.cpp message_fuzz_test.cpp open_folder_test.cpp server_test.cpp surface_value_test.cpp view_state_test.cpp viewer_test.cpp
+                ../fuzz/message_target.cpp)
   target_link_libraries(umbrick_view_tests PRIVATE umbrick_view Boost::headers)
+  target_compile_definitions(umbrick_view_tests PRIVATE UMBRICK_FUZZ_CORPUS="${PROJECT_SOURCE_DIR}/tests/fuzz/corpus")
   add_dependencies(umbrick_view_tests umbrick_tool)
 
   # The page: its logic by Node, and all of it in a browser.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <condition_variable>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "support/test_grids.h"
+#include "umbrick/render/suggest_transfer.h"
 #include "view/viewer.h"
 
 namespace umbrick::view {
@@ -28,6 +30,26 @@ inline Scene testScene() {
   scene.method = Method::lightVolume;
   scene.occlusion.ordinates.directions = 6;
   return scene;
+}
+
+/// Writes a volume of ascending bytes, of 9 x 8 x 7 voxels, as a MetaImage of one file.
+inline std::string metaImage() {
+  std::string file =
+      "ObjectType = Image\nNDims = 3\nDimSize = 9 8 7\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
+  for (int i = 0; i < 9 * 8 * 7; ++i) file += static_cast<char>(1 + i % 250);
+  return file;
+}
+
+/// Opens what pages ask for, without the options of the program.
+inline OpenedVolume openForTest(const std::filesystem::path& file, const std::function<void(double)>& progress) {
+  Scene scene = testScene();
+  if (file.extension() == ".json") scene = readScene(file, true);
+  if (scene.volume.file.empty()) scene.volume.file = file;
+  scene.volume.besideOnly = true;
+  const auto volume = std::make_shared<const Volume>(scene.volume, progress);
+  scene.volume = volume->source();
+  if (file.extension() != ".json") scene.transfer = suggestTransfer(*volume).transfer;
+  return {scene, volume, "chosen for " + file.filename().string()};
 }
 
 /// A page that notes down what it is sent.

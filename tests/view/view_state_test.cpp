@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "umbrick/core/error.h"
+#include "view/surface_value.h"
 #include "view/view_fixture.h"
 
 using namespace umbrick;
@@ -68,11 +69,11 @@ TEST_CASE("The size of a window is part of the scene, and no step", "[view]") {
   CHECK(state.canRedo());
 }
 
-TEST_CASE("Surfaces that nobody has named are one in the middle of the function", "[view]") {
+TEST_CASE("Surfaces that nobody has named are one where the values part best", "[view]") {
   ViewState state(testScene(), testVolume());
   state.edit({{"mode", "isosurface"}});
   REQUIRE(state.scene().surfaces.size() == 1);
-  CHECK(state.scene().surfaces[0].value == Approx(0.65));
+  CHECK(state.scene().surfaces[0].value == Approx(suggestSurface(testVolume()->grid())));
   state.edit(Json::parse(R"({"surfaces": [{"value": 0.5, "opacity": 0.4}, {"value": 0.7}]})"));
   CHECK(state.scene().surfaces.size() == 2);
 }

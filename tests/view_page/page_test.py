@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Uses the page of `umbrick view` in headless Chromium as a person would: looks, drags, undoes, clips, saves.
+"""Uses the page of `umbrick view` in headless Chromium as a person would: looks, drags, undoes, clips, compares, saves.
 
-page_test.py ADDRESS [--folder FOLDER] [--screenshots FOLDER] [--patience SECONDS]
+page_test.py ADDRESS [--folder FOLDER] [--screenshots FOLDER] [--patience SECONDS] [--only STEP ...]
 ADDRESS is what `umbrick view` prints. FOLDER is where the server was started, where saved files are looked for. One
 line is printed for each step. Exit status 0: all steps passed, 1: one failed, 77: there is no Chromium or no selenium.
 """
 # SPDX-License-Identifier: Apache-2.0
 import argparse
+import functools
 import os
 import shutil
 import sys
@@ -148,6 +149,19 @@ class Page:
                 summary.click()
                 time.sleep(0.3)  # what is in it is brought up to date when it has opened
 
+    def select_in(self, selector, choice):
+        select = self.find(selector)
+        self.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", select)
+        for option in select.find_elements(By.TAG_NAME, "option"):
+            if option.text == choice:
+                option.click()
+                return
+        raise AssertionError(f"{selector} has no choice '{choice}'")
+
+    def select(self, label, choice):
+        name = self.driver.find_element(By.XPATH, f"//label[text()='{label}']").get_attribute("for")
+        self.select_in(f"#{name}", choice)
+
     def press(self, text):
         for button in self.driver.find_elements(By.TAG_NAME, "button"):
             if button.text == text:
@@ -255,6 +269,125 @@ def clip(page):
     page.wait("the whole again", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
 
 
+def clip_by_handle(page):
+    """A face of the clip box is dragged in the picture, towards the face across from it."""
+    before = page.picture_at_rest()
+    page.unfold("Clipping")
+    page.driver.find_element(By.XPATH, "//label[text()='clip box']/..//input").click()
+    handle, other = page.find('#clip [data-face="z1"]'), page.find('#clip [data-face="z0"]')
+    page.wait("handles appear", handle.is_displayed)
+    value = float(page.labelled("z to").get_attribute("value"))
+    a, b = handle.rect, other.rect
+    page.drag(handle, (a["width"] / 2, a["height"] / 2),
+              (int(0.35 * (b["x"] - a["x"])) // 5 * 5, int(0.35 * (b["y"] - a["y"])) // 5 * 5))
+    page.wait("the face moves", lambda: float(page.labelled("z to").get_attribute("value")) < value)
+    low = float(page.labelled("z from").get_attribute("value"))
+    share = (value - float(page.labelled("z to").get_attribute("value"))) / (value - low)
+    assert 0.2 < share < 0.5, f"the face went {share} of the way, and the pointer 0.35 in the picture"
+    page.change("a dragged face", before)
+    page.shot("clip-handles")
+    page.find("#undo").click()
+    page.find("#undo").click()
+    page.wait("undo takes the box away", lambda: not handle.is_displayed())
+    page.wait("the whole again", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
+
+
+def shapes(page):
+    """A function of value and gradient magnitude, as shapes that come back with undo."""
+    before = page.picture_at_rest()
+    page.select("function of", "value and gradient")
+    plot = page.find("#shapes")
+    said = page.driver.find_element(By.XPATH, "//canvas[@id='shapes']/following-sibling::p")
+    page.wait("a first shape", lambda: said.text == "Shape 1 of 1, a rectangle")
+    one = page.change("a function of gradients", before)
+    page.shot("rectangle")
+    x, y = map(int, plot.get_attribute("data-corners").split()[0].split(","))
+    page.drag(plot, (x, y), (-60, 0))
+    page.wait("a corner moves", lambda: int(plot.get_attribute("data-corners").split(",")[0]) < x - 40)
+    page.change("a dragged corner", one)
+    page.press("Add triangle")
+    page.wait("two shapes", lambda: said.text == "Shape 2 of 2, a triangle")
+    page.picture_at_rest()
+    page.shot("triangle")
+    page.find("#undo").click()
+    page.wait("undo takes the triangle away", lambda: said.text == "Shape 1 of 1, a rectangle")
+    page.find("#redo").click()
+    page.wait("redo brings it back, a shape still", lambda: said.text == "Shape 2 of 2, a triangle")
+    plot.send_keys(Keys.DELETE)
+    page.wait("it is removed", lambda: said.text == "Shape 1 of 1, a rectangle")
+    page.select("function of", "value")
+    page.wait("the function of the value again", lambda: page.find("#transfer").is_displayed())
+    page.wait("the first picture", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
+
+
+def surfaces(page):
+    """The value of an isosurface is a line over the histogram, which is dragged."""
+    before = page.picture_at_rest()
+    page.unfold("Mode")
+    page.select_in('[data-path="mode"] select', "isosurface")
+    plot = page.find("#surfaces")
+    page.wait("a line over the histogram", lambda: plot.is_displayed() and plot.get_attribute("data-lines"))
+    surface = page.change("a surface", before)
+    page.shot("surface")
+    x = int(plot.get_attribute("data-lines").split()[0])
+    page.drag(plot, (x, 40), (50, 0))
+    page.wait("the line moves", lambda: int(plot.get_attribute("data-lines").split()[0]) > x + 30)
+    page.change("another value", surface)
+    page.shot("surface-dragged")
+    page.find("#undo").click()
+    page.find("#undo").click()
+    page.wait("undo brings the medium back", lambda: page.at_rest() and difference(page.pixels(), before) < CHANGED)
+
+
+def compare(page):
+    """The reference is computed beside the picture, and given up when the scene changes."""
+    page.unfold("Against the reference")
+    state = page.driver.find_element(By.XPATH, "//summary[text()='Against the reference']/..")
+    page.press("Compare with reference")
+    page.wait("it runs", lambda: state.get_attribute("data-state") == "running")
+    page.wait("three pictures", lambda: state.get_attribute("data-state") == "done"
+              and len(state.find_elements(By.CSS_SELECTOR, "figure img")) == 3)
+    verdict = state.find_element(By.CSS_SELECTOR, ".verdict").text
+    assert verdict.startswith("RMSE 0.0"), verdict
+    page.driver.execute_script("arguments[0].scrollIntoView({block: 'end'})", state)
+    page.shot("compared")
+    state.find_element(By.CSS_SELECTOR, "figure button").click()
+    page.wait("the pictures side by side", lambda: page.find("dialog.compared").is_displayed())
+    page.shot("compared-large")
+    page.find("dialog.compared button").click()
+    page.press("Compare with reference")
+    page.keys("1")
+    page.wait("another scene ends it", lambda: state.get_attribute("data-state") == "none"
+              and "the scene has changed" in state.text)
+    page.keys("r")
+    page.picture_at_rest()
+
+
+def open_files(page, folder):
+    """Another volume keeps the page: from the folder of the server, and sent from this side."""
+    if not folder or not os.path.isfile(os.path.join(folder, "below", "ball.mha")):
+        return
+    page.driver.execute_script("window.stayed = true")
+    page.find("#open").click()
+    entries = (By.CSS_SELECTOR, ".files button")
+    page.wait("a listing", lambda: [each for each in page.driver.find_elements(*entries) if each.text == "below/"])
+    page.shot("files")
+    page.press("below/")
+    page.wait("what is below", lambda: [each.text for each in page.driver.find_elements(*entries)] == ["ball.mha"])
+    page.press("ball.mha")
+    page.wait("the other volume", lambda: "ball.mha" in page.driver.title)
+    page.picture_at_rest()
+    page.shot("other-volume")
+    page.driver.find_element(By.CSS_SELECTOR, ".open-file input[type=file]").send_keys(
+        os.path.join(folder, "sent", "box.mha"))
+    page.wait("the volume that was sent", lambda: "box.mha" in page.driver.title)
+    page.picture_at_rest()
+    assert page.driver.execute_script("return window.stayed"), "the page was loaded anew"
+    before = page.pixels()
+    page.keys("5")
+    page.change("a key", before)
+
+
 def light(page):
     before = page.picture_at_rest()
     page.unfold("Light")
@@ -330,20 +463,28 @@ def no_console_errors(page):
     assert not errors, errors
 
 
+def name_of(step):
+    return getattr(step, "func", step).__name__
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("address")
     parser.add_argument("--folder")
     parser.add_argument("--screenshots")
     parser.add_argument("--patience", type=float, default=PATIENCE)
+    parser.add_argument("--only", nargs="+", help="these steps, besides the first")
     arguments = parser.parse_args()
     try:
         driver = start_chromium(1280, 800)
     except WebDriverException as error:
         print(f"skipped: Chromium does not start: {error.msg.splitlines()[0]}")
         return SKIPPED
-    steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, light, probe, pause,
-             lambda page: save(page, arguments.folder), refuse, help_list, narrow, no_console_errors]
+    steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, clip_by_handle, shapes, surfaces,
+             light, probe, pause, compare, functools.partial(save, folder=arguments.folder), refuse, help_list,
+             functools.partial(open_files, folder=arguments.folder), narrow, no_console_errors]
+    if arguments.only:
+        steps = [step for step in steps if name_of(step) in ["open_page", *arguments.only]]
     try:
         try:
             page = Page(driver, arguments.address, arguments.screenshots, arguments.patience)
@@ -351,7 +492,7 @@ def main():
             print(f"failed: {arguments.address} cannot be opened: {error.msg.splitlines()[0]}")
             return 1
         for step in steps:
-            name = "save" if step.__name__ == "<lambda>" else step.__name__
+            name = name_of(step)
             began = time.monotonic()
             try:
                 step(page)

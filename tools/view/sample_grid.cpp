@@ -19,4 +19,6 @@ std::optional<double> sampleAt(const ScalarGrid& grid, const glm::dvec3& world) 
   return openvdb::tools::BoxSampler::sample(accessor, openvdb::Vec3d(index.x, index.y, index.z));
 }
 
+std::uint64_t activeVoxels(const ScalarGrid& grid) { return grid.grid->activeVoxelCount(); }
+
 }  // namespace umbrick::view

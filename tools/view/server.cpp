@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/server.h"
 
+#include <algorithm>
 #include <array>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -13,7 +14,9 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
+#include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <random>
 #include <string_view>
@@ -35,11 +38,15 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
 using asio::ip::tcp;
-using Request = http::request<http::string_body>;
+using Request = http::request<http::empty_body>;
 using Response = http::response<http::string_body>;
 
 constexpr auto kPatience = std::chrono::seconds(20);  // for the rest of a request, and for a page to take an answer
-constexpr std::size_t kMostTexts = 1000;              // that wait for one page: it does not read any more
+constexpr auto kLongestUpload = std::chrono::minutes(10);
+constexpr std::size_t kMostTexts = 1000;  // that wait for one page: it does not read any more
+
+// The path of a file that a page sends begins so, behind the token.
+constexpr std::string_view kUpload = "upload/";
 
 std::string randomToken() {
   std::random_device random;
@@ -62,6 +69,19 @@ const char* mimeOf(std::string_view name) {
   if (name.ends_with(".html")) return "text/html; charset=utf-8";
   if (name.ends_with(".css")) return "text/css; charset=utf-8";
   return "text/javascript; charset=utf-8";
+}
+
+// Whether a Host is a name that every machine has for itself, with a port or without. A tunnel (ssh -L) ends at any
+// port of such a name; nobody can turn the name itself to another address.
+bool isLoopback(std::string_view host) {
+  for (const std::string_view name : {"localhost", "127.0.0.1", "[::1]"}) {
+    if (!host.starts_with(name)) continue;
+    const std::string_view port = host.substr(name.size());
+    const bool digits =
+        std::all_of(port.begin() + !port.empty(), port.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (port.empty() || (port.front() == ':' && port.size() > 1 && port.size() <= 6 && digits)) return true;
+  }
+  return false;
 }
 
 // A page that is connected. All but text() and frame() is of the thread that serves.
@@ -225,10 +245,19 @@ class ViewServer::Implementation : public std::enable_shared_from_this<Implement
     try {
       beast::flat_buffer buffer;
       for (bool more = true; more;) {
-        http::request_parser<http::string_body> parser;
-        parser.body_limit(0);
+        http::request_parser<http::empty_body> parser;
+        // The size of a body is looked at below, before any of it is read. Boost 1.74 takes no limit for a limit of 0.
+        parser.body_limit(std::numeric_limits<std::uint64_t>::max());
         stream.expires_after(kPatience);
-        co_await http::async_read(stream, buffer, parser, asio::use_awaitable);
+        co_await http::async_read_header(stream, buffer, parser, asio::use_awaitable);
+        if (isUpload(parser.get())) {
+          Response response = co_await takeUpload(stream, buffer, parser);
+          stream.expires_after(kPatience);
+          co_await http::async_write(stream, response, asio::use_awaitable);
+          co_await drain(stream);
+          break;
+        }
+        if (!parser.is_done()) break;  // nothing else has a body
         Request request = parser.release();
         if (websocket::is_upgrade(request) && mayConnect(request) && pages_ < kMostPages) {
           stream.expires_never();
@@ -259,10 +288,7 @@ class ViewServer::Implementation : public std::enable_shared_from_this<Implement
     const std::string ending = ":" + std::to_string(port());
     for (const std::string& name : {host_, std::string("localhost"), std::string("127.0.0.1"), std::string("[::1]")})
       if (host == name + ending) return true;
-    // A tunnel (ssh -L) ends at another port.
-    const std::size_t colon = host.rfind(':');
-    const std::string_view name = host.substr(0, colon);
-    return name == "localhost" || name == "127.0.0.1" || name == "[::1]";
+    return isLoopback(host);
   }
 
   // Returns what follows the token in a path; nothing where that is not ours.
@@ -286,13 +312,83 @@ class ViewServer::Implementation : public std::enable_shared_from_this<Implement
            headerOf(request, http::field::origin) == "http://" + std::string(host);
   }
 
-  Response answer(const Request& request) const {
-    Response response{http::status::ok, request.version()};
-    response.keep_alive(request.keep_alive());
+  // --- files that pages send ---
+
+  bool isUpload(const Request& request) const {
+    const std::optional<std::string> name = nameOf(request);
+    return request.method() == http::verb::post && name && name->starts_with(kUpload) && viewer_.opensFiles();
+  }
+
+  // Takes a file to a temporary place, piece by piece, and lets the viewer open it. One at a time: so there is never
+  // more than one of kMostUploadBytes on the disk.
+  asio::awaitable<Response> takeUpload(beast::tcp_stream& stream, beast::flat_buffer& buffer,
+                                       http::request_parser<http::empty_body>& head) {
+    const auto answered = [version = head.get().version()](http::status status, const std::string& why) {
+      Response response = plainResponse(status, version);
+      response.set(http::field::content_type, "text/plain; charset=utf-8");
+      response.keep_alive(false);
+      response.body() = why;
+      response.prepare_payload();
+      return response;
+    };
+    const std::string name = nameOf(head.get())->substr(kUpload.size());
+    const std::string_view host = headerOf(head.get(), http::field::host);
+    if (!isOurName(host) || headerOf(head.get(), http::field::origin) != "http://" + std::string(host))
+      co_return answered(http::status::forbidden, "not a page of this server");
+    const auto length = head.content_length();
+    if (!length) co_return answered(http::status::length_required, "its length is not stated");
+    if (*length > kMostUploadBytes)
+      co_return answered(http::status::payload_too_large, "larger than a page may send: open it by its path");
+    if (uploading_) co_return answered(http::status::conflict, "another file is on its way");
+    uploading_ = true;
+    const auto end = [this](void*) { uploading_ = false; };
+    const std::unique_ptr<void, decltype(end)> ending(this, end);
+    try {
+      auto file = std::make_shared<UploadedFile>(name);
+      http::request_parser<http::file_body> parser(std::move(head));
+      parser.body_limit(kMostUploadBytes);
+      beast::error_code failed;
+      parser.get().body().open(file->path().c_str(), beast::file_mode::write_new, failed);
+      if (failed) co_return answered(http::status::insufficient_storage, failed.message());
+      const auto until = std::chrono::steady_clock::now() + kLongestUpload;
+      while (!parser.is_done()) {
+        if (std::chrono::steady_clock::now() > until) co_return answered(http::status::request_timeout, "too slow");
+        stream.expires_after(kPatience);
+        co_await http::async_read_some(stream, buffer, parser, asio::redirect_error(asio::use_awaitable, failed));
+        // A disk that is full, for example, or a page that has gone.
+        if (failed) co_return answered(http::status::insufficient_storage, failed.message());
+      }
+      parser.get().body().close();
+      viewer_.upload(std::move(file));
+      co_return answered(http::status::ok, "opening " + name);
+    } catch (const Error& error) {
+      co_return answered(http::status::bad_request, error.what());
+    }
+  }
+
+  // Reads what is still on its way, for a little while: a connection that is closed before is reset, and the answer
+  // may be lost.
+  static asio::awaitable<void> drain(beast::tcp_stream& stream) {
+    boost::system::error_code ended;
+    stream.socket().shutdown(tcp::socket::shutdown_send, ended);
+    stream.expires_after(std::chrono::seconds(2));
+    std::array<char, 4096> rest{};
+    while (!ended)
+      co_await stream.async_read_some(asio::buffer(rest), asio::redirect_error(asio::use_awaitable, ended));
+  }
+
+  static Response plainResponse(http::status status, unsigned version) {
+    Response response{status, version};
     response.set(http::field::cache_control, "no-store");
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Referrer-Policy", "no-referrer");
     response.set("Cross-Origin-Resource-Policy", "same-origin");
+    return response;
+  }
+
+  Response answer(const Request& request) const {
+    Response response = plainResponse(http::status::ok, request.version());
+    response.keep_alive(request.keep_alive());
     response.set("Content-Security-Policy",
                  "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; connect-src 'self' "
                  "ws:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
@@ -328,6 +424,7 @@ class ViewServer::Implementation : public std::enable_shared_from_this<Implement
   asio::io_context io_{1};
   tcp::acceptor acceptor_;
   int connections_ = 0, pages_ = 0;
+  bool uploading_ = false;
 };
 
 ViewServer::ViewServer(Viewer& viewer, const ServerOptions& options)

@@ -2,7 +2,7 @@
 //
 // Whoever may open the port may not look without the token, which is part of every address. A page of another site
 // cannot connect either: requests need the server's own name (Host), against names that are turned to this machine
-// later, and upgrades its own page (Origin).
+// later, and upgrades and files its own page (Origin).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>

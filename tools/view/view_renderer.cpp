@@ -84,6 +84,24 @@ void ViewRenderer::show(const ResolvedScene& scene, bool moving) {
   changed_.notify_all();
 }
 
+void ViewRenderer::open(std::shared_ptr<const Volume> volume, const ResolvedScene& scene) {
+  const std::lock_guard lock(mutex_);
+  scene_ = scene;
+  moving_ = false;
+  ++wanted_;
+  tasks_.emplace_back([this, volume = std::move(volume)] {
+    drawer_.reset();  // looks at the volume before
+    volume_ = volume;
+    last_ = {};
+    lastScene_.reset();
+    lastFrame_.reset();
+    lastStatus_ = {};
+    draftScale_ = 1;
+    draftDirections_ = 0;
+  });
+  changed_.notify_all();
+}
+
 void ViewRenderer::rest() {
   const std::lock_guard lock(mutex_);
   moving_ = false;
@@ -307,6 +325,7 @@ void ViewRenderer::tell(ViewStatus status) {
     const std::lock_guard lock(mutex_);
     status.paused = paused_;
   }
+  status.targetError = goals_.targetError;
   lastStatus_ = status;
   sink_.status(lastStatus_);
 }

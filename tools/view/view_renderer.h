@@ -32,6 +32,7 @@ struct ViewFrame {
 struct ViewStatus {
   int samples = 0;                     // 0: a draft
   std::optional<ErrorEstimate> error;  // none: not known
+  double targetError = 0;              // at which samples end, or where they cannot lower what is left
   double ms = 0;                       // since the scene was changed last
   bool draft = false, done = false, paused = false;
   std::string text;  // for people: "done: error 0.004"
@@ -68,6 +69,8 @@ class ViewRenderer {
 
   /// Draws another scene; what is drawn of one before is given up. @param moving  more changes follow soon
   void show(const ResolvedScene& scene, bool moving);
+  /// Looks at another volume from now on; what is drawn of the one before is given up.
+  void open(std::shared_ptr<const Volume> volume, const ResolvedScene& scene);
   /// Nothing moves any more.
   void rest();
   /// Stops at the picture that there is, or goes on.

@@ -6,6 +6,7 @@
 
 #include "umbrick/core/error.h"
 #include "umbrick/render/suggest_transfer.h"
+#include "view/surface_value.h"
 
 namespace umbrick::view {
 namespace {
@@ -23,8 +24,6 @@ void refuseFiles(const Json& patch) {
   if (name != "auto" && std::find(presets.begin(), presets.end(), name) == presets.end())
     throw InvalidArgument("transfer: '" + name.substr(0, 80) + "' is no preset");
 }
-
-double middleOf(const Range& range) { return 0.5 * (static_cast<double>(range.min) + range.max); }
 
 }  // namespace
 
@@ -69,8 +68,10 @@ Scene ViewState::patched(const Json& patch) const {
     next.transfer = fitted(*next.transfer, *volume_);  // looks at the whole volume
   if (next.orbit) next.orbit = settledOrbit(*next.orbit, volume_->orientation());
   // A page that asks for surfaces sees one, whose value it can change.
-  if (next.mode == Mode::isosurface && next.surfaces.empty())
-    next.surfaces = {SceneSurface{volume_->grid().isLevelSet() ? 0.0 : middleOf(next.transfer->valueDomain())}};
+  if (next.mode == Mode::isosurface && next.surfaces.empty()) {
+    if (!surface_) surface_ = suggestSurface(volume_->grid());  // looks at the whole volume
+    next.surfaces = {SceneSurface{*surface_}};
+  }
   return next;
 }
 

@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,6 +61,7 @@ class ViewState {
   std::deque<Scene> undo_;
   std::vector<Scene> redo_;
   std::string step_;
+  mutable std::optional<double> surface_;  // suggestSurface(), once somebody has asked for it
 };
 
 }  // namespace umbrick::view

@@ -13,6 +13,7 @@
 #include "umbrick/image/png.h"
 #include "umbrick/render/suggest_transfer.h"
 #include "view/field_list.h"
+#include "view/gradient_histogram.h"
 #include "view/sample_grid.h"
 
 namespace umbrick::view {
@@ -20,8 +21,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-
-constexpr int kDeepest = 32;  // levels of objects and lists in a message
 
 Json vectorOf(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
@@ -47,6 +46,16 @@ Json aboutVolume(const Volume& volume) {
           {"bounds", {vectorOf(bounds.min), vectorOf(bounds.max)}}};
 }
 
+Json probed(const ViewProbe& probe, const Volume& volume) {
+  const auto value = probe.world ? sampleAt(volume.grid(), *probe.world) : std::nullopt;
+  return {{"type", "probe"},
+          {"x", probe.x},
+          {"y", probe.y},
+          {"value", value ? numberOrNull(*value) : Json()},
+          {"world", probe.world ? vectorOf(*probe.world) : Json()},
+          {"depth", probe.world ? Json(probe.depth) : Json()}};
+}
+
 template <class Value>
 Value field(const Json& message, const char* name) {
   try {
@@ -58,31 +67,22 @@ Value field(const Json& message, const char* name) {
 
 }  // namespace
 
-Json parseMessage(std::string_view text) {
-  if (text.size() > kMostMessageBytes)
-    throw InvalidArgument("message: longer than " + std::to_string(kMostMessageBytes));
-  const auto shallow = [](int depth, nlohmann::detail::parse_event_t, const Json&) {
-    if (depth > kDeepest) throw InvalidArgument("message: nested more than " + std::to_string(kDeepest) + " deep");
-    return true;
-  };
-  Json message;
-  try {
-    message = Json::parse(text, shallow);
-  } catch (const nlohmann::json::exception&) {
-    throw InvalidArgument("message: is no JSON");
-  }
-  if (!message.is_object() || !message.contains("type") || !message["type"].is_string())
-    throw InvalidArgument("message: has no type");
-  return message;
-}
-
 Viewer::Viewer(Scene scene, std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals,
-               fs::path folder)
+               fs::path folder, OpenVolume open)
     : state_(std::move(scene), volume), folder_(std::move(folder)), about_(aboutVolume(*volume)) {
   renderer_ = std::make_unique<ViewRenderer>(std::move(volume), engine, goals, sink());
+  comparison_ = std::make_unique<ReferenceComparison>([this](std::uint64_t number, const Json& news) {
+    const std::lock_guard lock(mutex_);
+    if (!comparison_->isCurrent(number)) return;  // was dropped meanwhile
+    compared_ = news;
+    compared_["type"] = "comparison";
+    toAll(compared_);
+  });
+  if (open) startOpening(std::move(open));
 }
 
-Viewer::~Viewer() { renderer_.reset(); }
+// The jobs end first: they use what is declared before them.
+Viewer::~Viewer() = default;
 
 ViewSink Viewer::sink() {
   const auto each = [this](const auto& call) {
@@ -105,6 +105,7 @@ ViewSink Viewer::sink() {
         {"standardError", known ? numberOrNull(status.error->statistical) : Json()},
         {"systematicError", known ? numberOrNull(status.error->systematic) : Json()},
         {"error", known ? numberOrNull(status.error->total()) : Json()},
+        {"targetError", status.targetError},
         {"ms", status.ms},
         {"draft", status.draft},
         {"done", status.done},
@@ -128,8 +129,14 @@ ViewSink Viewer::sink() {
 }
 
 Json Viewer::hello() const {
-  return {{"type", "hello"},  {"version", UMBRICK_VERSION},   {"engine", engine_},
-          {"volume", about_}, {"presets", transferPresets()}, {"fields", fieldList()}};
+  return {{"type", "hello"},
+          {"version", UMBRICK_VERSION},
+          {"engine", engine_},
+          {"volume", about_},
+          {"presets", transferPresets()},
+          {"fields", fieldList()},
+          {"folder", opening_ ? Json(asUtf8(opening_->folder().string())) : Json()},
+          {"mostUpload", kMostUploadBytes}};
 }
 
 // A scene of the state, and how to make its picture without this program's window.
@@ -164,6 +171,7 @@ void Viewer::join(const std::shared_ptr<ViewClient>& client) {
     renderer_->pause(false);
     renderer_->show(state_.resolved(), false);
   }
+  if (!compared_.is_null()) client->text(compared_.dump());
   renderer_->repeat();
 }
 
@@ -172,9 +180,11 @@ void Viewer::leave(const ViewClient& client) {
   std::erase_if(clients_, [&](const auto& one) { return one.get() == &client; });
   // Nobody looks: what is drawn now would be for nothing.
   renderer_->pause(clients_.empty());
+  if (clients_.empty()) dropComparison({});
 }
 
 void Viewer::show(bool moving) {
+  dropComparison("the scene has changed");
   toAll(sceneMessage());
   renderer_->show(state_.resolved(), moving);
 }
@@ -206,6 +216,18 @@ void Viewer::message(std::string_view text, const std::shared_ptr<ViewClient>& f
       probe(message, from);
     } else if (type == "save") {
       save(message, from);
+    } else if (type == "gradients") {
+      sendGradients(from);
+    } else if (type == "compare") {
+      compare();
+    } else if (type == "stopCompare") {
+      dropComparison("stopped");
+    } else if (type == "files") {
+      Json listing = opening().list(field<std::string>(message, "path"));
+      listing["type"] = "files";
+      from->text(listing.dump());
+    } else if (type == "open") {
+      opening().open(field<std::string>(message, "path"));
     } else {
       throw InvalidArgument("message: no type '" + printable(type.substr(0, 40)) + "'");
     }
@@ -214,22 +236,80 @@ void Viewer::message(std::string_view text, const std::shared_ptr<ViewClient>& f
   }
 }
 
-Json Viewer::probed(const ViewProbe& probe) const {
-  const auto value = probe.world ? sampleAt(state_.volume().grid(), *probe.world) : std::nullopt;
-  return {{"type", "probe"},
-          {"x", probe.x},
-          {"y", probe.y},
-          {"value", value ? numberOrNull(*value) : Json()},
-          {"world", probe.world ? vectorOf(*probe.world) : Json()},
-          {"depth", probe.world ? Json(probe.depth) : Json()}};
+void Viewer::compare() {
+  comparison_->start(state_.share(), state_.resolved(), *renderer_);
+  const Camera& camera = comparedScene(state_.resolved()).camera;
+  compared_ = {{"type", "comparison"}, {"state", "running"}, {"share", 0}, {"size", {camera.width, camera.height}}};
+  toAll(compared_);
+}
+
+void Viewer::dropComparison(const std::string& why) {
+  if (compared_.is_null()) return;
+  comparison_->drop();
+  compared_ = Json();
+  toAll({{"type", "comparison"}, {"state", "none"}, {"text", why}});
 }
 
 void Viewer::probe(const Json& message, const std::shared_ptr<ViewClient>& from) {
   const std::weak_ptr<ViewClient> waiting = from;
   const int x = field<int>(message, "x"), y = field<int>(message, "y");
-  renderer_->probe(x, y, [this, waiting](const ViewProbe& probe) {
-    if (const auto client = waiting.lock()) client->text(probed(probe).dump());
+  renderer_->probe(x, y, [volume = state_.share(), waiting](const ViewProbe& probe) {
+    if (const auto client = waiting.lock()) client->text(probed(probe, *volume).dump());
   });
+}
+
+void Viewer::sendGradients(const std::shared_ptr<ViewClient>& from) {
+  if (!gradients_.is_null()) return from->text(gradients_.dump());
+  surveying_->start([this, volume = state_.share(), low = about_["low"].get<double>(),
+                     high = about_["high"].get<double>()](std::uint64_t number) {
+    const GradientHistogram found = surveyGradients(volume->grid(), low, high);
+    const std::lock_guard lock(mutex_);
+    if (!surveying_->isCurrent(number)) return;
+    gradients_ = {{"type", "gradients"}, {"values", found.values}, {"gradients", found.gradients}, {"low", found.low},
+                  {"high", found.high},  {"most", found.most},     {"counts", found.counts}};
+    toAll(gradients_);
+  });
+}
+
+// --- other volumes ---
+
+FileOpening& Viewer::opening() const {
+  if (!opening_) throw InvalidArgument("open: this viewer shows one volume alone");
+  return *opening_;
+}
+
+void Viewer::upload(std::shared_ptr<UploadedFile> file) { opening().open(std::move(file)); }
+
+void Viewer::startOpening(OpenVolume open) {
+  FileOpening::Sink sink;
+  sink.news = [this](std::uint64_t number, Json news) {
+    const std::lock_guard lock(mutex_);
+    if (!opening_ || !opening_->isCurrent(number)) return;  // was dropped meanwhile
+    news["type"] = "opening";
+    toAll(news);
+  };
+  sink.opened = [this](std::uint64_t number, OpenedVolume opened, const std::string& name) {
+    take(number, std::move(opened), name);
+  };
+  opening_ = std::make_unique<FileOpening>(folder_, std::move(open), std::move(sink));
+}
+
+void Viewer::take(std::uint64_t number, OpenedVolume opened, const std::string& name) {
+  // What looks at all voxels is done while pages still look at the volume before.
+  ViewState state(std::move(opened.scene), opened.volume);
+  Json about = aboutVolume(*opened.volume);
+  about["file"] = asUtf8(name);
+  const std::lock_guard lock(mutex_);
+  if (!opening_ || !opening_->isCurrent(number)) return;
+  dropComparison("another volume is shown");
+  state_ = std::move(state);
+  about_ = std::move(about);
+  surveying_->drop();
+  gradients_ = Json();
+  renderer_->open(opened.volume, state_.resolved());
+  toAll(hello());
+  toAll(sceneMessage());
+  toAll({{"type", "opening"}, {"state", "done"}, {"name", asUtf8(name)}, {"text", asUtf8(opened.chosen)}});
 }
 
 // A page names a file in the folder and nothing else: no other folder, nothing hidden, nothing that is there already.

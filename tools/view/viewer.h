@@ -6,9 +6,12 @@
 //   {"type": "rest"}  {"type": "undo"}  {"type": "redo"}  {"type": "reset"}  {"type": "pause"}  {"type": "resume"}
 //   {"type": "shown", "frame": n}                a frame is on the screen: the next one may be sent
 //   {"type": "probe", "x": px, "y": px}          from the upper left of a picture of the scene's size
+//   {"type": "gradients"}                        asks for the histogram of value and gradient magnitude
+//   {"type": "compare"}  {"type": "stopCompare"}  with the reference, see ReferenceComparison
+//   {"type": "files", "path": "..."}  {"type": "open", "path": "..."}   of the folder of the server, see OpenFolder
 //   {"type": "save", "what": "picture" | "scene", "name": "...", "size": [w, h], "samples": n}
-// To pages: hello, scene, status, probe, saved, note, error; and frames, which are binary: four bytes with the length
-// of a JSON text, little-endian, that text, and the bytes of an image.
+// To pages: hello, scene, status, probe, comparison, gradients, files, opening, saved, note, error; and frames, which
+// are binary: four bytes with the length of a JSON text, little-endian, that text, and the bytes of an image.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
@@ -20,13 +23,14 @@
 #include <string_view>
 #include <vector>
 
+#include "view/file_opening.h"
+#include "view/latest_job.h"
+#include "view/page_message.h"
+#include "view/reference_comparison.h"
 #include "view/view_renderer.h"
 #include "view/view_state.h"
 
 namespace umbrick::view {
-
-/// Longest message of a page, bytes. A transfer function of some ten thousand points is shorter.
-inline constexpr std::size_t kMostMessageBytes = 1 << 20;
 
 /// A page that is connected. Its functions may be called by any thread.
 class ViewClient {
@@ -37,21 +41,22 @@ class ViewClient {
   virtual void frame(const std::shared_ptr<const ViewFrame>& frame) = 0;
 };
 
-/// Reads a message of a page. @throw InvalidArgument  no object with a type, or too deeply nested
-nlohmann::ordered_json parseMessage(std::string_view text);
-
 class Viewer {
  public:
   /// @param scene   with a transfer function, as openScene() completes it
-  /// @param folder  where pictures and scenes are saved
+  /// @param folder  where pictures and scenes are saved, and from which files are opened
+  /// @param open    opens other volumes; none: there is this one alone
   Viewer(Scene scene, std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals,
-         std::filesystem::path folder);
+         std::filesystem::path folder, OpenVolume open = {});
   ~Viewer();
 
   void join(const std::shared_ptr<ViewClient>& client);
   void leave(const ViewClient& client);
   /// Does what a message asks for. What is wrong with it is said to the page that sent it.
   void message(std::string_view text, const std::shared_ptr<ViewClient>& from);
+  /// Shows a file that a page has sent.
+  void upload(std::shared_ptr<UploadedFile> file);
+  bool opensFiles() const { return opening_ != nullptr; }
 
  private:
   using Json = nlohmann::ordered_json;
@@ -61,7 +66,12 @@ class Viewer {
   void show(bool moving);
   void probe(const Json& message, const std::shared_ptr<ViewClient>& from);
   void save(const Json& message, const std::shared_ptr<ViewClient>& from);
-  Json probed(const ViewProbe& probe) const;
+  void compare();
+  void sendGradients(const std::shared_ptr<ViewClient>& from);
+  void dropComparison(const std::string& why);
+  void startOpening(OpenVolume open);
+  void take(std::uint64_t number, OpenedVolume opened, const std::string& name);
+  FileOpening& opening() const;
   std::filesystem::path place(const std::string& name, const std::vector<std::string>& endings) const;
   ViewSink sink();
 
@@ -70,8 +80,13 @@ class Viewer {
   std::string engine_;
   std::vector<std::shared_ptr<ViewClient>> clients_;
   std::filesystem::path folder_;
-  Json about_;  // what hello says of the volume
+  Json about_;      // what hello says of the volume
+  Json gradients_;  // the histogram of value and gradient magnitude; null: nobody has asked for it
+  Json compared_;   // the last message on the comparison; null: there is none
   std::unique_ptr<ViewRenderer> renderer_;
+  std::unique_ptr<ReferenceComparison> comparison_;
+  std::unique_ptr<FileOpening> opening_;
+  std::unique_ptr<LatestJob> surveying_ = std::make_unique<LatestJob>();
 };
 
 }  // namespace umbrick::view

@@ -215,3 +215,37 @@ export function toView(axes, world) { return [dot(world, axes.right), dot(world,
 export function toWorld(axes, view) {
   return add(add(scale(axes.right, view[0]), scale(axes.up, view[1])), scale(axes.forward, -view[2]));
 }
+
+/// Returns where a point of the world is in the picture: [x, y] from the centre to the right and up, in heights of the
+/// picture, as pointers are; null behind the eye.
+/// @param view  of Session.view()
+export function project({ camera, resolved, axes }, point) {
+  const offset = subtract(point, resolved.eye);
+  const depth = dot(offset, axes.forward);
+  if (!isPerspective(camera))
+    return [dot(offset, axes.right) / resolved.viewHeight, dot(offset, axes.up) / resolved.viewHeight];
+  const nearest = 1e-6 * length(subtract(resolved.lookAt, resolved.eye));
+  if (depth <= nearest) return null;
+  const height = 2 * depth * Math.tan(0.5 * resolved.fov * kDegree);
+  return [dot(offset, axes.right) / height, dot(offset, axes.up) / height];
+}
+
+/// Returns how far a point has to go along a direction, in lengths of the direction, so that it is seen as near as
+/// possible to a place of the picture.
+export function travelTo(view, point, direction, [x, y]) {
+  const kStep = 1e-3;
+  let t = 0;
+  // Newton's method: a straight line is seen as a straight line, on which places are a smooth function of t.
+  for (let i = 0; i < 12; ++i) {
+    const at = project(view, add(point, scale(direction, t)));
+    const next = project(view, add(point, scale(direction, t + kStep)));
+    if (!at || !next) break;
+    const slope = [(next[0] - at[0]) / kStep, (next[1] - at[1]) / kStep];
+    const square = slope[0] ** 2 + slope[1] ** 2;
+    if (square < 1e-12) break;  // towards the eye: nothing is seen of the way
+    const change = ((x - at[0]) * slope[0] + (y - at[1]) * slope[1]) / square;
+    t += clamp(change, -1, 1);
+    if (Math.abs(change) < 1e-9) break;
+  }
+  return t;
+}

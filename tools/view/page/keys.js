@@ -58,6 +58,24 @@ export const kKeyList = [
       ["Page up, Page down", "choose the point before, after"],
     ]
   ],
+  [
+    "Function of value and gradient",
+    [
+      ["drag a corner, a shape", "changes it, moves it"],
+      ["N, T", "add a rectangle, a triangle"],
+      ["right click, Delete", "remove a shape"],
+      ["arrow keys; with Shift", "move the chosen shape; finely"],
+      ["Page up, Page down", "choose the shape before, after"],
+    ]
+  ],
+  [
+    "Clip box, isosurfaces",
+    [
+      ["drag a handle in the picture", "moves a face of the clip box"],
+      ["drag a line of the histogram", "changes the value of a surface"],
+      ["double click, right click there", "add, remove a surface"],
+    ]
+  ],
 ];
 
 const isText = (target) =>

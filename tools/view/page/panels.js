@@ -3,6 +3,7 @@
 import {backgroundPanel} from "./background_panel.js";
 import {kAxisViews, orbitTo, toWorld} from "./camera.js";
 import {clipPanel} from "./clip_panel.js";
+import {comparePanel} from "./compare_panel.js";
 import {flagRow} from "./controls.js";
 import {button, element, section} from "./dom.js";
 import {errorChart} from "./error_chart.js";
@@ -62,7 +63,8 @@ export function buildPanels(panel, session, picture, notices) {
   const light = [...groups.keys()].indexOf("Light") + 1;
   if (light > 1) sections.splice(1, 0, ...sections.splice(light, 1));
   sections.splice(
-      2, 0, keep(clipPanel(session)), keep(backgroundPanel(session)), section("Error against time", true, chart.node));
+      2, 0, keep(clipPanel(session)), keep(backgroundPanel(session)), section("Error against time", true, chart.node),
+      comparePanel(session));
   const surfaces = surfacePanel(session);
   sections.splice(1, 0, keep(surfaces));
   sections.push(keep(savePanel(session, note)), infoPanel(session));

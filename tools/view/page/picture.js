@@ -71,6 +71,7 @@ export class Picture {
     const factor = Math.min(clientWidth / size[0], clientHeight / size[1]);
     this.canvas.style.width = `${size[0] * factor}px`;
     this.canvas.style.height = `${size[1] * factor}px`;
+    this.onFit?.();
   }
 
   windowChanged_() {

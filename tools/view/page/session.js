@@ -24,6 +24,26 @@ export class Session {
     for (const listener of this.listeners_[event] ?? []) listener(value);
   }
 
+  /// Calls `build` and returns what it returns, and a function that takes away all listeners that it has added.
+  collect(build) {
+    const before = Object.fromEntries(Object.entries(this.listeners_).map(([event, list]) => [event, new Set(list)]));
+    const built = build();
+    const added = Object.entries(this.listeners_)
+                      .map(([event, list]) => [event, new Set(list.filter((each) => !before[event]?.has(each)))]);
+    const remove = () => {
+      for (const [event, listeners] of added)
+        this.listeners_[event] = this.listeners_[event].filter((each) => !listeners.has(each));
+    };
+    return [built, remove];
+  }
+
+  /// Forgets the scene: the server shows another volume.
+  forget() {
+    this.pacer_.reset();
+    Object.assign(this, { scene: null, firstScene: null, served: null, orbitFrame_: null });
+    Object.assign(this, { moving_: false, doubtful_: false });
+  }
+
   /// Takes a message of the server.
   receive(message) {
     if (message.type === "hello") this.hello = message;
@@ -96,6 +116,12 @@ export class Session {
     this.moving_ = false;
     this.send_(message);
   }
+
+  /// Asks for the histogram of value and gradient magnitude.
+  askGradients() { this.send_({ type: "gradients" }); }
+
+  /// Asks what is in a folder below that of the server.
+  files(path) { this.send_({ type: "files", path }); }
 
   /// Asks what lies at a pixel. It is no command, since edits need not go first.
   probe(x, y) { this.send_({ type: "probe", x, y }); }

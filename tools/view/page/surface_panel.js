@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {numberRow} from "./controls.js";
 import {button, element, section} from "./dom.js";
+import {surfacePlot} from "./surface_plot.js";
 
 /// Returns { node, update() }. The section is there in that mode alone.
 export function surfacePanel(session) {
@@ -15,6 +16,7 @@ export function surfacePanel(session) {
   const changed = (index, change) =>
       ({ surfaces: surfaces().map((surface, i) => (i === index ? {...surface, ...change } : surface)) });
   const list = element("div", {});
+  const plot = surfacePlot(session, surfaces, changed);
   let rows = [];
 
   const rowsOf = (index) => ({
@@ -45,13 +47,14 @@ export function surfacePanel(session) {
       }),
       "between the values of the volume");
   const remove = button("Remove the first", () => session.edit({ surfaces: surfaces().slice(1) }), "of several");
-  const node = section("Isosurfaces", true, list, element("div", { className: "buttons" }, add, remove));
+  const node = section("Isosurfaces", true, plot.node, list, element("div", { className: "buttons" }, add, remove));
   return {
     node,
     update: () => {
       node.hidden = session.scene.mode !== "isosurface";
       if (rows.length !== surfaces().length) build(surfaces().length);
       remove.disabled = surfaces().length < 2;
+      plot.update();
       surfaces().forEach((surface, i) => {
         rows[i].value.update(surface.value);
         rows[i].opacity.update(surface.opacity ?? 1);

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {movedRange, shareOfSigma, sigmaOfShare, sigmaTop, wholeRange, zoomedRange} from "./plot_axes.js";
 import {pointsOf, pointsPatch, shifted, unitOffset, withAdded, withoutPoint, withPoint} from "./transfer.js";
-import {drawLattice, drawTransferPlot, isOver, plotArea} from "./transfer_plot.js";
+import {drawTransferPlot, isOver, plotArea} from "./transfer_plot.js";
 
 const kGrip = 14;    // pixels around a point in which it is taken
 const kStep = 0.01;  // of the axis, by an arrow key
@@ -111,7 +111,7 @@ export class TransferEditor {
   draw() {
     const { hello, scene } = this.session_;
     if (!hello || !scene || this.canvas.clientWidth === 0) return;
-    if (scene.transfer?.gradients) return drawLattice(this.canvas, scene.transfer);
+    if (scene.transfer?.gradients) return;  // of a function of gradients there is another plot
     const points = this.points;
     this.top_ ??= points ? sigmaTop(points) : 1;
     const places = points && this.places_(points);

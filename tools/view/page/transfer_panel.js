@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import {choiceRow, colourRow, flagRow, numberInput, row} from "./controls.js";
 import {button, element, newId, section} from "./dom.js";
+import {replacingPatch} from "./merge_patch.js";
+import {shapePanel} from "./shape_panel.js";
 import {loadedPatch, scaled, windowed, withPoint} from "./transfer.js";
 import {TransferEditor} from "./transfer_editor.js";
 
 const kPick = "choose ...";
+const kKinds = ["value", "value and gradient"];
 
 // The chosen point in numbers. @return { node, update(points) }
 function pointControls(session, editor) {
@@ -90,12 +93,12 @@ function sourceControls(session, editor, problem) {
     }
     file.value = "";
   });
+  const showAll = button("Show all", () => editor.showAll(), "undoes the zoom on the values");
   const buttons = element(
       "div", { className: "buttons" },
       button("Auto", () => session.edit({ transfer: "auto" }), "a function that fits the volume"),
-      button("Load ...", () => file.click(), "a transfer function, or a colour map exported by ParaView (JSON)"),
-      button("Show all", () => editor.showAll(), "undoes the zoom on the values"));
-  return element("div", {}, presets.node, buttons, file);
+      button("Load ...", () => file.click(), "a transfer function, or a colour map exported by ParaView (JSON)"), showAll);
+  return { node: element("div", {}, presets.node, buttons, file), showAll };
 }
 
 export function transferPanel(session, problem) {
@@ -109,19 +112,32 @@ export function transferPanel(session, problem) {
   });
   const editor = new TransferEditor(canvas, session, () => update());
   const point = pointControls(session, editor), whole = wholeControls(session, editor, problem);
-  const lattice = element("p", {
-    className: "quiet",
-    textContent: "This is a function of value (to the right) and gradient magnitude (up). It is shown, not edited. " +
-        "A preset or Auto takes its place.",
+  const sources = sourceControls(session, editor, problem), shapes = shapePanel(session);
+  // The function of the value alone that was there last, so that the way back does not lose it.
+  let last = null;
+  const back = () => (last ? { transfer: replacingPatch(session.scene.transfer, last) } : { transfer: "auto" });
+  const kind = choiceRow({
+    label: "function of",
+    help: "the value alone, or value and gradient magnitude, by which surfaces are told from what lies between them",
+    choices: kKinds,
+    commit: (name) => {
+      if (name === kKinds[0]) return session.edit(back());
+      shapes.add("rectangle");
+      update();  // the function changes when its gradients are known
+    },
   });
   const update = () => {
-    const points = editor.points;
-    lattice.hidden = !session.scene?.transfer?.gradients;
+    const { points } = editor, lattice = Boolean(session.scene?.transfer?.gradients);
+    kind.update(kKinds[lattice ? 1 : 0]);
+    shapes.node.hidden = !lattice;
+    canvas.hidden = sources.showAll.hidden = lattice;
     point.node.hidden = whole.node.hidden = !points;
+    if (lattice) shapes.update();
     if (!points) return;
+    last = session.scene.transfer;
     point.update(points);
     whole.update(points);
   };
   return section(
-      "Transfer function", true, canvas, lattice, sourceControls(session, editor, problem), point.node, whole.node);
+      "Transfer function", true, kind.node, canvas, shapes.node, sources.node, point.node, whole.node);
 }

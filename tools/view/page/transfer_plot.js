@@ -21,7 +21,19 @@ const kMargin = 10;  // at the other sides, so that points at the ends can be gr
 export const plotArea = (width, height) =>
     ({left: kMargin, top: kMargin, width: width - 2 * kMargin, height: height - kMargin - kFoot});
 
-function drawBars(context, area, { histogram, low, high }, range) {
+/// Makes a canvas as fine as the screen and clears it. @return its context, in CSS pixels
+export function startPlot(canvas) {
+  const ratio = window.devicePixelRatio || 1;
+  Object.assign(
+      canvas, { width: Math.round(canvas.clientWidth * ratio), height: Math.round(canvas.clientHeight * ratio) });
+  const context = canvas.getContext("2d");
+  context.scale(ratio, ratio);
+  context.font = "11px system-ui, sans-serif";
+  return context;
+}
+
+/// Draws the histogram as bars of log counts over a range of values.
+export function drawBars(context, area, { histogram, low, high }, range) {
   const most = Math.log1p(Math.max(...histogram)), width = (high - low) / histogram.length;
   const perValue = area.width / (range[1] - range[0]);
   context.fillStyle = kColours.bars;
@@ -32,7 +44,8 @@ function drawBars(context, area, { histogram, low, high }, range) {
   });
 }
 
-function drawNumbers(context, area, range) {
+/// Draws round numbers below the plot.
+export function drawNumbers(context, area, range) {
   context.fillStyle = kColours.text;
   context.textAlign = "center";
   context.textBaseline = "bottom";
@@ -85,11 +98,8 @@ function drawPoints(context, area, places, points, chosen) {
 
 /// @param plot  { points, places, chosen, range, top, logarithmic, volume }; points may be null
 export function drawTransferPlot(canvas, plot) {
-  const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
-  Object.assign(canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) });
-  const context = canvas.getContext("2d"), area = plotArea(width, height);
-  context.scale(ratio, ratio);
-  context.font = "11px system-ui, sans-serif";
+  const width = canvas.clientWidth, height = canvas.clientHeight;
+  const context = startPlot(canvas), area = plotArea(width, height);
   context.save();
   context.beginPath();
   context.rect(area.left, 0, area.width, height);
@@ -101,27 +111,4 @@ export function drawTransferPlot(canvas, plot) {
   context.fillStyle = kColours.grid;
   context.fillRect(area.left, area.top + area.height, area.width, 1);
   if (plot.points) drawPoints(context, area, plot.places, plot.points, plot.chosen);
-}
-
-/// Draws a function of value (to the right) and gradient magnitude (up) as a map: colours by sigma_t.
-export function drawLattice(canvas, {values, gradients, albedo, sigma_t}) {
-  const width = canvas.clientWidth, height = canvas.clientHeight;
-  Object.assign(canvas, { width, height });
-  const context = canvas.getContext("2d"), area = plotArea(width, height);
-  const most = Math.max(...sigma_t) || 1;
-  const nearest = (list, share) => {
-    const at = list[0] + share * (list.at(-1) - list[0]);
-    return list.reduce((best, x, i) => (Math.abs(x - at) < Math.abs(list[best] - at) ? i : best), 0);
-  };
-  const kCell = 4;  // pixels
-  for (let y = 0; y < area.height; y += kCell)
-    for (let x = 0; x < area.width; x += kCell) {
-      const i = nearest(gradients, 1 - y / area.height) * values.length + nearest(values, x / area.width);
-      context.globalAlpha = Math.sqrt(sigma_t[i] / most);
-      context.fillStyle = hexOfLinear(albedo[i]);
-      context.fillRect(area.left + x, area.top + y, kCell, kCell);
-    }
-  context.globalAlpha = 1;
-  context.font = "11px system-ui, sans-serif";
-  drawNumbers(context, area, [values[0], values.at(-1)]);
 }

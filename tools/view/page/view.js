@@ -1,7 +1,9 @@
 // The page of `umbrick view`: connects what the server says with what is shown, and what is done with what is sent.
 // SPDX-License-Identifier: Apache-2.0
+import {ClipHandles} from "./clip_handles.js";
 import {Connection} from "./connection.js";
 import {EditPacer} from "./edit_pacer.js";
+import {filesDialog} from "./files_dialog.js";
 import {helpDialog} from "./help_dialog.js";
 import {Keys} from "./keys.js";
 import {Notices} from "./notices.js";
@@ -21,10 +23,13 @@ const pacer = new EditPacer(send, (step) => requestAnimationFrame(step), () => p
 const session = new Session(send, pacer);
 const picture = new Picture(at("stage"), at("picture"), session, problem);
 new PictureInput(picture, session);
+const clipHandles = new ClipHandles(at("clip"), picture, session);
+picture.onFit = () => session.scene && clipHandles.update();
 
 const help = helpDialog();
-document.body.append(help);
-let paused = false, panels = null, sizeWasReset = false, refreshDue = false;
+const files = filesDialog(session, notices);
+document.body.append(help, ...files.nodes);
+let paused = false, panels = null, closePanels = null, sizeWasReset = false, refreshDue = false;
 const actions = {
   undo: () => session.command({ type: "undo" }),
   redo: () => session.command({ type: "redo" }),
@@ -34,21 +39,32 @@ const actions = {
   },
   pause: () => session.command({ type: paused ? "resume" : "pause" }),
   help: () => (help.open ? help.close() : help.showModal()),
+  open: () => files.show(),
 };
 const keys = new Keys(session, actions);
 for (const [name, action] of Object.entries(actions)) at(name).addEventListener("click", action);
 at("turntable").addEventListener("click", () => keys.turn(!keys.turning));
 session.on("turntable", (on) => at("turntable").setAttribute("aria-pressed", on));
 
-let greeting = "";
+let greeting = "", shownVolume = "";
 session.on("hello", (hello) => {
   const { volume, version } = hello;
-  // After a lost connection the same server greets in the same words. Another volume needs another page.
-  const words = JSON.stringify({...hello, engine: "" });
+  // After a lost connection the same server greets in the same words. Another program needs another page.
+  const words = JSON.stringify({...hello, engine: "", volume: null });
   if (greeting && words !== greeting) location.reload();
   greeting = words;
+  const about = JSON.stringify(volume);
+  if (shownVolume && about !== shownVolume) {
+    // Another volume keeps the page: its scene follows, and the panels are made for it.
+    closePanels?.();
+    panels = null;
+    keys.turn(false);
+    session.forget();
+  }
+  shownVolume = about;
   document.title = `${volume.file.split("/").at(-1)} - Umbrick`;
   at("program").title = `Umbrick ${version}`;
+  at("open").hidden = !hello.folder;
 });
 session.on("scene", ({ canUndo, canRedo }) => {
   at("undo").disabled = !canUndo;
@@ -59,15 +75,17 @@ session.on("scene", ({ canUndo, canRedo }) => {
 });
 const refresh = () => {
   refreshDue = false;
+  if (!panels || !session.scene) return;  // of a volume that is not shown any more
   panels.update();
   const view = session.view();
+  clipHandles.update();
   drawTriad(at("axes"), view.axes);
   drawScaleBar(at("scale"), view, at("picture").clientHeight);
 };
 session.on("change", () => {
-  if (!session.hello) return;
+  if (!session.hello || !session.scene) return;
   if (!panels) {
-    panels = buildPanels(at("panel"), session, picture, notices);
+    [panels, closePanels] = session.collect(() => buildPanels(at("panel"), session, picture, notices));
     session.emit("change");
     picture.askForWindowSize();
   }

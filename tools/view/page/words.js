@@ -29,13 +29,22 @@ export function probeWords(probe, unit) {
 }
 
 /// Keeps the errors of the present picture over time. A picture begins anew where its time or samples fall.
-export function withErrorPoint(history, {ms, error, samples, draft}) {
+export function withErrorPoint(history, {ms, error, standardError, samples, draft}) {
   const last = history.at(-1);
   const begins = draft || (last && (ms < last.ms || samples < last.samples));
   const kept = begins ? [] : history;
   if (draft || error === null || error === undefined || !(error > 0)) return kept;
   if (kept.at(-1)?.samples === samples) return kept;
-  return [...kept, { ms, error, samples }].slice(-2000);
+  return [...kept, { ms, error, standardError, samples }].slice(-2000);
+}
+
+/// Says what the chart shows: "done: error 0.004 after 2.3 s, 16 samples".
+export function chartWords(history, status) {
+  const last = history.at(-1);
+  if (!last) return "No error is known yet";
+  const begin = status?.done ? "done: error" : "error";
+  const target = status?.targetError > 0 && last.error > status.targetError ? `, target ${shortNumber(status.targetError, 2)}` : "";
+  return `${begin} ${shortNumber(last.error, 2)} after ${shortNumber(last.ms / 1000, 2)} s, ${last.samples} samples${target}`;
 }
 
 /// Returns the name to propose after a file was saved, since the server replaces none: a.png, a-2.png, a-3.png.
