@@ -170,7 +170,7 @@ void GlLightSweep::makeTables(const Volume& volume) {
   fill(table_, kExtinctionBuffer, numbers.size() * sizeof(float), numbers.data());
   const std::vector<std::uint8_t> shown(volume.positions.size(), 1);
   // The key of a table counts parts of bricks that show something, which are always whole ones here.
-  slots_.fill(gl, volume.bricks, {volume.positions, volume.cells, glm::ivec3(1), shown, 0, volume.textures});
+  slots_.fill(gl, volume.bricks, {volume.positions, volume.cells, glm::ivec3(1), shown, {}, 0, true, volume.textures});
   std::vector<glm::ivec4> places;
   for (const std::int32_t position : volume.positions) {
     const BrickAtlas::Slot slot = volume.bricks.slot(position);
