@@ -211,7 +211,8 @@ def add_and_remove_point(page):
     plot = page.find("#transfer")
 
     def count():
-        return int(page.find("#panel p[aria-live]").text.split()[-1])
+        shown = [p.text for p in page.driver.find_elements(By.CSS_SELECTOR, "#panel p[aria-live]") if p.is_displayed()]
+        return int(shown[0].split()[-1])
     points = count()
     plot.send_keys(Keys.HOME, "n")
     page.wait("a point more", lambda: count() == points + 1)
@@ -452,6 +453,11 @@ def narrow(page):
         page.driver.set_window_size(width, height)
         page.wait("the picture takes the window's size", lambda: page.find("#picture").rect["width"] <= width)
         page.picture_at_rest()
+        size = "const c = document.getElementById('picture'); return [c.width, c.height]"
+        rest = page.driver.execute_script(size)
+        for _ in range(4):  # the words below the picture must not change its size
+            time.sleep(0.5)
+            assert page.driver.execute_script(size) == rest, "the picture at rest changes its size"
         fits = page.driver.execute_script("return document.documentElement.scrollWidth <= innerWidth")
         assert fits, f"a window of {width} x {height} has to be scrolled sideways"
         page.shot(f"{width}x{height}")

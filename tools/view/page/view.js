@@ -96,7 +96,7 @@ session.on("change", () => {
 session.on("status", (status) => {
   paused = status.paused;
   at("pause").textContent = paused ? "Go on" : "Pause";
-  at("status").textContent = statusWords(status);
+  at("status").textContent = at("status").title = statusWords(status);
   Object.assign(at("status").dataset, { draft: status.draft, done: status.done, samples: status.samples });
 });
 session.on("probe", (probe) => (at("probe").textContent = probeWords(probe, session.hello?.volume.unit)));
