@@ -99,6 +99,17 @@ TEST_CASE("Every shader that is not an include compiles by itself, or says where
                                           {"kDirections", 16},
                                           {"kWindows", 17},
                                           {"kColoured", perspective},
+                                          {"kShaded", perspective},
+                                          {"kShadingLights", planes > 0 ? 2 : 0},
+                                          {"kProjection", quadrature},
+                                          {"kPerVoxel", 1 + perspective},
+                                          {"kSurfaces", 1 + quadrature},
+                                          {"kLossy", planes > 0},
+                                          {"kPlanes", planes},
+                                          {"kContinued", perspective},
+                                          {"kTableSteps", 4096},
+                                          {"kTableEnds", 4},
+                                          {"kCodes", planes > 0 ? 65535 : 0},
                                           {"kFixedPoint", planes > 0}};
           if (name.ends_with(".comp")) {
             const GlProgram program = GlProgram::compute(context->gl(), name, constants);
