@@ -92,6 +92,7 @@ struct Frame {
   PassClock clock;
   RenderSample sample;
   std::optional<StackAim> stack;  // of the slices; none: they lie across the view
+  bool first = true;              // there are no slices of another stack before these
   SweepProgress progress;
 
   glm::ivec2 size() const { return {camera.width, camera.height}; }

@@ -15,6 +15,7 @@ class LightVolumePass : public SlicePass {
   LightVolumePass(ResidentVolume& volume, LightSweep sweep) : light_(volume, sweep) {}
 
   void begin(Frame& frame, std::span<const SweepRun> runs) override {
+    if (frame.first) light_.beginPicture();
     light_.update(frame.scene, frame.sample, frame.view, frame.planes, frame.transfer, frame.bricks);
     runs_.assign(runs.begin(), runs.end());
     const glm::dvec3 whole = light_.whole();

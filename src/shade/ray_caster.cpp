@@ -136,6 +136,7 @@ class RayCaster::Implementation {
     checkPlanes(planes.size());
     stats_.geometryMs = geometry.elapsedMs();
     const bool lit = occlusionMethod(scene).has_value();
+    light_.beginPicture();
     if (lit) light_.update(scene, sample, view, planes, *held_.transfer, *held_.bricks);
     held_.targets->clear(gl_);
     const IndexBox medium = mediumBox(scene.transfer, volume_.domain);

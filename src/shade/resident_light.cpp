@@ -39,7 +39,7 @@ void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sampl
     if (computed || swept_) ++version_;
     swept_.reset();
   }
-  ms_ = computed ? watch.elapsedMs() : 0;
+  ms_ += computed ? watch.elapsedMs() : 0;
 }
 
 // Computes light on OpenGL, unless the textures have it. @return whether it was computed

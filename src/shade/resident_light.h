@@ -28,6 +28,8 @@ class ResidentLight {
   /// @throw InvalidArgument  as LightVolume::update
   void update(const ResolvedScene& scene, const RenderSample& sample, const IndexView& view,
               std::span<const glm::dvec4> planes, const TransferLookup& transfer, BrickSelection& bricks);
+  /// Is called before the first update() of a picture: a picture of several stacks has as many.
+  void beginPicture() { ms_ = 0; }
   /// Brings the light of bricks to their textures. @param positions  in the selection; they are resident
   void require(const GlFunctions& gl, const BrickSelection& bricks, std::span<const std::int32_t> positions) {
     if (!swept_) textures_.require(gl, bricks, light_, version_, positions);

@@ -146,6 +146,7 @@ class SliceRenderer::Implementation {
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
       const Stopwatch geometry;
       prepareFrame(scene, sample, sweeps[i]);
+      frame_->first = i == 0;
       frame_->progress.begin(frame_->slices.count(), frame_->size(),
                              static_cast<double>(i) / static_cast<double>(sweeps.size()),
                              1 / static_cast<double>(sweeps.size()));
@@ -358,6 +359,7 @@ class SliceRenderer::Implementation {
                          PassClock(gl_, options_.timePasses),
                          sample,
                          stack,
+                         true,
                          SweepProgress(gl_, options_.progress)});
     pass_->plan(*frame_);
     std::vector<const ProxySlices*> sweeps{&frame_->slices};

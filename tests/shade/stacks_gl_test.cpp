@@ -213,6 +213,8 @@ TEST_CASE("Stacks read light volumes and layers as slices across the view do", "
     scene.technique = Technique::slices;
     const Picture slices = renderPicture(*context, *bricks, scene, kLayers);
     REQUIRE(largestAlpha(stacks.colour) > 0.3);
+    CHECK(stacks.stats.lightMs > 0);  // also where it is computed for the first of several stacks
+    CHECK(stacks.stats.directions == slices.stats.directions);
     // Both are off by about 5e-4 where slabs are a quarter of a voxel; depth counts to the middle of a slab.
     CHECK(rmsDifference(stacks.colour, slices.colour) < 2e-3);
     CHECK(rmsDifference(stacks.visibility, slices.visibility) < 2e-3);
