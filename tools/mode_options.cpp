@@ -75,6 +75,11 @@ std::string chooseSurfaces(Scene& scene, const Volume& volume) {
 }
 
 void tellUnusedByMode(const SceneOptions& options, const SceneSettings& scene, bool layers) {
+  if (!traitsOf(scene.mode).medium)
+    for (const char* option : {"gradient-opacity", "gradient-unit"})
+      if (options.has(option))
+        std::cerr << options.nameOf(option) << " has no effect on the mode " << modeName(scene.mode)
+                  << ", which shows no medium\n";
   if (scene.mode == Mode::integrate) return;
   const auto tell = [&](const std::string& option) {
     std::cerr << option << " has no effect on the mode " << modeName(scene.mode) << '\n';
