@@ -50,6 +50,7 @@ constexpr ModeTraits kModeTraits[]{
     {.mode = Mode::average, .meaning = "the mean", .projection = true, .ofValues = true},
     {.mode = Mode::xray, .meaning = "the share of light that gets through", .projection = true, .medium = true},
     {.mode = Mode::isosurface, .meaning = "surfaces of single values", .surfaces = true},
+    {.mode = Mode::hybrid, .meaning = "the first surface, and the medium behind it", .surfaces = true, .medium = true},
 };
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST_CASE("Modes without a medium have no ramp", "[scene][modes]") {
     CHECK(resolvedAnywhere(scene).transfer == given);
     CHECK(parseScene(printScene(resolvedAnywhere(scene)), "again.json").gradientOpacity == glm::dvec2(1, 2));
   }
-  for (const Mode mode : {Mode::integrate, Mode::xray}) {
+  for (const Mode mode : {Mode::integrate, Mode::xray, Mode::hybrid}) {
     scene.mode = mode;
     CHECK(resolvedAnywhere(scene).transfer == withGradientOpacity(given, {1, 2}));
   }

@@ -204,7 +204,7 @@ struct SceneSettings {
   Method method = Method::lightVolume;
   Technique technique = Technique::automatic;
   Mode mode = Mode::integrate;
-  std::vector<SceneSurface> surfaces;  // of the mode isosurface; none of a level set: where it is 0
+  std::vector<SceneSurface> surfaces;  // of isosurface and hybrid; none of a level set: where it is 0
   ShadingOptions shading;
   /// Gradient magnitudes from which and up to which a medium appears: sigma_t is scaled from 0 at the first one to 1 at
   /// the second one. Of a Scene in its gradientUnit, else grid units per world unit. Both 0: the medium stays as it is.
@@ -244,7 +244,7 @@ struct Scene : SceneSettings {
 ///   method     "dos", "ordinates", "light-volume"
 ///   technique  "auto", "slices", "rays", "shear-warp"
 ///   gradientOpacity [low, high], gradientUnit ("grid", "percent")    applied to the transfer function
-///   mode       "integrate", "mip", "minip", "average", "xray", "isosurface"
+///   mode       "integrate", "mip", "minip", "average", "xray", "isosurface", "hybrid"
 ///   surfaces   [{value, colour [r, g, b], opacity}, ...]
 ///   shading    kind ("auto", "none", "phong"), light ("auto", "headlight", "sources"), ambient, diffuse, specular,
 ///              shininess
