@@ -13,21 +13,23 @@ namespace umbrick::tools {
 void addSurfaceOptions(CLI::App& command, SceneOptions& options) {
   const std::string group = "Mode";
   command
-      .add_option("--iso", options.isoValues,
-                  "of isosurface: the value of the surface, or several, separated by commas [of a level set: 0]")
+      .add_option(
+          "--iso", options.isoValues,
+          "of isosurface and hybrid: the value of the surface, or several, separated by commas [of a level set: 0]")
       ->type_size(1)
       ->allow_extra_args(false)
       ->delimiter(',')
       ->group(group);
   command
-      .add_option("--iso-colours,--iso-colors", options.isoColours,
-                  "of isosurface: r g b, linear, of the first surface; repeated for the next ones [as the transfer "
-                  "function has at its value]")
+      .add_option(
+          "--iso-colours,--iso-colors", options.isoColours,
+          "of isosurface and hybrid: r g b, linear, of the first surface; repeated for the next ones [as the transfer "
+          "function has at its value]")
       ->type_size(3)
       ->group(group);
   command
       .add_option("--iso-opacity", options.isoOpacities,
-                  "of isosurface: 0 to 1, one for all surfaces or one each, separated by commas [1]")
+                  "of isosurface and hybrid: 0 to 1, one for all surfaces or one each, separated by commas [1]")
       ->type_size(1)
       ->allow_extra_args(false)
       ->delimiter(',')
@@ -38,7 +40,8 @@ void applySurfaces(const SceneOptions& options, Scene& scene) {
   const bool given = !options.isoValues.empty() || !options.isoColours.empty() || !options.isoOpacities.empty();
   if (!given) return;
   if (!traitsOf(scene.mode).surfaces)
-    throw UsageError("--iso, --iso-colours and --iso-opacity are for --mode isosurface, found " + modeName(scene.mode));
+    throw UsageError("--iso, --iso-colours and --iso-opacity are for --mode isosurface and hybrid, found " +
+                     modeName(scene.mode));
   if (!options.isoValues.empty()) {
     scene.surfaces.assign(options.isoValues.size(), SceneSurface{});
     for (std::size_t i = 0; i < scene.surfaces.size(); ++i) scene.surfaces[i].value = options.isoValues[i];
@@ -70,12 +73,17 @@ std::string chooseSurfaces(Scene& scene, const Volume& volume) {
     return "0";
   }
   const Range values = surveyValues(volume.grid()).value;
-  throw UsageError("--mode isosurface: needs --iso with the value of the surface, between " +
+  throw UsageError("--mode " + modeName(scene.mode) + ": needs --iso with the value of the surface, between " +
                    shortNumber(values.min, 6) + " and " + shortNumber(values.max, 6));
 }
 
 void tellUnusedByMode(const SceneOptions& options, const SceneSettings& scene, bool layers) {
-  if (scene.mode == Mode::integrate) return;
+  if (!traitsOf(scene.mode).medium)
+    for (const char* option : {"gradient-opacity", "gradient-unit"})
+      if (options.has(option))
+        std::cerr << options.nameOf(option) << " has no effect on the mode " << modeName(scene.mode)
+                  << ", which shows no medium\n";
+  if (scene.mode == Mode::integrate || scene.mode == Mode::hybrid) return;
   const auto tell = [&](const std::string& option) {
     std::cerr << option << " has no effect on the mode " << modeName(scene.mode) << '\n';
   };

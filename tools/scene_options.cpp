@@ -345,6 +345,7 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNam
       ->expected(2)
       ->group(medium);
   command.add_option("--sigma-scale", o.sigmaScale, "multiply the extinction [1]")->group(medium);
+  addFieldOptions(command, o, medium);
 
   addFieldOptions(command, o, "Camera");
   command.add_flag("--orthographic", o.orthographic, "parallel view")->group("Camera");

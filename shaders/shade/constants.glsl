@@ -21,6 +21,7 @@ const int kVisibilityWeightUnit = 9;   // how much of that counts, see window_st
 const int kMoreAtlasUnit = 10;         // of rays: the second texture of the atlas, and those that follow
 const int kMoreLightUnit = 13;         // the same for light
 const int kBoundsUnit = 5;             // of projections: what values a cell may have
+const int kStartUnit = 2;              // of rays: the depth from which each sees the medium
 
 // Rays read up to so many textures of the atlas in one draw.
 const int kRayTextures = 4;

@@ -2,6 +2,7 @@
 // segment are shared with its neighbours, so that a value is read once where slices read it twice.
 // Reads   atlas, more_atlas, transfer (see medium.glsl)   slots (see brick_walk.glsl)
 //         light, more_light  kLit: share of whole_light that reaches a voxel
+//         start  kStarts, R32F: depth along the view axis from which the ray sees the medium, world units
 //         kShaded: the medium reflects lights by Phong's model, see shaded_voxels.glsl
 // Writes  eye    premultiplied RGBA, blended under what is nearer: (ONE_MINUS_DST_ALPHA, ONE)
 //         count  number of segments, added
@@ -16,6 +17,7 @@
 #include "shade/voxel_fetch.glsl"
 layout(binding = kLightUnit) uniform sampler3D light;
 layout(binding = kMoreLightUnit) uniform sampler3D more_light[kRayTextures - 1];
+layout(binding = kStartUnit) uniform sampler2D start;
 uniform vec3 whole_light;        // light that arrives where nothing is in the way
 uniform vec3 inverse_size;       // of the atlas's textures
 uniform float saturation;        // transmittance below which a ray ends
@@ -47,6 +49,11 @@ bool shows(End front, End back) {
 
 void main() {
   Ray ray = rayThrough(gl_FragCoord.xy);
+  if (kStarts != 0) {
+    ray.kept.x = max(ray.kept.x, (texelFetch(start, ivec2(gl_FragCoord.xy), 0).r - first_depth) / segment_depth);
+    // An endless way to the start is longer than what is left of the ray.
+    ray.segments.x = max(ray.segments.x, min(floor(ray.kept.x + 0.5), ray.segments.y));
+  }
   float length_of_one = ray.stretch * segment_depth, full = 1.0 - saturation;
   vec4 sum = vec4(0.0);
   vec2 seen = vec2(0.0);  // visibility and depth, weighted by opacity

@@ -68,7 +68,7 @@ double ModeLaw::limitOf(const ResolvedScene& scene, const Image& onGl, const Ima
   const glm::dvec3 shift = glm::dmat3(bricks_->indexToWorld) * glm::dvec3(kMoved);
   double limit =
       rmsDifference(onCpu, drawn(*onCpu_, movedBy(scene, shift))) * std::sqrt(std::min(1.0, places / kMoved)) + 0x1p-18;
-  if (traitsOf(scene.mode).surfaces) return limit;
+  if (!traitsOf(scene.mode).medium && traitsOf(scene.mode).surfaces) return limit;
   ResolvedScene finer = scene;
   finer.sampling.spacing /= 2;
   return limit + 2 * (rmsDifference(onGl, drawn(*onGl_, finer)) + rmsDifference(onCpu, drawn(*onCpu_, finer)));
@@ -89,7 +89,7 @@ void ModeLaw::check(const ResolvedScene& scene, const std::string& where, Invari
     there.surfaces.clear();
     if (traits.surfaces) {
       if (!(bricks_->value.min < bricks_->value.max)) continue;
-      there.surfaces = {SceneSurface{surfaceValue(there, bricks_->value), {}, 1}};
+      there.surfaces = {SceneSurface{surfaceValue(there, bricks_->value), {}, traits.medium ? 0.5 : 1.0}};
     }
     const Image onGl = drawn(*onGl_, there), onCpu = drawn(*onCpu_, there);
     const auto pixels = static_cast<std::size_t>(there.camera.width) * static_cast<std::size_t>(there.camera.height);

@@ -8,6 +8,7 @@
 
 #include "umbrick/core/error.h"
 #include "umbrick/core/short_number.h"
+#include "umbrick/draw/hybrid_picture.h"
 #include "umbrick/optics/projection_colour.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/shading_lights.h"
@@ -18,7 +19,7 @@ bool showsValues(Mode mode) { return traitsOf(mode).ofValues || traitsOf(mode).s
 
 void checkSurfaces(const ResolvedScene& scene, const Range& values, int apron) {
   if (scene.surfaces.empty())
-    throw InvalidArgument("surfaces: is empty, must be one value or more for the mode isosurface");
+    throw InvalidArgument("surfaces: is empty, must be one value or more for the mode " + modeName(scene.mode));
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
     const double value = scene.surfaces[i].value;
     // A surface parts what is larger from what is not.
@@ -43,6 +44,7 @@ void checkShading(const ResolvedScene& scene, int apron) {
 }
 
 ResolvedScene mediumOf(const ResolvedScene& scene) {
+  if (scene.mode == Mode::hybrid) return mediumBehind(scene);
   ResolvedScene medium = scene;
   if (scene.mode != Mode::xray) return medium;
   medium.model = Model::emission;

@@ -86,19 +86,19 @@ void QuadraturePixel::aim(const std::vector<LightDirection>& lights) {
 }
 
 std::optional<PixelResult> QuadraturePixel::integrate(int x, int y) {
-  if (space_.places.size() == 1) return integrate(space_.rays.through(x, y, space_.places.front()));
+  if (space_.places.size() == 1) return integrate(space_.rays.through(x, y, space_.places.front()), 0);
   PixelResult mean;
   for (const glm::dvec2& place : space_.places) {
-    const std::optional<PixelResult> ray = integrate(space_.rays.through(x, y, place));
+    const std::optional<PixelResult> ray = integrate(space_.rays.through(x, y, place), 0);
     if (!ray) return std::nullopt;
     mean.add(*ray, 1.0 / static_cast<double>(space_.places.size()));
   }
   return mean;
 }
 
-std::optional<PixelResult> QuadraturePixel::integrate(const EyeRays::Ray& ray) {
+std::optional<PixelResult> QuadraturePixel::integrate(const EyeRays::Ray& ray, double begin) {
   PixelResult result;
-  const Interval part = space_.region.clip(ray.index, 0);
+  const Interval part = space_.region.clip(ray.index, begin);
   if (part.empty()) return result;
   ++counts_.eyeRays;
   parts_.clear();

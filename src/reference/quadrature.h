@@ -43,6 +43,8 @@ class QuadraturePixel {
 
   /// Integrates one pixel. Returns nothing when the job was stopped meanwhile.
   std::optional<PixelResult> integrate(int x, int y);
+  /// Integrates one ray. @param begin  place on it from which the medium is seen; 0: the eye
+  std::optional<PixelResult> integrate(const EyeRays::Ray& ray, double begin);
   const RayCounts& counts() const { return counts_; }
 
  private:
@@ -65,7 +67,6 @@ class QuadraturePixel {
     }
   };
 
-  std::optional<PixelResult> integrate(const EyeRays::Ray& ray);
   void aim(const std::vector<LightDirection>& lights);
   Arriving arrivingAt(const IndexRay& ray, double t);
   Arriving meanArriving(const IndexRay& ray, std::size_t begin, std::size_t end);

@@ -16,6 +16,7 @@
 #include <optional>
 #include <string>
 
+#include "reference/hybrid_pixel.h"
 #include "reference/monte_carlo.h"
 #include "reference/quadrature.h"
 #include "reference/value_pixel.h"
@@ -196,6 +197,41 @@ void storeColour(const glm::dvec4& colour, const ResolvedScene& scene, float* ou
   out[3] = scene.background ? 1.0f : static_cast<float>(colour.w);
 }
 
+// The layers of modes that show values.
+struct ValueLayers {
+  explicit ValueLayers(const ResolvedScene& scene)
+      : surfaces(traitsOf(scene.mode).surfaces),
+        value(scene.camera.width, scene.camera.height, 1),
+        position(surfaces ? scene.camera.width : 0, scene.camera.height, 3),
+        normal(position) {}
+
+  void store(const ValueResult& pixel, int x, int y) {
+    *value.at(x, y) = static_cast<float>(pixel.value);
+    for (int c = 0; surfaces && c < 3; ++c) {
+      position.at(x, y)[c] = static_cast<float>(pixel.position[c]);
+      normal.at(x, y)[c] = static_cast<float>(pixel.normal[c]);
+    }
+  }
+  void moveTo(ReferencePicture& picture) {
+    picture.layers.push_back({"value", std::move(value), true});
+    if (!surfaces) return;
+    picture.layers.push_back({"position", std::move(position), true});
+    picture.layers.push_back({"normal", std::move(normal), true});
+  }
+
+  bool surfaces;
+  Image value, position, normal;
+};
+
+void storeValue(const ValueResult& pixel, double visibility, const ResolvedScene& scene, int x, int y,
+                ReferencePicture& picture, ValueLayers& layers) {
+  storeColour(pixel.colour, scene, picture.colour.at(x, y));
+  *picture.visibility.at(x, y) = static_cast<float>(visibility);
+  *picture.depth.at(x, y) =
+      pixel.colour.w > 0 ? static_cast<float>(pixel.depth / pixel.colour.w) : std::numeric_limits<float>::infinity();
+  layers.store(pixel, x, y);
+}
+
 // Renders projections of values and isosurfaces.
 ReferencePicture renderValues(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOptions& options) {
   ReferencePicture picture = blankPicture(scene.camera);
@@ -205,33 +241,18 @@ ReferencePicture renderValues(const ScalarGrid& grid, const ResolvedScene& scene
   picture.stats.nonFiniteVoxels = space.field().nonFiniteVoxels();
   picture.stats.blocks = space.field().blocks();
   const std::vector<glm::dvec2> places = pixelPoints(scene.sampling.pixelSamples);
-  const bool surfaces = traitsOf(scene.mode).surfaces;
-  Image value(scene.camera.width, scene.camera.height, 1);
-  Image position(surfaces ? scene.camera.width : 0, scene.camera.height, 3), normal = position;
+  ValueLayers layers(scene);
   const Stopwatch integrate;
   const RayCounts counts = integrateAll(
       scene, options, [&](const GoOn&) { return ValuePixel(space, places); },
       [&](const ValueResult& pixel, int x, int y) {
-        storeColour(pixel.colour, scene, picture.colour.at(x, y));
-        *value.at(x, y) = static_cast<float>(pixel.value);
-        const auto opacity = static_cast<float>(pixel.colour.w);
-        *picture.visibility.at(x, y) = opacity;
-        *picture.depth.at(x, y) =
-            opacity > 0 ? static_cast<float>(pixel.depth / pixel.colour.w) : std::numeric_limits<float>::infinity();
-        for (int c = 0; surfaces && c < 3; ++c) {
-          position.at(x, y)[c] = static_cast<float>(pixel.position[c]);
-          normal.at(x, y)[c] = static_cast<float>(pixel.normal[c]);
-        }
+        storeValue(pixel, pixel.colour.w, scene, x, y, picture, layers);
         return true;
       },
       picture);
   picture.stats.integrateMs = integrate.elapsedMs();
   countWork(counts, picture.stats);
-  picture.layers.push_back({"value", std::move(value), true});
-  if (surfaces) {
-    picture.layers.push_back({"position", std::move(position), true});
-    picture.layers.push_back({"normal", std::move(normal), true});
-  }
+  layers.moveTo(picture);
   return picture;
 }
 
@@ -246,29 +267,30 @@ void showThrough(const ResolvedScene& scene, ReferencePicture& picture) {
   picture.layers.push_back({"value", std::move(through), true});
 }
 
-}  // namespace
+// Returns the scene of the medium that a mode looks through.
+ResolvedScene mediumOf(const ResolvedScene& scene) {
+  ResolvedScene medium = scene;
+  medium.mode = Mode::integrate;
+  if (scene.mode == Mode::integrate) return medium;
+  medium.background.reset();
+  if (scene.mode == Mode::xray) medium.model = Model::emission;
+  return medium;
+}
 
-ReferencePicture renderReference(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOptions& options) {
-  check(grid, scene, options);
-  validateScene(scene);
-  requireMode(scene, Technique::rays);
-  if (isShaded(scene) && scene.mode == Mode::integrate) {
-    if (traitsOf(scene.model).occlusion)
-      throw InvalidArgument("shading.kind: phong in a medium goes with the model emission, found " +
-                            modelName(scene.model));
-    if (options.integrator == Integrator::monteCarlo)
-      throw InvalidArgument("shading.kind: phong in a medium is integrated by quadrature, not by Monte Carlo");
-  }
-  if (traitsOf(scene.mode).ofValues || traitsOf(scene.mode).surfaces) return renderValues(grid, scene, options);
-  if (scene.mode == Mode::xray) {
-    ResolvedScene medium = scene;
-    medium.mode = Mode::integrate;
-    medium.model = Model::emission;
-    medium.background.reset();
-    ReferencePicture picture = renderReference(grid, medium, options);
-    showThrough(scene, picture);
-    return picture;
-  }
+void checkMedium(const ResolvedScene& medium, const ReferenceOptions& options) {
+  if (!isShaded(medium)) return;
+  if (traitsOf(medium.model).occlusion)
+    throw InvalidArgument("shading.kind: phong in a medium goes with the model emission, found " +
+                          modelName(medium.model));
+  if (options.integrator == Integrator::monteCarlo)
+    throw InvalidArgument("shading.kind: phong in a medium is integrated by quadrature, not by Monte Carlo");
+}
+
+// Renders a medium.
+// @param whole  null: the medium alone; else the scene of the mode hybrid, whose surfaces it lies behind
+ReferencePicture renderMedium(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOptions& options,
+                              const ResolvedScene* whole = nullptr) {
+  checkMedium(scene, options);
   const std::optional<LightSet> lights = lightsOf(scene, options);
   ReferencePicture picture = blankPicture(scene.camera);
   const glm::dmat4 indexToWorld = grid.indexToWorld();
@@ -292,7 +314,19 @@ ReferencePicture renderReference(const ScalarGrid& grid, const ResolvedScene& sc
     store(pixel, scene, x, y, picture);
     return pixel.converged;
   };
-  if (options.integrator == Integrator::monteCarlo) {
+  if (whole) {
+    const ValueSpace surfaces(grid, *whole, options.skipEmpty);
+    ValueLayers layers(*whole);
+    counts = integrateAll(
+        scene, options,
+        [&](const GoOn& goOn) { return HybridPixel(surfaces, space, options, options.step * edge, edge, goOn); },
+        [&](const HybridResult& pixel, int x, int y) {
+          storeValue(pixel.surface, pixel.visibility, *whole, x, y, picture, layers);
+          return true;
+        },
+        picture);
+    layers.moveTo(picture);
+  } else if (options.integrator == Integrator::monteCarlo) {
     counts = integrateAll(
         scene, options, [&](const GoOn& goOn) { return MonteCarloPixel(space, options, edge, goOn); }, keep, picture);
   } else {
@@ -303,6 +337,23 @@ ReferencePicture renderReference(const ScalarGrid& grid, const ResolvedScene& sc
   }
   picture.stats.integrateMs = integrate.elapsedMs();
   countWork(counts, picture.stats);
+  return picture;
+}
+
+}  // namespace
+
+ReferencePicture renderReference(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOptions& options) {
+  check(grid, scene, options);
+  validateScene(scene);
+  requireMode(scene, Technique::rays);
+  if (scene.mode == Mode::hybrid) {
+    if (options.integrator == Integrator::monteCarlo)
+      throw InvalidArgument("mode: hybrid is integrated by quadrature, not by Monte Carlo");
+    return renderMedium(grid, mediumOf(scene), options, &scene);
+  }
+  if (!traitsOf(scene.mode).medium) return renderValues(grid, scene, options);
+  ReferencePicture picture = renderMedium(grid, mediumOf(scene), options);
+  if (scene.mode == Mode::xray) showThrough(scene, picture);
   return picture;
 }
 

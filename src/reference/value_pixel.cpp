@@ -58,7 +58,7 @@ IndexBox boxOf(const ResolvedScene& scene, const IndexBox& domain) {
 const ScalarGrid& checked(const ScalarGrid& grid, const ResolvedScene& scene) {
   if (!traitsOf(scene.mode).surfaces) return grid;
   if (scene.surfaces.empty())
-    throw InvalidArgument("surfaces: is empty, must be one value or more for the mode isosurface");
+    throw InvalidArgument("surfaces: is empty, must be one value or more for the mode " + modeName(scene.mode));
   Range range = surveyValues(grid).value;
   range.include(static_cast<float>(backgroundOf(grid)));
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
@@ -153,30 +153,40 @@ glm::dvec3 ValueSpace::shaded(const glm::dvec3& colour, const glm::dvec3& normal
   return scene_.ambient * sum;
 }
 
+void ValueMean::add(const ValueResult& sample) {
+  ++samples_;
+  sum_.colour += sample.colour;
+  sum_.depth += sample.depth;
+  if (std::isnan(sample.value)) return;
+  ++numbers_;
+  sum_.value += sample.value;
+  sum_.position += sample.position;
+  sum_.normal += sample.normal;
+}
+
+ValueResult ValueMean::result() const {
+  ValueResult mean = sum_;
+  mean.colour /= samples_;
+  mean.depth /= samples_;
+  const double share = numbers_ > 0 ? 1 / numbers_ : kNone;
+  mean.value *= share;
+  mean.position *= share;
+  mean.normal *= share;
+  return mean;
+}
+
 ValuePixel::ValuePixel(const ValueSpace& space, const std::vector<glm::dvec2>& places)
     : space_(space), places_(places), accessor_(space.field().accessor()) {}
 
 std::optional<ValueResult> ValuePixel::integrate(int x, int y) {
   const bool surfaces = traitsOf(space_.scene().mode).surfaces;
-  ValueResult mean;
-  double numbers = 0;  // of samples with a value
+  ValueMean mean;
   for (const glm::dvec2& place : places_) {
-    ++counts_.eyeRays;
     const EyeRays::Ray ray = space_.rays().through(x, y, place);
-    const ValueResult one = surfaces ? meetSurfaces(ray) : project(ray);
-    mean.colour += one.colour / static_cast<double>(places_.size());
-    mean.depth += one.depth / static_cast<double>(places_.size());
-    if (std::isnan(one.value)) continue;
-    ++numbers;
-    mean.value += one.value;
-    mean.position += one.position;
-    mean.normal += one.normal;
+    if (!surfaces) ++counts_.eyeRays;
+    mean.add(surfaces ? meet(ray) : project(ray));
   }
-  const double share = numbers > 0 ? 1 / numbers : kNone;
-  mean.value *= share;
-  mean.position *= share;
-  mean.normal *= share;
-  return mean;
+  return mean.result();
 }
 
 // The extremes of a cubic are at its ends and where it turns, and its mean is exact.
@@ -214,8 +224,10 @@ ValueResult ValuePixel::project(const EyeRays::Ray& ray) {
   return result;
 }
 
-ValueResult ValuePixel::meetSurfaces(const EyeRays::Ray& ray) {
+ValueResult ValuePixel::meet(const EyeRays::Ray& ray) {
+  ++counts_.eyeRays;
   const ResolvedScene& scene = space_.scene();
+  const bool firstOnly = scene.mode == Mode::hybrid;
   const Interval part = space_.region().clip(ray.index, 0);
   ValueResult result;
   result.value = kNone;
@@ -226,14 +238,15 @@ ValueResult ValuePixel::meetSurfaces(const EyeRays::Ray& ray) {
   };
   std::vector<Crossing> crossings;
   std::vector<int> sides(scene.surfaces.size(), 0);  // -1 below, 1 above
-  const auto meet = [&](const Crossing& crossing) {
+  const auto add = [&](const Crossing& crossing) {
     const glm::dvec3 point = ray.index.at(crossing.t);
     const glm::dvec3 gradient = space_.gradientAt(point), viewer = -ray.direction;
     const double length = glm::length(gradient);
     glm::dvec3 normal = length > 0 ? gradient / length : viewer;
     if (glm::dot(normal, viewer) < 0) normal = -normal;
     const double share = (1 - result.colour.w) * scene.surfaces[crossing.surface].opacity;
-    if (result.colour.w == 0 && share > 0) {
+    if (firstOnly) result.first = crossing.t;
+    if (result.colour.w == 0 && (share > 0 || firstOnly)) {
       result.value = scene.surfaces[crossing.surface].value;
       result.position = space_.worldOf(point);
       result.normal = normal;
@@ -263,8 +276,8 @@ ValueResult ValuePixel::meetSurfaces(const EyeRays::Ray& ray) {
     }
     std::ranges::sort(crossings, {}, &Crossing::t);
     for (const Crossing& crossing : crossings) {
-      meet(crossing);
-      if (result.colour.w >= 1 - scene.sampling.saturation) return false;
+      add(crossing);
+      if (firstOnly || result.colour.w >= 1 - scene.sampling.saturation) return false;
     }
     return true;
   });

@@ -21,6 +21,18 @@ struct ValueResult {
   /// Of projections the number itself; of surfaces that of the nearest one and where it is. NaN: there is none.
   double value = 0;
   glm::dvec3 position{0}, normal{0};
+  std::optional<double> first = {};  // of hybrid: where on its ray the first surface is; none: nowhere
+};
+
+/// The mean of the samples of a pixel. What only surfaces have is the mean of those that meet one.
+class ValueMean {
+ public:
+  void add(const ValueResult& sample);
+  ValueResult result() const;
+
+ private:
+  ValueResult sum_;
+  double samples_ = 0, numbers_ = 0;
 };
 
 /// What the pixels of a picture share. All of it is found in the grid, not in bricks.
@@ -64,11 +76,12 @@ class ValuePixel {
  public:
   ValuePixel(const ValueSpace& space, const std::vector<glm::dvec2>& places);
   std::optional<ValueResult> integrate(int x, int y);
+  /// Returns the surfaces of a ray, or the first one of hybrid. @pre the mode is one of surfaces
+  ValueResult meet(const EyeRays::Ray& ray);
   const RayCounts& counts() const { return counts_; }
 
  private:
   ValueResult project(const EyeRays::Ray& ray);
-  ValueResult meetSurfaces(const EyeRays::Ray& ray);
 
   const ValueSpace& space_;
   const std::vector<glm::dvec2>& places_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,11 @@
 
 namespace umbrick {
 
+struct Volume::LazyGradient {
+  std::once_flag looked;
+  double largest = 0;
+};
+
 Volume::Volume(const VolumeReference& file, const std::function<void(double share)>& progress) {
   const Stopwatch load;
   VolumeFile read = readVolumeFile(file, progress);
@@ -31,7 +37,8 @@ Volume::Volume(const VolumeReference& file, const std::function<void(double shar
   loadMs_ = load.elapsedMs();
 }
 
-Volume::Volume(ScalarGrid grid, std::string name) : grid_(std::move(grid)), name_(std::move(name)) {
+Volume::Volume(ScalarGrid grid, std::string name)
+    : grid_(std::move(grid)), name_(std::move(name)), largestGradient_(std::make_shared<LazyGradient>()) {
   if (grid_.activeBox().empty()) throw InvalidArgument(name_ + ": grid \"" + grid_.name + "\" has no active voxel");
   indexToWorld_ = grid_.indexToWorld();
   worldBounds_ = grid_.worldBounds();
@@ -54,6 +61,11 @@ Box Volume::visibleBounds(const TransferFunction& transfer) const {
   return transformed({low, high}, indexToWorld_);
 }
 
+double Volume::largestGradient() const {
+  std::call_once(largestGradient_->looked, [&] { largestGradient_->largest = umbrick::largestGradient(grid_); });
+  return largestGradient_->largest;
+}
+
 TransferFunction inUnit(const TransferFunction& transfer, std::string_view unit) {
   if (transfer.unit() == kShiftedHounsfield && unit == kHounsfield)
     return transfer.shifted(-1000).withUnit(std::string(unit));
@@ -71,13 +83,19 @@ ResolvedScene Volume::resolve(const Scene& scene) const {
 ResolvedScene Volume::resolve(const Scene& scene, const Box& seen) const {
   Scene complete = scene;
   if (!scene.transfer) complete.transfer = suggestTransfer(*this).transfer;
-  if (scene.mode == Mode::isosurface && scene.surfaces.empty()) {
+  if (traitsOf(scene.mode).surfaces && scene.surfaces.empty()) {
     if (!grid_.isLevelSet())
-      throw InvalidArgument(
-          "surfaces: is empty, must be one value or more for the mode isosurface of what is no level set");
+      throw InvalidArgument("surfaces: is empty, must be one value or more for the mode " + modeName(scene.mode) +
+                            " of what is no level set");
     complete.surfaces = {SceneSurface{}};
   }
   if (scene.orbit) complete.orbit = settledOrbit(*scene.orbit, orientation_);
+  if (scene.gradientUnit == GradientUnit::percent && scene.gradientOpacity != glm::dvec2(0)) {
+    if (!(largestGradient() > 0))
+      throw InvalidArgument("gradientUnit: percent of the largest gradient, which is 0 in this volume");
+    complete.gradientOpacity *= largestGradient() / 100;
+    complete.gradientUnit = GradientUnit::grid;
+  }
   ResolvedScene resolved = resolveScene(complete, seen, indexToWorld_);
   resolved.bricks.interior = brickInterior(resolved, indexToWorld_, worldBounds_);
   return resolved;

@@ -44,12 +44,13 @@ constexpr MethodTraits kMethodTraits[]{
 };
 
 constexpr ModeTraits kModeTraits[]{
-    {.mode = Mode::integrate, .meaning = "a medium that scatters and absorbs"},
+    {.mode = Mode::integrate, .meaning = "a medium that scatters and absorbs", .medium = true},
     {.mode = Mode::mip, .meaning = "the largest value along each ray", .projection = true, .ofValues = true},
     {.mode = Mode::minip, .meaning = "the smallest one", .projection = true, .ofValues = true},
     {.mode = Mode::average, .meaning = "the mean", .projection = true, .ofValues = true},
-    {.mode = Mode::xray, .meaning = "the share of light that gets through", .projection = true},
+    {.mode = Mode::xray, .meaning = "the share of light that gets through", .projection = true, .medium = true},
     {.mode = Mode::isosurface, .meaning = "surfaces of single values", .surfaces = true},
+    {.mode = Mode::hybrid, .meaning = "the first surface, and the medium behind it", .surfaces = true, .medium = true},
 };
 
 }  // namespace

@@ -44,8 +44,8 @@ std::string limitText(double limit) {
   return powerOfTwo && exponent > 20 ? "2^" + std::to_string(exponent - 1) : jsonNumber(limit);
 }
 
-std::string vectorRange(const FieldRange& range) {
-  return std::string("three finite numbers") + (range.low == 0 ? " of 0 or more" : "");
+std::string vectorRange(std::string_view count, const FieldRange& range) {
+  return std::string(count) + " finite numbers" + (range.low == 0 ? " of 0 or more" : "");
 }
 
 std::string realRange(const FieldRange& range) {
@@ -127,9 +127,9 @@ std::string rangeText(const SceneField& field) {
                [&](const double*) { return realRange(range); }, [&](const Angle&) { return realRange(range); },
                [&](const int*) { return wholeRange(range); }, [&](const std::uint64_t*) { return wholeRange(range); },
                [](const Choice& choice) { return "one of " + joined(choice.names()); },
-               [](const glm::dvec2*) { return std::string("two finite numbers"); },
-               [&](const glm::dvec3*) { return vectorRange(range); },
-               [&](const std::optional<glm::dvec3>*) { return vectorRange(range); },
+               [&](const glm::dvec2*) { return vectorRange("two", range); },
+               [&](const glm::dvec3*) { return vectorRange("three", range); },
+               [&](const std::optional<glm::dvec3>*) { return vectorRange("three", range); },
                [&](const PixelSize&) { return "at least " + limitText(range.low) + " x " + limitText(range.low); }},
       place);
 }

@@ -5,9 +5,26 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "scene/gradient_opacity.h"
 #include "umbrick/core/error.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
+namespace {
+
+// Returns the function that a scene shows its medium by.
+TransferFunction shownTransfer(const Scene& scene) {
+  if (!traitsOf(scene.mode).medium || scene.gradientOpacity == glm::dvec2(0)) return *scene.transfer;
+  if (scene.transfer->is2d())
+    throw InvalidArgument(
+        "gradientOpacity: is for transfer functions of the value alone, which a function of value and gradient "
+        "replaces");
+  if (scene.gradientUnit == GradientUnit::percent)
+    throw InvalidArgument("gradientUnit: percent needs a volume, of whose largest gradient it is");
+  return withGradientOpacity(*scene.transfer, scene.gradientOpacity);
+}
+
+}  // namespace
 
 std::vector<ClipPlane> boxPlanes(const Box& box, const glm::dmat4& toWorld) {
   const glm::dmat4 inverse = glm::inverse(toWorld);
@@ -34,7 +51,7 @@ OrbitView orbitView(const Orbit& orbit) {
 ResolvedScene resolveScene(const Scene& scene, const Box& worldBounds, const glm::dmat4& indexToWorld) {
   if (!scene.transfer) throw InvalidArgument("scene: no transfer function");
   validateScene(scene);
-  ResolvedScene resolved(scene, *scene.transfer);
+  ResolvedScene resolved(scene, shownTransfer(scene));
   if (scene.orbit) resolved.camera = orbitCamera(worldBounds, orbitView(*scene.orbit), scene.camera);
   if (scene.spacingUnit == SpacingUnit::voxel) resolved.sampling.spacing *= shortestVoxelEdge(indexToWorld);
   return resolved;
@@ -44,6 +61,13 @@ Scene unresolved(const ResolvedScene& scene) {
   Scene written;
   static_cast<SceneSettings&>(written) = scene;
   written.transfer = scene.transfer;
+  if (traitsOf(scene.mode).medium && scene.gradientOpacity != glm::dvec2(0)) {
+    // The function is written as it was given. One that was made in another way has no ramp.
+    if (auto given = withoutGradientOpacity(scene.transfer, scene.gradientOpacity))
+      written.transfer = std::move(given);
+    else
+      written.gradientOpacity = glm::dvec2(0);
+  }
   written.orbit.reset();
   written.spacingUnit = SpacingUnit::world;
   return written;

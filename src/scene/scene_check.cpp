@@ -72,6 +72,12 @@ void checkLights(Checker& check, const Scene& scene) {
   }
 }
 
+void checkGradientOpacity(Checker& check, const Scene& scene) {
+  const glm::dvec2& ramp = scene.gradientOpacity;
+  check.require(ramp == glm::dvec2(0) || ramp.x < ramp.y, "gradientOpacity",
+                "(" + print(ramp.x) + " " + print(ramp.y) + ")", "two numbers that ascend, or 0 0");
+}
+
 void checkSurfaces(Checker& check, const Scene& scene) {
   check.require(scene.surfaces.size() <= kMostSurfaces, "surfaces", std::to_string(scene.surfaces.size()),
                 "at most " + std::to_string(kMostSurfaces));
@@ -96,6 +102,8 @@ std::optional<Complaint> findComplaint(const Scene& given) {
   checkFrame(check, scene);
   checkFields(check, "light", scene);
   checkLights(check, scene);
+  checkFields(check, "", scene);
+  checkGradientOpacity(check, scene);
   checkSurfaces(check, scene);
   checkFields(check, "shading", scene);
   checkFields(check, "sampling", scene);

@@ -95,6 +95,18 @@ const std::vector<SceneField>& table() {
        },
        {.low = 1}},
 
+      {"gradientOpacity",
+       "gradient-opacity",
+       "Medium",
+       "LO HI: the medium appears where values change: not at all up to a gradient of LO, in full from HI on; of a "
+       "transfer function of the value alone, in --gradient-unit; 0 0: everywhere",
+       [](Scene& s) -> FieldPlace { return &s.gradientOpacity; },
+       {.low = 0}},
+      {"gradientUnit", "gradient-unit", "Medium",
+       "of --gradient-opacity: grid (value per world unit, as of 2D transfer functions) or percent (of the volume's "
+       "largest gradient)",
+       [](Scene& s) -> FieldPlace { return Choice(s.gradientUnit, kGradientUnits); }},
+
       {"mode", "mode", "Mode", modes, [](Scene& s) -> FieldPlace { return Choice(s.mode, kModes); }},
       {"shading.kind", "shading", "Mode",
        "none, phong (ambient, diffuse and specular light on the gradient), or auto: phong on isosurfaces, else none",

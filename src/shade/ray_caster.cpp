@@ -12,6 +12,7 @@
 #include "shade/visible_bricks.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/draw/hybrid_picture.h"
 #include "umbrick/draw/value_picture.h"
 #include "umbrick/scene/capabilities.h"
 
@@ -56,7 +57,8 @@ class RayCaster::Implementation {
     if (showsValues(next.mode)) {
       if (!values_) values_.emplace(resident_, options_);
       values_->update(next);
-    } else {
+    }
+    if (traitsOf(next.mode).medium) {
       ResolvedScene medium = mediumOf(next);
       updateMedium(medium, medium_ ? &*medium_ : nullptr);
       medium_ = std::move(medium);
@@ -95,7 +97,7 @@ class RayCaster::Implementation {
 
   std::optional<RaySampling> sampling(const ResolvedScene& scene) const {
     const double edge = shortestVoxelEdge(volume_.indexToWorld);
-    if (showsValues(scene.mode)) return RaySampling{edge / slicesPerVoxel(scene, volume_), edge};
+    if (!traitsOf(scene.mode).medium) return RaySampling{edge / slicesPerVoxel(scene, volume_), edge};
     const double segment = scene.sampling.spacing / scene.sampling.segments;
     if (!withinApron(indexView(scene.camera, volume_.indexToWorld), segment)) return std::nullopt;
     return RaySampling{segment, edge};
@@ -104,26 +106,42 @@ class RayCaster::Implementation {
   void draw(const ResolvedScene& scene, const RenderSample& sample) {
     drawn_ = false;
     resetGlState(gl_);
-    if (showsValues(scene.mode))
+    surfaces_.reset();
+    if (showsValues(scene.mode)) {
+      values_->update(scene);  // changes something where another scene was refused for its medium alone
       values_->draw(scene, sample);
-    else
-      drawMedium(*medium_, sample);
+    }
+    if (scene.mode == Mode::hybrid) takeSurfaces(scene);
+    if (traitsOf(scene.mode).medium) drawMedium(*medium_, sample);
     drawn_ = true;
   }
 
   Picture read(const ResolvedScene& scene) {
     if (!drawn_) throw InvalidArgument("render: nothing was drawn since the scene changed");
     resetGlState(gl_);
-    if (showsValues(scene.mode)) return values_->read(scene);
+    if (!traitsOf(scene.mode).medium) return values_->read(scene);
     Picture picture = readMedium(*medium_);
     if (scene.mode == Mode::xray) {
       picture.visibility = picture.depth = picture.opacity = Image();
       showThrough(scene, picture);
     }
+    if (scene.mode == Mode::hybrid) return composite(scene, *surfaces_, picture);
     return picture;
   }
 
  private:
+  // Brings the surfaces to memory, and where the medium begins behind them to a texture.
+  void takeSurfaces(const ResolvedScene& scene) {
+    const int width = scene.camera.width, height = scene.camera.height;
+    surfaces_ = values_->readFirst(scene);
+    if (startSize_ != glm::ivec2(width, height)) {
+      start_ = makeTexture2d(gl_, GL_R32F, width, height, GL_NEAREST);
+      startSize_ = {width, height};
+    }
+    gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    gl_.TextureSubImage2D(start_.name(), 0, 0, 0, width, height, GL_RED, GL_FLOAT, surfaces_->start.pixels.data());
+  }
+
   void drawMedium(const ResolvedScene& scene, const RenderSample& sample) {
     stats_ = {};
     const Stopwatch geometry;
@@ -148,6 +166,7 @@ class RayCaster::Implementation {
                         *held_.transfer,
                         *held_.bricks,
                         lit ? &light_ : nullptr,
+                        surfaces_ ? &start_ : nullptr,
                         codes_,
                         volume_,
                         *held_.targets,
@@ -225,9 +244,12 @@ class RayCaster::Implementation {
   const VoxelCodes codes_;
   ResidentLight light_;
   RayRuns runs_;
-  std::uint64_t version_ = 0;            // of what parts of bricks show
-  std::optional<ResolvedScene> medium_;  // whose medium is held; none: there was no such scene yet
-  std::optional<ValueCaster> values_;    // of modes that look at values; none: there was no such scene yet
+  std::uint64_t version_ = 0;              // of what parts of bricks show
+  std::optional<ResolvedScene> medium_;    // whose medium is held; none: there was no such scene yet
+  std::optional<ValueCaster> values_;      // of modes that look at values; none: there was no such scene yet
+  std::optional<FirstSurfaces> surfaces_;  // of the mode hybrid; none: of another one
+  GlTexture start_;                        // where the medium begins behind them
+  glm::ivec2 startSize_{0};
   RayPass pass_;
   bool drawn_ = false;  // nothing was thrown on the way, and the scene is the same
   bool lit_ = false;    // what was drawn reads the light

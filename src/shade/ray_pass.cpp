@@ -39,6 +39,7 @@ void RayPass::begin(const RayScene& rays) {
                             {"kClipPlanes", static_cast<int>(rays.planes.size())},
                             {"kTextures", std::clamp(rays.bricks.atlas().textureCount(), 1, kRayTextures)},
                             {"kLit", light != nullptr},
+                            {"kStarts", rays.start != nullptr},
                             {"kColoured", light && light->coloured()},
                             {"kAux", rays.targets.picture.options.aux}};
   rays.transfer.setConstants(constants);
@@ -70,6 +71,7 @@ void RayPass::setState(const RayScene& rays, const RayRun& run) {
   }
   gl.BindTextureUnit(kTransferUnit, rays.transfer.texture());
   gl.BindTextureUnit(kSlotsUnit, slots_.texture());
+  if (rays.start) gl.BindTextureUnit(kStartUnit, rays.start->name());
   bindVoxels(gl, rays.bricks.atlas(), run.cells.textures);
   for (std::size_t i = 0; rays.light && i < run.cells.textures.size(); ++i)
     gl.BindTextureUnit(i == 0 ? kLightUnit : kMoreLightUnit + static_cast<GLuint>(i) - 1,

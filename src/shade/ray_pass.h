@@ -40,6 +40,7 @@ struct RayScene {
   const TransferLookup& transfer;
   const BrickSelection& bricks;
   const ResidentLight* light;  // null: all is lit alike
+  const GlTexture* start;      // as ray_march.frag reads it; null: rays begin at the eye
   const VoxelCodes& codes;
   const Bricks& volume;
   const RayTargets& targets;

@@ -7,6 +7,7 @@
 #include "shade/constants.h"
 #include "shade/phong_uniforms.h"
 #include "umbrick/core/memory.h"
+#include "umbrick/draw/hybrid_picture.h"
 #include "umbrick/draw/value_picture.h"
 
 namespace umbrick {
@@ -16,13 +17,21 @@ double lowestOf(const ResolvedScene& scene) {
   return std::ranges::min_element(scene.surfaces, {}, &SceneSurface::value)->value;
 }
 
+// Of hybrid only the first surface of a ray counts. So it is drawn as if it were opaque, and gets its opacity once all
+// runs of bricks are through.
+bool drawsFirst(const ResolvedScene& scene) { return scene.mode == Mode::hybrid; }
+
+double opacityOf(const ResolvedScene& scene, const float* nearest) {
+  return nearest[3] > 0 ? scene.surfaces[static_cast<std::size_t>(nearest[1])].opacity : 0;
+}
+
 void setSurfaces(GlProgram& program, const ValueScene& rays) {
   const double base = rays.codes.toCode(lowestOf(rays.scene));
   std::vector<glm::vec4> surfaces, codes;
   float highest = 0;
   for (const SceneSurface& surface : rays.scene.surfaces) {
     const glm::dvec3 colour = surface.colour.value_or(rays.scene.transfer(surface.value, 0).albedo);
-    surfaces.emplace_back(colour, surface.opacity);
+    surfaces.emplace_back(colour, drawsFirst(rays.scene) ? 1 : surface.opacity);
     const auto code = static_cast<float>(rays.codes.toCode(surface.value) - base);
     codes.emplace_back(code, 0, 0, 0);
     highest = std::max(highest, code);
@@ -113,7 +122,12 @@ void SurfacePass::draw(const ValueScene& rays, const RayFrame& frame, const RayR
 
 void SurfacePass::show(const GlFunctions& gl, const ResolvedScene& scene, const IndexView& view, bool count,
                        Picture& picture) const {
-  const Image eye = readTexture(gl, eye_, size_.x, size_.y);
+  Image eye = readTexture(gl, eye_, size_.x, size_.y);
+  if (drawsFirst(scene)) {
+    const Image nearest = readTexture(gl, nearest_, size_.x, size_.y);
+    for (std::size_t i = 0; i < eye.pixels.size(); ++i)
+      eye.pixels[i] *= static_cast<float>(opacityOf(scene, &nearest.pixels[i / 4 * 4]));
+  }
   picture.colour = Image(size_.x, size_.y);
   for (std::size_t i = 0; i < eye.pixels.size(); i += 4) {
     glm::dvec4 pixel(eye.pixels[i], eye.pixels[i + 1], eye.pixels[i + 2], eye.pixels[i + 3]);
@@ -142,7 +156,8 @@ void SurfacePass::showLayers(const GlFunctions& gl, const ResolvedScene& scene, 
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const float *const sum = sums.at(x, y), *const normal = normals.at(x, y), *const hit = nearest.at(x, y);
-      *picture.opacity.at(x, y) = std::min(sum[3], 1.0f);
+      *picture.opacity.at(x, y) =
+          drawsFirst(scene) ? static_cast<float>(opacityOf(scene, hit)) : std::min(sum[3], 1.0f);
       *picture.depth.at(x, y) = sum[3] > 0 ? static_cast<float>(first + depth_ * static_cast<double>(sum[0] / sum[3]))
                                            : std::numeric_limits<float>::infinity();
       if (!(hit[3] > 0)) continue;
@@ -155,6 +170,19 @@ void SurfacePass::showLayers(const GlFunctions& gl, const ResolvedScene& scene, 
     }
   picture.visibility = picture.opacity;
   layers.moveTo(picture);
+}
+
+Image SurfacePass::start(const GlFunctions& gl, const ResolvedScene& scene) const {
+  const Image nearest = readTexture(gl, nearest_, size_.x, size_.y);
+  Image start(size_.x, size_.y, 1);
+  const double first = firstDepth_.value_or(0);
+  for (std::size_t i = 0; i < start.pixels.size(); ++i) {
+    const float* const hit = &nearest.pixels[4 * i];
+    const double depth =
+        hit[3] > 0 ? first + depth_ * static_cast<double>(hit[0]) : std::numeric_limits<double>::infinity();
+    start.pixels[i] = static_cast<float>(startBehind(scene, depth, opacityOf(scene, hit)));
+  }
+  return start;
 }
 
 std::uint64_t SurfacePass::bytes() const {

@@ -18,6 +18,9 @@ class SurfacePass {
   /// Fills in the picture's colour and its layers. @param count  also the number of cells that were looked at
   void show(const GlFunctions& gl, const ResolvedScene& scene, const IndexView& view, bool count,
             Picture& picture) const;
+  /// Returns the depth from which each ray sees the medium behind its surface, of a scene of the mode hybrid; see
+  /// FirstSurfaces. @pre begin() with layers
+  Image start(const GlFunctions& gl, const ResolvedScene& scene) const;
   std::uint64_t bytes() const;
 
  private:

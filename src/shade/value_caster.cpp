@@ -74,7 +74,7 @@ void ValueCaster::draw(const ResolvedScene& scene, const RenderSample& sample) {
   const ValueScene rays{gl, scene, view_, planes, volume, *bricks_, codes_, options_.progress};
   const bool surfaces = wanted_->surfaces;
   if (surfaces)
-    surfaces_.begin(rays, options_.visibilityAndDepth);
+    surfaces_.begin(rays, options_.visibilityAndDepth || scene.mode == Mode::hybrid);
   else
     projection_.begin(rays, slicesPerVoxel(scene, volume));
   const std::uint64_t uploadedBefore = resident_.atlas().uploadedBricks();
@@ -127,6 +127,17 @@ Picture ValueCaster::read(const ResolvedScene& scene) {
   addTextures(resident_.atlas(), picture.stats);
   picture.stats.bufferBytes = wanted_->surfaces ? surfaces_.bytes() : projection_.bytes();
   return picture;
+}
+
+FirstSurfaces ValueCaster::readFirst(const ResolvedScene& scene) {
+  ResolvedScene surfaces = scene;
+  surfaces.background.reset();
+  FirstSurfaces first{read(surfaces), {}};
+  first.start = surfaces_.start(resident_.context().gl(), scene);
+  if (options_.visibilityAndDepth) return first;
+  first.picture.visibility = first.picture.depth = first.picture.opacity = Image();
+  first.picture.layers.clear();
+  return first;
 }
 
 }  // namespace umbrick

@@ -7,7 +7,7 @@
 #include "shade/projection_pass.h"
 #include "shade/surface_pass.h"
 #include "umbrick/atlas/resident_volume.h"
-#include "umbrick/draw/renderer.h"
+#include "umbrick/draw/hybrid_picture.h"
 
 namespace umbrick {
 
@@ -23,6 +23,8 @@ class ValueCaster {
   void update(const ResolvedScene& next);
   void draw(const ResolvedScene& scene, const RenderSample& sample);
   Picture read(const ResolvedScene& scene);
+  /// Reads the first surface of each ray, of a scene of the mode hybrid. @pre draw()
+  FirstSurfaces readFirst(const ResolvedScene& scene);
 
  private:
   // What bricks are selected for.

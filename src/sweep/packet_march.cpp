@@ -20,10 +20,11 @@ std::int64_t wholeBelow(double at) { return static_cast<std::int64_t>(std::floor
 
 PacketMarch::PacketMarch(const PacketFrame& frame) : frame_(frame) {}
 
-std::uint64_t PacketMarch::march(const std::array<glm::dvec2, kRayGroup>& screen, PacketPixels& pixels) {
+std::uint64_t PacketMarch::march(const std::array<glm::dvec2, kRayGroup>& screen, PacketPixels& pixels,
+                                 const std::array<double, kRayGroup>* starts) {
   samples_ = 0;
   if (aim(screen)) {
-    marchTogether(pixels);
+    marchTogether(pixels, starts);
     return samples_;
   }
   // Rays that are far apart, in small pictures of wide views, go one by one.
@@ -32,19 +33,21 @@ std::uint64_t PacketMarch::march(const std::array<glm::dvec2, kRayGroup>& screen
     single.fill(screen[i]);
     aim(single);
     PacketPixels own;
-    marchTogether(own);
+    std::array<double, kRayGroup> start;
+    if (starts) start.fill((*starts)[i]);
+    marchTogether(own, starts ? &start : nullptr);
     pixels.colour[i] = own.colour.front();
     pixels.aux[i] = own.aux.front();
   }
   return samples_;
 }
 
-void PacketMarch::marchTogether(PacketPixels& pixels) {
+void PacketMarch::marchTogether(PacketPixels& pixels, const std::array<double, kRayGroup>* starts) {
   full_ = 0;
   isSampled_ = {};
   for (Lanes* lanes : {&red_, &green_, &blue_, &opacity_, &seen_, &depth_}) lanes->fill(0);
   if (enterBox()) {
-    clip();
+    clip(starts);
     if (first_ != last_) marchLayers();
   }
   for (std::size_t i = 0; i < kRayGroup; ++i) {
@@ -78,8 +81,10 @@ bool PacketMarch::aim(const std::array<glm::dvec2, kRayGroup>& screen) {
     glm::dvec2 slope = glm::dvec2(along) / along.z;
     if (frame_.perspective) {
       exact_[i] = slope;
+      placesByDepth_[i] = {axes_->eye.z, along.z};
     } else {
       const glm::dvec3 o = axes_->eye + axes_->screen[0] * screen[i].x + axes_->screen[1] * screen[i].y;
+      placesByDepth_[i] = {o.z, along.z};
       exact_[i] = glm::dvec2(o) + slope_ * (axes_->eye.z - o.z);
       slope = slope_;
     }
@@ -151,10 +156,11 @@ bool PacketMarch::enterBox() {
   return true;
 }
 
-void PacketMarch::clip() {
+void PacketMarch::clip(const std::array<double, kRayGroup>* starts) {
+  clipped_ = starts || !axes_->planes.empty();
   firstEnter_ = lastEnter_ = 0;
   firstLeave_ = lastLeave_ = std::numeric_limits<float>::max();
-  if (axes_->planes.empty()) return;
+  if (!clipped_) return;
   const double way = std::abs(last_ - first_);
   for (std::size_t i = 0; i < kRayGroup; ++i) {
     const double distance = first_ - axes_->eye.z;
@@ -163,6 +169,11 @@ void PacketMarch::clip() {
     const KeptWay kept = keptWay(axes_->planes, at, first_, slope, sign_, way + 1);
     enter_[i] = kept.enter;
     leave_[i] = kept.leave;
+    if (!starts) continue;
+    const double start = ((placesByDepth_[i].x + placesByDepth_[i].y * (*starts)[i]) - first_) * sign_;
+    // Behind its end a ray has nothing to begin with.
+    enter_[i] = std::max(enter_[i], static_cast<float>(std::min(start, way + 1)));
+    leave_[i] = std::max(leave_[i], enter_[i]);
   }
   firstEnter_ = *std::ranges::min_element(enter_);
   lastEnter_ = *std::ranges::max_element(enter_);
@@ -224,7 +235,7 @@ bool PacketMarch::hasBricks(double from, double to, std::int64_t cellN) {
 
 // Tells whether groups of cells show something that the rays may meet between two slices of one layer of groups.
 bool PacketMarch::isActive(double from, double to, std::int64_t group) {
-  if (!axes_->planes.empty()) {
+  if (clipped_) {
     const double begin = std::abs(from - first_), end = std::abs(to - first_);
     if (lastLeave_ <= begin || firstEnter_ >= end) return false;
   }
@@ -261,7 +272,7 @@ void PacketMarch::segment(double from, double to) {
   if (front < 0) sample(from, side);
   sample(to, 1 - side);
   RowSegment part = frame_.segment(first_, from, to);
-  part.clipped = !axes_->planes.empty() && (lastEnter_ > part.from || firstLeave_ < part.to);
+  part.clipped = clipped_ && (lastEnter_ > part.from || firstLeave_ < part.to);
   const RowRays rays{red_.data(),
                      green_.data(),
                      blue_.data(),

@@ -49,11 +49,13 @@ class PacketMarch {
   explicit PacketMarch(const PacketFrame& frame);
 
   /// @param screen  the points of the screen that the rays are seen through
+  /// @param starts  depths along the view axis before which rays see nothing, world units; null: they begin at the eye
   /// @return the number of samples that were integrated
-  std::uint64_t march(const std::array<glm::dvec2, kRayGroup>& screen, PacketPixels& pixels);
+  std::uint64_t march(const std::array<glm::dvec2, kRayGroup>& screen, PacketPixels& pixels,
+                      const std::array<double, kRayGroup>* starts = nullptr);
 
  private:
-  void marchTogether(PacketPixels& pixels);
+  void marchTogether(PacketPixels& pixels, const std::array<double, kRayGroup>* starts);
   using Lanes = std::array<float, kRayGroup>;
   // The bricks of a part of a layer, as they were listed last: those that are not held first.
   struct Listed {
@@ -66,7 +68,7 @@ class PacketMarch {
   };
   bool aim(const std::array<glm::dvec2, kRayGroup>& screen);
   bool enterBox();
-  void clip();
+  void clip(const std::array<double, kRayGroup>* starts);
   void marchLayers();
   bool isActive(double from, double to, std::int64_t layer);
   bool hasBricks(double from, double to, std::int64_t cellN);
@@ -92,11 +94,13 @@ class PacketMarch {
   std::array<glm::dvec4, 2> bounds_{};
   Lanes acrossU_{}, acrossV_{};  // the same by ray
   std::array<glm::dvec2, kRayGroup> exact_{};
+  std::array<glm::dvec2, kRayGroup> placesByDepth_{};  // along n: x + y depth
   Lanes red_{}, green_{}, blue_{}, opacity_{}, seen_{}, depth_{}, length_{}, enter_{}, leave_{};
   std::array<std::array<Lanes, kMostFields>, 2> fields_{};
   std::array<double, 2> sampledAt_{};  // along n
   std::array<bool, 2> isSampled_{};
   std::uint8_t full_ = 0;
+  bool clipped_ = false;         // rays begin or end on their way
   double first_ = 0, last_ = 0;  // along n, front and back
   float firstEnter_ = 0, lastEnter_ = 0, firstLeave_ = 0, lastLeave_ = 0;
   std::vector<PacketBrick> bricks_;

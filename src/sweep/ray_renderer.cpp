@@ -18,6 +18,7 @@
 #include "sweep/value_rays.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/draw/hybrid_picture.h"
 #include "umbrick/draw/value_picture.h"
 #include "umbrick/scene/capabilities.h"
 
@@ -73,7 +74,8 @@ RowSpan rowsOf(const Brick& brick, const IndexView& view, const glm::ivec3& inte
 }  // namespace
 
 bool raysSupport(const SceneSettings& scene) {
-  return supportsMode(scene, Technique::rays) && (scene.mode != Mode::integrate || sweptSupports(scene));
+  return supportsMode(scene, Technique::rays) &&
+         (!traitsOf(scene.mode).medium || scene.mode == Mode::xray || sweptSupports(scene));
 }
 
 int raySamplesPerVoxel(const ResolvedScene& scene, const Bricks& volume) {
@@ -90,7 +92,8 @@ class RayRenderer::Implementation {
     if (showsValues(next.mode)) {
       if (!values_) values_.emplace(scene_.volume(), options_);
       values_->update(next);
-    } else {
+    }
+    if (traitsOf(next.mode).medium) {
       const ResolvedScene medium = mediumOf(next);
       scene_.update(medium, medium_ ? &*medium_ : nullptr);
       medium_ = medium;
@@ -105,22 +108,29 @@ class RayRenderer::Implementation {
 
   void draw(const ResolvedScene& scene, const RenderSample& sample) {
     picture_.reset();
-    if (showsValues(scene.mode)) {
+    if (!traitsOf(scene.mode).medium) {
       picture_ = values_->draw(scene, sample, perVoxel_.value_or(raySamplesPerVoxel(scene, scene_.volume())));
       return;
     }
     const bool through = scene.mode == Mode::xray;
     Picture picture = emptyPicture(scene, options_.visibilityAndDepth && !through);
     const ResolvedScene& medium = *medium_;
+    std::optional<FirstSurfaces> surfaces;
+    if (scene.mode == Mode::hybrid) {
+      values_->update(scene);  // changes something where another scene was refused for its medium alone
+      surfaces = values_->drawFirst(scene, sample);
+    }
+    const Image* const starts = surfaces ? &surfaces->start : nullptr;
     scene_.prepare(medium, sample, picture.stats);
     const Stopwatch sweep;
     scene_.drawInBands(
         medium, medium.camera.height, kPacketEdge,
         [&](const Brick& brick) { return rowsOf(brick, scene_.view(), scene_.volume().layout.interior); },
-        [&](int begin, int end) { march(medium, frameOf(medium), begin, end, picture); }, picture.stats);
+        [&](int begin, int end) { march(medium, frameOf(medium), starts, begin, end, picture); }, picture.stats);
     if (through) showThrough(scene, picture);
     picture.stats.sweepMs = sweep.elapsedMs();
     picture.stats.bufferBytes = picture.colour.pixels.size() * sizeof(float);
+    if (surfaces) picture = composite(scene, std::move(*surfaces), picture);
     picture_ = std::move(picture);
   }
 
@@ -146,7 +156,9 @@ class RayRenderer::Implementation {
   }
 
   // Fills the rows of pixels begin <= y < end.
-  void march(const ResolvedScene& scene, const PacketFrame& frame, int begin, int end, Picture& picture) const {
+  // @param starts  depths from which rays see the medium; null: from the eye
+  void march(const ResolvedScene& scene, const PacketFrame& frame, const Image* starts, int begin, int end,
+             Picture& picture) const {
     const int width = scene.camera.width, height = scene.camera.height;
     const int columns = (width + kPacketEdge - 1) / kPacketEdge, rows = (height + kPacketEdge - 1) / kPacketEdge;
     const IndexView& view = scene_.view();
@@ -163,15 +175,18 @@ class RayRenderer::Implementation {
           for (int row = range.begin(); row != range.end(); ++row)
             for (int column = 0; column < columns; ++column) {
               std::array<glm::dvec2, kRayGroup> screen;
+              std::array<double, kRayGroup> start{};
               for (int i = 0; i < kRayGroup; ++i) {
                 // What would lie outside of the picture goes with its last pixels.
-                const glm::dvec2 pixel(std::min(column * kPacketEdge + i % kPacketEdge, width - 1) + 0.5,
-                                       std::min(row * kPacketEdge + i / kPacketEdge, height - 1) + 0.5);
+                const int x = std::min(column * kPacketEdge + i % kPacketEdge, width - 1),
+                          y = std::min(row * kPacketEdge + i / kPacketEdge, height - 1);
+                const glm::dvec2 pixel(x + 0.5, y + 0.5);
                 screen[static_cast<std::size_t>(i)] =
                     view.centre + view.halfExtent * (2.0 * pixel / glm::dvec2(width, height) - 1.0);
+                if (starts) start[static_cast<std::size_t>(i)] = static_cast<double>(*starts->at(x, y));
               }
               PacketPixels pixels{};
-              if (!nothing) taken += march.march(screen, pixels);
+              if (!nothing) taken += march.march(screen, pixels, starts ? &start : nullptr);
               for (int i = 0; i < kRayGroup; ++i) {
                 const int x = column * kPacketEdge + i % kPacketEdge, y = row * kPacketEdge + i / kPacketEdge;
                 if (x >= width || y >= height) continue;

@@ -192,7 +192,8 @@ void SweptScene::storePixel(const ResolvedScene& scene, std::size_t at, const gl
   }
   out[3] = scene.background ? 1 : opacity;
   if (picture.depth.pixels.empty()) return;
-  picture.visibility.pixels[at] = aux.x;
+  // What is reflected is no light that something is in the way of.
+  picture.visibility.pixels[at] = isShaded(scene) ? opacity : aux.x;
   picture.opacity.pixels[at] = opacity;
   picture.depth.pixels[at] = opacity > 0 ? aux.y / opacity : std::numeric_limits<float>::infinity();
 }

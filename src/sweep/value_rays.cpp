@@ -82,7 +82,8 @@ void ValueRays::update(const ResolvedScene& next) {
   loaded_ += voxels_.loaded();
 }
 
-Picture ValueRays::draw(const ResolvedScene& scene, const RenderSample& sample, int perVoxel) {
+// Begins a picture: where its rays go, and what is known of it before they do.
+Picture ValueRays::begin(const ResolvedScene& scene, const RenderSample& sample) {
   const bool surfaces = traitsOf(scene.mode).surfaces;
   Picture picture = emptyPicture(scene, options_.visibilityAndDepth && surfaces);
   RenderStats& stats = picture.stats;
@@ -94,14 +95,30 @@ Picture ValueRays::draw(const ResolvedScene& scene, const RenderSample& sample, 
   view_ = indexView(scene.camera, voxels_.volume().indexToWorld);
   view_.seeThrough(sample.pixel);
   planes_ = indexPlanes(scene, voxels_.volume(), false);
-  const Stopwatch sweep;
-  if (surfaces)
-    drawSurfaces(scene, picture);
-  else
-    drawProjection(scene, perVoxel, picture);
-  stats.sweepMs = sweep.elapsedMs();
   stats.bufferBytes = picture.colour.pixels.size() * sizeof(float);
   return picture;
+}
+
+Picture ValueRays::draw(const ResolvedScene& scene, const RenderSample& sample, int perVoxel) {
+  Picture picture = begin(scene, sample);
+  const Stopwatch sweep;
+  if (traitsOf(scene.mode).surfaces)
+    drawSurfaces(scene, picture, nullptr);
+  else
+    drawProjection(scene, perVoxel, picture);
+  picture.stats.sweepMs = sweep.elapsedMs();
+  return picture;
+}
+
+FirstSurfaces ValueRays::drawFirst(const ResolvedScene& scene, const RenderSample& sample) {
+  ResolvedScene surfaces = scene;
+  surfaces.background.reset();
+  FirstSurfaces first{begin(surfaces, sample), Image(scene.camera.width, scene.camera.height, 1)};
+  const Stopwatch sweep;
+  drawSurfaces(surfaces, first.picture, &first.start);
+  first.picture.stats.sweepMs = sweep.elapsedMs();
+  first.picture.stats.bufferBytes += first.start.pixels.size() * sizeof(float);
+  return first;
 }
 
 // Draws rows on all cores and tells how many are done.
@@ -154,7 +171,7 @@ void ValueRays::drawProjection(const ResolvedScene& scene, int perVoxel, Picture
   picture.layers.push_back({"value", std::move(values), true});
 }
 
-void ValueRays::drawSurfaces(const ResolvedScene& scene, Picture& picture) {
+void ValueRays::drawSurfaces(const ResolvedScene& scene, Picture& picture, Image* start) {
   const Bricks& volume = voxels_.volume();
   const int width = scene.camera.width, height = scene.camera.height;
   std::optional<SurfaceLayers> layers;
@@ -173,18 +190,20 @@ void ValueRays::drawSurfaces(const ResolvedScene& scene, Picture& picture) {
       ray.clip(planes);
       const WorldRay world = worldRay(scene.camera, camera, screen);
       glm::dvec4 pixel(0);
-      double depth = 0;
+      double depth = 0, behind = std::numeric_limits<double>::infinity();
       const auto visit = [&](const SurfaceHit& hit) {
         const ShadedSurface shaded = shader.shade(hit.surface, hit.gradient, world.viewer);
         const double share = (1 - pixel.w) * scene.surfaces[hit.surface].opacity;
-        if (layers && pixel.w == 0 && share > 0)
+        if (layers && pixel.w == 0 && (share > 0 || start))
           layers->keep(x, y, scene.surfaces[hit.surface].value, world.from + hit.t * world.along, shaded.normal);
         pixel += share * glm::dvec4(shaded.colour, 1);
         depth += share * hit.t;
-        return pixel.w < full;
+        behind = startBehind(scene, hit.t, pixel.w);
+        return !start && pixel.w < full;
       };
       if (!ray.empty()) tracer.trace(ray, visit);
       storeOver(scene, pixel, picture.colour.at(x, y));
+      if (start) *start->at(x, y) = static_cast<float>(behind);
       if (!layers) continue;
       const auto opacity = static_cast<float>(pixel.w);
       *picture.opacity.at(x, y) = *picture.visibility.at(x, y) = opacity;

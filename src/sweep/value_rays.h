@@ -10,11 +10,12 @@
 #include "sweep/brick_table.h"
 #include "sweep/brick_voxels.h"
 #include "sweep/projection_march.h"
-#include "umbrick/draw/renderer.h"
+#include "umbrick/draw/hybrid_picture.h"
 
 namespace umbrick {
 
-/// Renders the modes that look at values and not at a medium: mip, minip, average and isosurface.
+/// Renders the modes that look at values and not at a medium, mip, minip, average and isosurface, and the surfaces of
+/// hybrid.
 class ValueRays {
  public:
   /// @param volume    outlives this
@@ -26,10 +27,14 @@ class ValueRays {
   void update(const ResolvedScene& next);
   /// @param perVoxel  slices of a projection between two slices of voxels
   Picture draw(const ResolvedScene& scene, const RenderSample& sample, int perVoxel);
+  /// Draws the first surface of each ray, of a scene of the mode hybrid.
+  FirstSurfaces drawFirst(const ResolvedScene& scene, const RenderSample& sample);
 
  private:
   void drawProjection(const ResolvedScene& scene, int perVoxel, Picture& picture);
-  void drawSurfaces(const ResolvedScene& scene, Picture& picture);
+  Picture begin(const ResolvedScene& scene, const RenderSample& sample);
+  /// @param start  null: all surfaces of a ray are drawn; else the first one, with where the medium behind it begins
+  void drawSurfaces(const ResolvedScene& scene, Picture& picture, Image* start);
   void eachRow(int rows, const std::function<void(int)>& draw) const;
 
   RenderOptions options_;

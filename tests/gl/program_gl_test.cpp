@@ -100,6 +100,7 @@ TEST_CASE("Every shader that is not an include compiles by itself, or says where
                                           {"kWindows", 17},
                                           {"kColoured", perspective},
                                           {"kShaded", perspective},
+                                          {"kStarts", perspective},
                                           {"kShadingLights", planes > 0 ? 2 : 0},
                                           {"kProjection", quadrature},
                                           {"kPerVoxel", 1 + perspective},

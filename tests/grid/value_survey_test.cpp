@@ -114,3 +114,33 @@ TEST_CASE("The box of accepted voxels is exact, and empty for none", "[grid]") {
   CHECK(acceptedBox(grid, [](double value) { return value > 0.5; }) == expected);
   CHECK(acceptedBox(grid, [](double) { return false; }).empty());
 }
+
+TEST_CASE("The largest gradient is that of central differences in the world, whatever holds the voxels", "[grid]") {
+  // Of a cone its slope, in voxels that are twice as long along z.
+  const ScalarGrid cone = withTransform(
+      makeFilled(
+          glm::ivec3(40), glm::ivec3(-20), [](const glm::ivec3& i) { return 30.0 - (i.x - 20.0) - 2 * (i.z - 20.0); },
+          0),
+      glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 2, 0), glm::dvec4(5, 6, 7, 1)));
+  double largest = 0;
+  const auto accessor = cone.grid->getConstAccessor();
+  for (auto voxel = cone.grid->cbeginValueOn(); voxel; ++voxel) {
+    const openvdb::Coord at = voxel.getCoord();
+    glm::dvec3 slope;
+    for (int axis = 0; axis < 3; ++axis) {
+      openvdb::Coord above = at, below = at;
+      ++above[axis];
+      --below[axis];
+      slope[axis] = (double(accessor.getValue(above)) - double(accessor.getValue(below))) / (axis == 2 ? 4 : 2);
+    }
+    largest = std::max(largest, glm::length(slope));
+  }
+  CHECK(largestGradient(cone) == Approx(largest).epsilon(1e-12));
+  // A cube of tiles drops to the background at its corner.
+  auto tiles = openvdb::FloatGrid::create(1);
+  tiles->denseFill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(15)), 4, true);
+  tiles->tree().prune();
+  REQUIRE(tiles->activeVoxelCount() == 16 * 16 * 16);
+  REQUIRE(tiles->tree().leafCount() == 0);
+  CHECK(largestGradient({tiles, "tiles"}) == Approx(std::sqrt(3.0) * 1.5));
+}

@@ -99,6 +99,7 @@ TEST_CASE("Every mode has traits, and a technique that renders it", "[scene][mod
     CHECK(meanings.insert(traits.meaning).second);
     if (traits.ofValues) CHECK(traits.projection);
     CHECK_FALSE((traits.projection && traits.surfaces));
+    CHECK((traits.ofValues || traits.surfaces || traits.medium));
     CHECK(supports(Technique::rays, mode));
     SceneSettings scene;
     scene.mode = mode;

@@ -73,8 +73,10 @@ TEST_CASE("A medium that reflects light is that of the reference, by rays and by
       ResolvedScene scene = shadedScene(coloured(), orbitCamera(grid.worldBounds(), 1.7, 0.4, base));
       if (sources) addLights(scene);
       INFO("perspective " << (projection == Projection::perspective) << ", sources " << sources);
-      const Image exact = renderReference(grid, scene).colour;
+      const ReferencePicture reference = renderReference(grid, scene);
+      const Image& exact = reference.colour;
       CHECK(largestAlpha(exact) > 0.5);
+      CHECK(rmsDifference(valuePicture(grid, scene, 4, true).visibility, reference.visibility) < 1e-3);
       // Light counts as that of a segment's middle.
       CHECK(rmsDifference(valuePicture(grid, scene, 4).colour, exact) < 1e-3);
       const auto bricks = valueBricks(grid, scene);

@@ -26,7 +26,7 @@ inline SceneSurface surfaceAt(double value, double opacity = 1) {
 inline std::unique_ptr<Bricks> valueBricks(const ScalarGrid& grid, const ResolvedScene& scene) {
   BrickOptions bricks;
   bricks.interior = scene.bricks.interior;
-  bricks.apron = isShaded(scene) || scene.mode == Mode::isosurface ? SurfaceRays::kApron : 1;
+  bricks.apron = isShaded(scene) || traitsOf(scene.mode).surfaces ? SurfaceRays::kApron : 1;
   bricks.gradients = scene.transfer.is2d();
   return cutGrid(grid, bricks, scene.bricks.bricked);
 }

@@ -6,6 +6,7 @@
 
 #include "umbrick/core/error.h"
 #include "umbrick/render/suggest_transfer.h"
+#include "umbrick/scene/capabilities.h"
 #include "view/surface_value.h"
 
 namespace umbrick::view {
@@ -68,7 +69,7 @@ Scene ViewState::patched(const Json& patch) const {
     next.transfer = fitted(*next.transfer, *volume_);  // looks at the whole volume
   if (next.orbit) next.orbit = settledOrbit(*next.orbit, volume_->orientation());
   // A page that asks for surfaces sees one, whose value it can change.
-  if (next.mode == Mode::isosurface && next.surfaces.empty()) {
+  if (traitsOf(next.mode).surfaces && next.surfaces.empty()) {
     if (!surface_) surface_ = suggestSurface(volume_->grid());  // looks at the whole volume
     next.surfaces = {SceneSurface{*surface_}};
   }

@@ -10,7 +10,7 @@
 
 namespace umbrick {
 
-/// Tells whether a mode looks at values and not at a medium.
+/// Tells whether a mode looks at values. All but hybrid look at no medium then.
 bool showsValues(Mode mode);
 
 /// Bricks need an apron of this for surfaces, and for a medium that reflects light: central differences of a cell's
@@ -26,8 +26,8 @@ void checkSurfaces(const ResolvedScene& scene, const Range& values, int apron);
 /// @throw InvalidArgument  as shadingLights; the medium is lit in another way, too; the apron is too small
 void checkShading(const ResolvedScene& scene, int apron);
 
-/// Returns the scene whose medium an X-ray sees: all else than the light that gets through does not matter, which is
-/// asked for to the last bit. Scenes of other modes are returned as they are.
+/// Returns the scene whose medium a mode sees. To an X-ray all else than the light that gets through does not matter,
+/// which is asked for to the last bit; of hybrid it is mediumBehind(). Scenes of other modes are returned as they are.
 ResolvedScene mediumOf(const ResolvedScene& scene);
 /// Makes an X-ray of a picture of that medium. The share that gets through is its layer "value".
 void showThrough(const ResolvedScene& scene, Picture& picture);

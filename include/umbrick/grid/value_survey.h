@@ -42,6 +42,10 @@ inline constexpr int kMostDistinct = 64;
 /// of all voxels, spread evenly.
 ValueSurvey surveyValues(const ScalarGrid& grid);
 
+/// Returns the largest gradient magnitude of active voxels, by central differences with the neighbours that are finite;
+/// grid units per world unit.
+double largestGradient(const ScalarGrid& grid);
+
 /// Integrates a function of the value along columns of voxels, for an idea of the optical depth of what is shown.
 /// @param axis    of the grid's index space along which columns run: 0, 1 or 2
 /// @param weight  of a value, >= 0; is called by several threads

@@ -52,9 +52,12 @@ class Volume {
   /// diagonal of the volume. Where it shows nothing, the box of all active voxels. Faces of voxels count, not centres.
   Box visibleBounds(const TransferFunction& transfer) const;
 
+  /// Returns the largest gradient magnitude of active voxels, grid units per world unit. It is looked for once.
+  double largestGradient() const;
+
   /// Returns the scene with everything that depends on the volume written out: a transfer function (suggestTransfer()
   /// where there is none; one that is made for another unit of CT values is shifted), a camera that sees what the
-  /// transfer function shows, the edge of its bricks.
+  /// transfer function shows, the edge of its bricks, gradients that were in percent.
   /// @throw InvalidArgument  as resolveScene and brickInterior
   ResolvedScene resolve(const Scene& scene) const;
   /// The same, with an orbit around a box, so that the camera stays where the transfer function changes.
@@ -70,6 +73,7 @@ class Volume {
   std::unique_ptr<Bricks> cutForRefinement(const ResolvedScene& scene) const;
 
  private:
+  struct LazyGradient;
   ScalarGrid grid_;
   std::string name_;
   glm::dmat4 indexToWorld_{1};
@@ -80,6 +84,7 @@ class Volume {
   bool foreign_ = false;
   std::vector<std::string> notes_;
   VolumeReference source_;
+  std::shared_ptr<LazyGradient> largestGradient_;  // shared by copies, which have the same voxels
 };
 
 /// Unit names of CT values, in a transfer function and in the metadata "value_unit".

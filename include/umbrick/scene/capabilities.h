@@ -50,7 +50,8 @@ struct ModeTraits {
   std::string_view meaning;  // for help: "the largest value along each ray"
   bool projection = false;   // a number a ray, which is the picture's layer "value"
   bool ofValues = false;     // that number is a value of the grid
-  bool surfaces = false;     // the scene's surfaces are what is seen
+  bool surfaces = false;     // the scene's surfaces are seen
+  bool medium = false;       // a medium is seen
 };
 std::span<const ModeTraits> modeTraits();
 const ModeTraits& traitsOf(Mode mode);

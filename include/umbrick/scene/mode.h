@@ -13,11 +13,15 @@ namespace umbrick {
 /// What a picture shows along each ray. `integrate` is a medium that emits, scatters and absorbs. The next three are
 /// projections of the value: its maximum, its minimum or its mean over the ray's way through the box of the volume's
 /// voxel centres, as far as clip planes leave it. `xray` is the share of light that gets through the medium,
-/// exp(-integral of sigma_t). `isosurface` is where the value crosses those of the scene's surfaces.
-enum class Mode { integrate, mip, minip, average, xray, isosurface };
+/// exp(-integral of sigma_t). `isosurface` is where the value crosses those of the scene's surfaces. `hybrid` is the
+/// first of these surfaces that a ray meets, and the medium behind it with what the surface lets through: what lies in
+/// front of the surface, and what is seen past it, is not shown. So the eye looks through a wall into what is behind.
+/// Source: Scharsach, Hadwiger, Neubauer, Wolfsberger and Buehler 2006, doi:10.2312/VisSym/EuroVis06/315-322
+enum class Mode { integrate, mip, minip, average, xray, isosurface, hybrid };
 inline constexpr Name<Mode> kModes[]{{"integrate", Mode::integrate}, {"mip", Mode::mip},
                                      {"minip", Mode::minip},         {"average", Mode::average},
-                                     {"xray", Mode::xray},           {"isosurface", Mode::isosurface}};
+                                     {"xray", Mode::xray},           {"isosurface", Mode::isosurface},
+                                     {"hybrid", Mode::hybrid}};
 inline std::string modeName(Mode mode) { return std::string(nameOf(kModes, mode)); }
 
 /// A surface on which the volume has one value. It is seen from both sides.
@@ -30,7 +34,7 @@ struct SceneSurface {
 };
 inline constexpr int kMostSurfaces = 16;
 
-/// How light is reflected. Automatic: isosurfaces by Phong, all else not at all.
+/// How light is reflected. Automatic: surfaces by Phong, media not at all.
 enum class Shading { automatic, none, phong };
 inline constexpr Name<Shading> kShadings[]{
     {"auto", Shading::automatic}, {"none", Shading::none}, {"phong", Shading::phong}};

@@ -26,10 +26,17 @@ struct ResolvedScene : SceneSettings {
 /// Returns the view of an orbit. What is automatic is the usual: z up, and usualFront().
 OrbitView orbitView(const Orbit& orbit);
 
+/// Returns a 1D function that is scaled by gradient magnitude as SceneSettings::gradientOpacity says: a 2D one, whose
+/// sigma_t is exactly that of the 1D function times the ramp. @pre 0 <= ramp.x < ramp.y
+TransferFunction withGradientOpacity(const TransferFunction& transfer, const glm::dvec2& ramp);
+
 /// Writes out everything that depends on the volume: an orbit becomes a camera, a spacing in voxels (shortest edge)
-/// becomes world units.
+/// becomes world units. In modes that show a medium the transfer function becomes one of value and gradient magnitude
+/// where the scene has a gradientOpacity.
 /// @param worldBounds  of what an orbit looks at, see orbitCamera
-/// @throw InvalidArgument  there is no transfer function, an orbit should look at an empty volume, or as validateScene
+/// @throw InvalidArgument  there is no transfer function, an orbit should look at an empty volume, gradientOpacity has
+/// a 2D
+///   function beside it or is in percent, which Volume::resolve() knows; or as validateScene
 ResolvedScene resolveScene(const Scene& scene, const Box& worldBounds, const glm::dmat4& indexToWorld);
 
 /// Returns the scene that resolves to this one, whatever the volume.

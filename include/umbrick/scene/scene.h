@@ -138,6 +138,13 @@ enum class SpacingUnit {
 };
 inline constexpr Name<SpacingUnit> kSpacingUnits[]{{"voxel", SpacingUnit::voxel}, {"world", SpacingUnit::world}};
 
+/// The unit of gradientOpacity.
+enum class GradientUnit {
+  grid,     // grid units per world unit, as of 2D transfer functions
+  percent,  // of the largest gradient magnitude of the volume's active voxels
+};
+inline constexpr Name<GradientUnit> kGradientUnits[]{{"grid", GradientUnit::grid}, {"percent", GradientUnit::percent}};
+
 inline constexpr std::string_view kTexelFormats[]{"auto", "unorm8", "unorm16", "half", "float32"};
 
 inline constexpr int kMostInterior = 256;
@@ -197,8 +204,11 @@ struct SceneSettings {
   Method method = Method::lightVolume;
   Technique technique = Technique::automatic;
   Mode mode = Mode::integrate;
-  std::vector<SceneSurface> surfaces;  // of the mode isosurface; none of a level set: where it is 0
+  std::vector<SceneSurface> surfaces;  // of isosurface and hybrid; none of a level set: where it is 0
   ShadingOptions shading;
+  /// Gradient magnitudes from which and up to which a medium appears: sigma_t is scaled from 0 at the first one to 1 at
+  /// the second one. Of a Scene in its gradientUnit, else grid units per world unit. Both 0: the medium stays as it is.
+  glm::dvec2 gradientOpacity{0};
   glm::dvec3 ambient{1};                 // L_a, radiance from every direction
   std::optional<glm::dvec3> background;  // L_b; when it is set the picture is opaque (alpha 1)
   std::vector<LightSource> lights;       // for the model `lights`, which needs at least one
@@ -217,6 +227,7 @@ struct Scene : SceneSettings {
   std::optional<TransferFunction> transfer;
   std::optional<Orbit> orbit = Orbit{};          // when set, eye, lookAt, up and viewHeight follow from the volume
   SpacingUnit spacingUnit = SpacingUnit::voxel;  // of sampling.spacing
+  GradientUnit gradientUnit = GradientUnit::grid;
   bool operator==(const Scene&) const = default;
 };
 
@@ -232,7 +243,8 @@ struct Scene : SceneSettings {
 ///   model      "emission", "cone", "cone-ray", "ambient", "lights"
 ///   method     "dos", "ordinates", "light-volume"
 ///   technique  "auto", "slices", "rays", "shear-warp"
-///   mode       "integrate", "mip", "minip", "average", "xray", "isosurface"
+///   gradientOpacity [low, high], gradientUnit ("grid", "percent")    applied to the transfer function
+///   mode       "integrate", "mip", "minip", "average", "xray", "isosurface", "hybrid"
 ///   surfaces   [{value, colour [r, g, b], opacity}, ...]
 ///   shading    kind ("auto", "none", "phong"), light ("auto", "headlight", "sources"), ambient, diffuse, specular,
 ///              shininess

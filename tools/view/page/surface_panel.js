@@ -1,4 +1,4 @@
-// The surfaces of the mode isosurface: their values and opacities.
+// The surfaces of the modes isosurface and hybrid: their values and opacities.
 // SPDX-License-Identifier: Apache-2.0
 import {numberRow} from "./controls.js";
 import {button, element, section} from "./dom.js";
@@ -51,7 +51,7 @@ export function surfacePanel(session) {
   return {
     node,
     update: () => {
-      node.hidden = session.scene.mode !== "isosurface";
+      node.hidden = !["isosurface", "hybrid"].includes(session.scene.mode);
       if (rows.length !== surfaces().length) build(surfaces().length);
       remove.disabled = surfaces().length < 2;
       plot.update();
