@@ -20,9 +20,10 @@
 
 namespace umbrick {
 
-Volume::Volume(const VolumeReference& file, const std::function<void(double share)>& progress) {
+Volume::Volume(const VolumeReference& file, const std::function<void(double share)>& progress,
+               const std::shared_ptr<KeptStream>& kept) {
   const Stopwatch load;
-  VolumeFile read = readVolumeFile(file, progress);
+  VolumeFile read = readVolumeFile(file, progress, kept);
   *this = Volume(std::move(read.grid), file.file.string());
   foreign_ = read.foreign && grid_.metadata("source_format").empty();
   orientation_ = orientationOf(grid_, foreign_, read.creator);
@@ -32,7 +33,7 @@ Volume::Volume(const VolumeReference& file, const std::function<void(double shar
 }
 
 Volume::Volume(ScalarGrid grid, std::string name) : grid_(std::move(grid)), name_(std::move(name)) {
-  if (grid_.activeBox().empty()) throw InvalidArgument(name_ + ": grid \"" + grid_.name + "\" has no active voxel");
+  if (grid_.activeBox().empty()) throw EmptyVolume(name_ + ": grid \"" + grid_.name + "\" has no active voxel");
   indexToWorld_ = grid_.indexToWorld();
   worldBounds_ = grid_.worldBounds();
   orientation_ = orientationOf(grid_);
