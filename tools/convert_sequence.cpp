@@ -2,14 +2,13 @@
 #include "convert_sequence.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "command.h"
+#include "frame_words.h"
 #include "umbrick/convert/holds_grids.h"
 #include "umbrick/core/printable.h"
 #include "umbrick/ingest/frame_sequence.h"
@@ -18,46 +17,6 @@
 namespace umbrick::tools {
 namespace fs = std::filesystem;
 namespace {
-
-// "12", "12-40" or "12-40:4", where numbers may be negative: "-2-2".
-FrameRange parseRange(const std::string& text) {
-  const auto refuse = [&] { throw UsageError("--frames: expected A, A-B or A-B:step with A <= B, found " + text); };
-  std::string_view rest = text;
-  const auto take = [&] {
-    std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-    if (error != std::errc()) refuse();
-    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-    return std::clamp<std::int64_t>(value, -1'000'000'000'000, 1'000'000'000'000);  // so that sums do not overflow
-  };
-  const auto follows = [&](char sign) {
-    const bool found = rest.starts_with(sign);
-    if (found) rest.remove_prefix(1);
-    return found;
-  };
-  FrameRange range;
-  range.first = range.last = take();
-  if (follows('-')) range.last = take();
-  if (follows(':')) range.step = take();
-  if (!rest.empty() || range.last < range.first || range.step < 1) refuse();
-  return range;
-}
-
-// The numbers that are not there, told in one line.
-void printMissing(const fs::path& pattern, const std::vector<FrameRange>& missing) {
-  constexpr std::size_t kMostGaps = 5;
-  std::string gaps;
-  std::int64_t count = 0;
-  for (std::size_t i = 0; i < missing.size(); ++i) {
-    const auto [first, last, step] = missing[i];
-    count += (last - first) / step + 1;
-    if (i >= kMostGaps) continue;
-    gaps += (i == 0 ? "" : ", ") + std::to_string(first) + (last > first ? " to " + std::to_string(last) : "");
-  }
-  if (count == 0) return;
-  std::cerr << printable(pattern.string()) << ": " << count << (count == 1 ? " frame is" : " frames are")
-            << " missing: " << gaps << (missing.size() > kMostGaps ? ", ..." : "") << '\n';
-}
 
 // Nothing has a number but the output or --frames.
 void refuseUnnumbered(const ConvertCommand& command) {
@@ -84,9 +43,9 @@ FrameSequence framesInside(const ConvertCommand& command, const ConvertOptions& 
   if (!isFramePattern(command.output))
     throw UsageError(input.string() + ": expected an output with a number in its name, such as out_%04d.vdb, found " +
                      command.output.string());
-  const auto asked = command.frames.empty() ? std::nullopt : std::optional(parseRange(command.frames));
+  const auto asked = command.frames.empty() ? std::nullopt : std::optional(parseFrameRange(command.frames));
   FrameSequence sequence = findFramesInside(input, command.output, asked, options);
-  printMissing(input, sequence.missing);
+  tellMissing(input, sequence.missing);
   return sequence;
 }
 
@@ -110,9 +69,9 @@ std::optional<FrameSequence> findSequence(const ConvertCommand& command, const C
   if (inputs.size() > 1)
     throw UsageError(input->string() + ": expected one input where frames are numbered, found " +
                      std::to_string(inputs.size()));
-  const auto asked = command.frames.empty() ? std::nullopt : std::optional(parseRange(command.frames));
+  const auto asked = command.frames.empty() ? std::nullopt : std::optional(parseFrameRange(command.frames));
   FrameSequence sequence = findFrames(*input, command.output, asked, options);
-  printMissing(*input, sequence.missing);
+  tellMissing(*input, sequence.missing);
   for (const fs::path& file : sequence.leftOut)
     std::cerr << printable(file.string()) << ": left out: another file has its number, or the number is too large\n";
   return sequence;

@@ -36,7 +36,7 @@ std::string lineOf(const VolumeReference& volume, const Choices& choices) {
   return line + (both ? ")\n" : "\n");
 }
 
-void chooseTransfer(const SceneOptions& options, OpenedScene& opened, Choices& choices) {
+void chooseTransfer(const SceneOptions& options, const SceneHints& hints, OpenedScene& opened, Choices& choices) {
   Scene& scene = opened.scene;
   if (scene.transfer) {
     const TransferFunction fitting = fitted(*scene.transfer, *opened.volume);
@@ -46,7 +46,7 @@ void chooseTransfer(const SceneOptions& options, OpenedScene& opened, Choices& c
     scene.transfer = fitting;
     return;
   }
-  const SuggestedTransfer suggested = suggestTransfer(*opened.volume);
+  const SuggestedTransfer suggested = hints.transfer ? *hints.transfer : suggestTransfer(*opened.volume);
   scene.transfer = suggested.transfer;
   applyWindow(options, scene);
   choices.add("tf", "auto");
@@ -74,7 +74,7 @@ void chooseView(const SceneOptions& options, bool fromScene, OpenedScene& opened
   }
   if (!fromScene && !options.has("zoom") && !options.has("azimuth") && !options.has("elevation")) {
     // A view that nobody has turned fills the picture.
-    const Box bounds = opened.volume->visibleBounds(*scene.transfer);
+    const Box bounds = opened.seen ? *opened.seen : opened.volume->visibleBounds(*scene.transfer);
     const double zoom = fillingZoom(orbitCamera(bounds, orbitView(*scene.orbit), scene.camera), bounds);
     scene.orbit->zoom = std::strtod(shortNumber(zoom, 3).c_str(), nullptr);
     choices.add("zoom", shortNumber(zoom, 3));
@@ -102,15 +102,20 @@ SuggestedTransfer suggestFor(const std::filesystem::path& input, const VolumeOpt
 }
 
 OpenedScene openScene(const SceneOptions& options, Scene scene, const std::function<void(double)>& progress) {
+  std::shared_ptr<const Volume> volume = openVolumeOf(scene.volume, progress);
+  return completeScene(options, std::move(scene), std::move(volume));
+}
+
+OpenedScene completeScene(const SceneOptions& options, Scene scene, std::shared_ptr<const Volume> volume,
+                          const SceneHints& hints) {
   const bool fromScene = options.input.extension() == ".json";
-  OpenedScene opened{std::move(scene), nullptr};
-  opened.volume = openVolumeOf(opened.scene.volume, progress);
+  OpenedScene opened{.scene = std::move(scene), .volume = std::move(volume), .seen = hints.seen};
   Choices choices;
   choices.reasons = opened.volume->notes();
   if (opened.scene.volume.grid != opened.volume->source().grid)
     choices.add("grid", "'" + opened.volume->source().grid + "'");
   opened.scene.volume = opened.volume->source();
-  chooseTransfer(options, opened, choices);
+  chooseTransfer(options, hints, opened, choices);
   if (const std::string iso = chooseSurfaces(opened.scene, *opened.volume); !iso.empty()) choices.add("iso", iso);
   if (!fromScene && !options.has("model") && traitsOf(opened.scene.model).directions) {
     choices.add("model", modelName(opened.scene.model));

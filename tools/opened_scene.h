@@ -3,6 +3,8 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "scene_options.h"
 #include "umbrick/render/suggest_transfer.h"
@@ -16,12 +18,24 @@ struct OpenedScene {
   /// What was chosen, as options that repeat it, and why: a line for stderr, or nothing. Is printed once it is clear
   /// that there will be a picture.
   std::string chosen = {};
+  /// Of a sequence: the box that the camera looks at, see SceneHints.
+  std::optional<Box> seen = {};
+};
+
+/// What is known of a volume that is one of many: where nothing is given, the volume itself is asked.
+struct SceneHints {
+  std::optional<SuggestedTransfer> transfer = {};
+  std::optional<Box> seen = {};  // what is visible, world units
 };
 
 /// Loads the volume of a scene that makeScene() made and completes the scene.
 /// @param progress  as Volume has it
 /// @throw UsageError, IoError, InvalidArgument
 OpenedScene openScene(const SceneOptions& options, Scene scene, const std::function<void(double)>& progress = {});
+
+/// Completes the scene for a volume that is loaded.
+OpenedScene completeScene(const SceneOptions& options, Scene scene, std::shared_ptr<const Volume> volume,
+                          const SceneHints& hints = {});
 
 /// Loads a volume; messages name options. @throw UsageError, IoError, InvalidArgument
 std::shared_ptr<const Volume> openVolumeOf(const VolumeReference& reference,

@@ -5,11 +5,13 @@
 #include <iostream>
 
 #include "command.h"
+#include "film.h"
 #include "output_option.h"
 #include "umbrick/image/png.h"
 #include "validators.h"
 
 namespace umbrick::tools {
+namespace fs = std::filesystem;
 namespace {
 constexpr std::string_view kAllAnnotations = "all";
 
@@ -27,13 +29,6 @@ void tellClipped(const std::filesystem::path& path, const std::vector<ImageLayer
     std::cerr << path.string() << ": " << clipped
               << " values are above 65504, the most that half-floats hold, and are cut off there; --exr-pixel float "
                  "keeps them\n";
-}
-
-// Returns the picture in display values, with all that is drawn over it.
-Image decorated(const Image& picture, const Look& look, const std::optional<Annotations>& annotations) {
-  Image shown = displayed(picture, look);
-  if (annotations) annotate(shown, *annotations);
-  return shown;
 }
 
 }  // namespace
@@ -109,16 +104,29 @@ VolumeUnits unitsOf(const ScalarGrid& grid) {
   return {grid.metadata("length_unit"), grid.metadata("value_unit"), grid.metadata("space")};
 }
 
-void prepareLook(PictureOutput& output, Backdrop backdrop, const ResolvedScene& scene, const VolumeUnits& units) {
-  output.backdrop = backdrop;
+std::optional<Annotations> annotationsFor(const PictureOutput& output, const ResolvedScene& scene,
+                                          const VolumeUnits& units) {
   std::vector<Annotation> wanted;
   for (const std::string& name : output.annotate) {
     for (const auto& [one, annotation] : kAnnotations)
       if (name == one || name == kAllAnnotations) wanted.push_back(annotation);
   }
-  if (!wanted.empty()) output.annotations = annotationsOf(scene, wanted, units, output.look());
-  if (output.look() == Look{} && wanted.empty()) return;
-  if (std::all_of(output.files.begin(), output.files.end(), [&](const auto& path) { return isExr(output, path); })) {
+  if (wanted.empty()) return {};
+  return annotationsOf(scene, wanted, units, output.look());
+}
+
+Image shownPicture(const PictureOutput& output, const Image& colour) {
+  Image shown = displayed(colour, output.look());
+  if (output.annotations) annotate(shown, *output.annotations);
+  return shown;
+}
+
+void prepareLook(PictureOutput& output, Backdrop backdrop, const ResolvedScene& scene, const VolumeUnits& units) {
+  output.backdrop = backdrop;
+  output.annotations = annotationsFor(output, scene, units);
+  if (output.look() == Look{} && !output.annotations) return;
+  const auto isLinear = [&](const fs::path& path) { return !isFilm(path) && isExr(output, path); };
+  if (std::all_of(output.files.begin(), output.files.end(), isLinear)) {
     std::cerr << "exposure, tone, gradient and annotations are of a PNG only, and no PNG is asked for\n";
   } else if (output.annotations) {
     // A picture may be written many times: what it has no room for is said once, before.
@@ -154,7 +162,7 @@ void writeOutputs(const PictureOutput& output, const std::vector<ImageLayer>& la
         options.exposure = look.exposure;
         writePng(path, layers.front().image, options);
       } else {
-        writePng(path, decorated(layers.front().image, look, output.annotations), options);
+        writePng(path, shownPicture(output, layers.front().image), options);
       }
     }
   }

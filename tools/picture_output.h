@@ -47,6 +47,11 @@ void checkOutputs(PictureOutput& output);
 /// Decides what is drawn into a PNG besides the picture, once the scene is known, and says what has no effect.
 /// @param backdrop  of the scene's options, see SceneOptions
 void prepareLook(PictureOutput& output, Backdrop backdrop, const ResolvedScene& scene, const VolumeUnits& units);
+/// Returns what is drawn over a picture of the scene, where anything is asked for.
+std::optional<Annotations> annotationsFor(const PictureOutput& output, const ResolvedScene& scene,
+                                          const VolumeUnits& units);
+/// Returns a picture as a PNG shows it, in linear display values, premultiplied, with all that is drawn over it.
+Image shownPicture(const PictureOutput& output, const Image& colour);
 /// Returns the units that a grid names.
 VolumeUnits unitsOf(const ScalarGrid& grid);
 

@@ -19,6 +19,7 @@
 #include "opened_scene.h"
 #include "picture_output.h"
 #include "progress.h"
+#include "render_command.h"
 #include "scene_options.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/pending_file.h"
@@ -33,104 +34,6 @@
 namespace umbrick::tools {
 namespace {
 
-struct RenderCommand {
-  std::shared_ptr<SceneOptions> scene;
-  std::shared_ptr<PictureOutput> output;
-  std::string backend = "auto", lightSweep = "auto";
-  int frames = 1;
-  bool timePasses = false;
-  std::optional<int> passes;  // of a progressive picture: most samples
-  std::optional<double> maxSeconds, targetError;
-  std::uint64_t seed = 1;
-  bool strict = false;
-};
-
-// Says which options mean nothing to what draws.
-void tellUnused(const RenderCommand& command, Technique technique, bool onCpu) {
-  if (onCpu && command.lightSweep != "auto")
-    std::cerr << "--light-sweep has no effect on the CPU: it is of OpenGL (--backend osmesa or egl)\n";
-  if (technique == Technique::slices || technique == Technique::stacks) return;
-  const std::string where = onCpu ? "on the CPU: it is of slices (--backend osmesa)" : "on rays: it is of slices";
-  const auto tell = [&](const std::string& option) { std::cerr << option << " has no effect " << where << '\n'; };
-  for (const char* option : {"eye-bits", "texel-format"})
-    if (command.scene->has(option) && (onCpu || std::string_view(option) == "eye-bits"))
-      tell(command.scene->nameOf(option));
-  if (command.timePasses) tell("--time-passes");
-}
-
-// The volume of a scene, cut into bricks for it.
-struct LoadedScene {
-  ResolvedScene scene;
-  double loadMs = 0, brickMs = 0;
-  std::shared_ptr<const Volume> volume;
-  VolumeUnits units = {};
-  std::unique_ptr<Bricks> bricks = {};
-};
-
-LoadedScene loadScene(const OpenedScene& opened, Technique technique, bool onCpu, bool refined) {
-  const Volume& volume = *opened.volume;
-  LoadedScene loaded{.scene = volume.resolve(opened.scene),
-                     .loadMs = volume.loadMs(),
-                     .volume = opened.volume,
-                     .units = unitsOf(volume.grid())};
-  loaded.scene.technique = technique;
-  const Stopwatch brick;
-  loaded.bricks = onCpu     ? volume.cutForCpu(loaded.scene)
-                  : refined ? volume.cutForRefinement(loaded.scene)
-                            : volume.cut(loaded.scene);
-  loaded.brickMs = brick.elapsedMs();
-  warnOfNonFinite(opened.scene, loaded.bricks->nonFiniteVoxels);
-  return loaded;
-}
-
-nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& picture,
-                                  const std::vector<double>& framesMs, const std::string& engine, double writeMs,
-                                  bool timePasses) {
-  const RenderStats& stats = picture.stats;
-  nlohmann::ordered_json json;
-  json["renderer"] = engine;
-  json["technique"] = techniqueName(loaded.scene.technique);
-  json["mode"] = modeName(loaded.scene.mode);
-  json["size"] = {loaded.scene.camera.width, loaded.scene.camera.height};
-  json["time_ms"] = {{"load", loaded.loadMs},    {"brick", loaded.brickMs}, {"geometry", stats.geometryMs},
-                     {"upload", stats.uploadMs}, {"sweep", stats.sweepMs},  {"read", stats.readMs},
-                     {"write", writeMs}};
-  json["frames_ms"] = framesMs;
-  json["slices"] = stats.slices;
-  json["spacing_world"] = loaded.scene.sampling.spacing;
-  const BrickLayout& layout = loaded.bricks->layout;
-  json["bricks"] = {{"all", stats.bricks},
-                    {"visible", stats.visibleBricks},
-                    {"uploaded", stats.uploadedBricks},
-                    {"edge", {layout.edge().x, layout.edge().y, layout.edge().z}},
-                    {"apron", layout.apron}};
-  json["polygons"] = stats.polygons;
-  json["fragments_shaded"] = stats.fragments;
-  json["bytes"] = {
-      {"brick_textures", stats.textureBytes}, {"buffers", stats.bufferBytes}, {"peak_memory", peakMemoryBytes()}};
-  if (stats.directions > 0 && occlusionMethod(loaded.scene) == Method::lightVolume)
-    json["light"] = {{"directions", stats.directions},
-                     {"ms", stats.lightMs},
-                     {"bytes", stats.windowBytes},
-                     {"updates", stats.windowUpdates},
-                     {"spacing", stats.lightSpacing},
-                     {"spacing_error", stats.lightSpacingError},
-                     {"swept_by", stats.lightOnGl ? "gl" : "cpu"}};
-  else if (stats.directions > 0)
-    json["windows"] = {{"directions", stats.directions},
-                       {"texel_world", stats.windowTexel},
-                       {"bytes", stats.windowBytes},
-                       {"updates", stats.windowUpdates}};
-  if (timePasses)
-    json["passes_ms"] = {
-        {"extinction", stats.passes.extinctionMs}, {"windows", stats.passes.windowsMs}, {"eye", stats.passes.eyeMs}};
-  json["textures"] = stats.textures;
-  json["texel_error"] = stats.formatError;
-  json["non_finite_voxels"] = loaded.bricks->nonFiniteVoxels;
-  json["scene"] = nlohmann::ordered_json::parse(printScene(loaded.scene));
-  return json;
-}
-
 nlohmann::ordered_json printPasses(const ProgressivePicture& picture, std::uint64_t seed) {
   nlohmann::ordered_json json;
   json["passes"] = picture.passes;
@@ -141,23 +44,6 @@ nlohmann::ordered_json printPasses(const ProgressivePicture& picture, std::uint6
   json["error"] = picture.error.total();
   json["reached_target"] = picture.reachedTarget;
   return json;
-}
-
-void writePicture(const PictureOutput& output, const Picture& picture, const ResolvedScene& scene,
-                  const std::string& engine, const std::string& progressive = {},
-                  PictureState state = PictureState::done) {
-  std::vector<ImageLayer> layers{{"", picture.colour}};
-  if (output.layers && !picture.depth.pixels.empty()) {
-    layers.push_back({"V", picture.visibility});
-    layers.push_back({"Z", picture.depth});
-  }
-  layers.insert(layers.end(), picture.layers.begin(), picture.layers.end());
-  std::map<std::string, std::string> metadata{{"umbrick.scene", printScene(scene)},
-                                              {"umbrick.renderer", engine},
-                                              {"umbrick.filter", pixelFilter(scene.sampling.pixelSamples)},
-                                              {"umbrick.version", UMBRICK_VERSION}};
-  if (!progressive.empty()) metadata["umbrick.progressive"] = progressive;
-  writeOutputs(output, layers, metadata, state);
 }
 
 // What is seen of a picture while it is made, and what is left of it when the user stops it.
@@ -272,23 +158,12 @@ ProgressivePicture renderPasses(const RenderCommand& command, const MakeRenderer
 }
 
 int render(const RenderCommand& command) {
+  const Scene scene = askedScene(command);
+  if (const std::optional<int> several = renderFrames(command, scene)) return *several;
   checkOutputs(*command.output);
   const PictureOutput& output = *command.output;
-  Scene scene = makeScene(*command.scene, {.model = Model::cone});
-  const bool progressive = command.passes || command.maxSeconds || command.targetError;
-  if (progressive && command.frames > 1) throw UsageError("--frames and --progressive exclude each other");
-  if (progressive && !canAverage(scene))
-    throw UsageError(
-        "--progressive, --max-seconds and --target-error need the model emission, or cone, ambient or lights and the "
-        "method ordinates or light-volume");
-  // Ordinates can be refined further than light at voxels, so that a target takes them where there is OpenGL, unless
-  // the user names a method.
-  if (command.targetError && command.backend != "cpu" && !command.scene->has("method"))
-    scene.method = Method::ordinates;
-  // A draft is one of slices, but where these cannot be.
-  const bool bySlices =
-      command.backend != "cpu" && (scene.technique == Technique::automatic || scene.technique == Technique::slices);
-  if (!bySlices && command.scene->quality && !command.scene->has("method")) scene.method = Method::lightVolume;
+  const bool progressive = command.progressive();
+  if (progressive && command.repeat > 1) throw UsageError("--repeat and --progressive exclude each other");
   RenderWatch watch;
   const std::string nothing = "interrupted; nothing was written";
   watch.bar.begin("loading " + scene.volume.file.filename().string());
@@ -302,11 +177,7 @@ int render(const RenderCommand& command) {
   std::unique_ptr<ResidentVolume> volume;
   if (context)
     volume = std::make_unique<ResidentVolume>(*context, *loaded.bricks, atlasOptions(loaded.scene, *loaded.bricks));
-  RenderOptions options;
-  options.visibilityAndDepth = output.layers;
-  options.countFragments = !output.stats.empty();
-  options.timePasses = command.timePasses;
-  options.lightSweep = parseName(kLightSweeps, command.lightSweep, "--light-sweep");
+  RenderOptions options = renderOptions(command);
   watch.bar.clear();
   std::vector<double> framesMs;
   Picture picture;
@@ -329,28 +200,20 @@ int render(const RenderCommand& command) {
     options.progress = [&](double share) {
       if (share < last) ++drawn;
       last = share;
-      show((drawn + share) / (command.frames * loaded.scene.sampling.pixelSamples));
+      show((drawn + share) / (command.repeat * loaded.scene.sampling.pixelSamples));
     };
     const std::unique_ptr<Renderer> renderer = make(options);
     watch.bar.begin("rendering");
-    for (int i = 0; i < command.frames; ++i) {
+    for (int i = 0; i < command.repeat; ++i) {
       const Stopwatch frame;
       picture = renderer->render();
       framesMs.push_back(frame.elapsedMs());
       // A picture of few slices tells nothing by itself. The last one is written, whenever the user stops.
-      if (i + 1 < command.frames) show((i + 1.0) / command.frames);
+      if (i + 1 < command.repeat) show((i + 1.0) / command.repeat);
     }
     watch.bar.clear();
   }
-  // A format that is asked for by name may round voxels; the automatic choice does not.
-  if (loaded.scene.bricks.format != "auto" && picture.stats.formatError > 0)
-    std::cerr << "texels of " << loaded.scene.bricks.format << " are off by up to " << picture.stats.formatError
-              << ", in units of the grid\n";
-  if (picture.stats.lightSpacing == 2 && loaded.scene.occlusion.ordinates.lightSpacing == 0)
-    std::cerr << "for lack of memory light is held at every second voxel alone, which changes it by about "
-              << picture.stats.lightSpacingError << " of the whole (--memory-budget)\n";
-  if (!picture.stats.lightNote.empty())
-    std::cerr << "light is computed on the CPU: " << picture.stats.lightNote << '\n';
+  for (const std::string& note : notesOn(picture, loaded.scene)) std::cerr << note << '\n';
   const Stopwatch write;
   writePicture(output, picture, loaded.scene, engine.description,
                passes ? printPasses(*passes, command.seed).dump() : std::string());
@@ -380,7 +243,8 @@ Command addRender(CLI::App& app) {
                        "position and normal of the nearest one");
   addEngineOption(*sub, command->backend);
   addLightSweepOption(*sub, command->lightSweep);
-  sub->add_option("--frames", command->frames, "render so many times and time each; the last is written")
+  addFrameOptions(*sub, command->frames);
+  sub->add_option("--repeat", command->repeat, "render one picture so many times and time each; the last is written")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str()
       ->group("Output");

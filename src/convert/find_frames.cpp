@@ -44,6 +44,16 @@ void checkImages(const FrameFiles& first) {
                        "one volume need an output without a number in its name");
 }
 
+// Frames that are not converted have no outputs.
+fs::path outputOf(const fs::path& pattern, std::int64_t number) {
+  return pattern.empty() ? fs::path() : framePath(pattern, number);
+}
+
+void checkOutputs(const FrameSequence& sequence, const ConvertOptions& options) {
+  for (const FrameFiles& frame : sequence.frames)
+    if (!frame.output.empty()) checkOutput(frame.output, options.output, {frame.input});
+}
+
 }  // namespace
 
 FrameSequence findFrames(const fs::path& input, const fs::path& output, const std::optional<FrameRange>& wanted,
@@ -55,10 +65,10 @@ FrameSequence findFrames(const fs::path& input, const fs::path& output, const st
     throw OptionsError("wanted: expected first <= last and a step of at least 1, found frames " + text(range));
   for (const NumberedFile& frame : all)
     if (range.contains(frame.number))
-      sequence.frames.push_back({frame.number, frame.path, framePath(output, frame.number)});
+      sequence.frames.push_back({frame.number, frame.path, outputOf(output, frame.number)});
   if (sequence.frames.empty()) throw IoError(input.string() + ": expected frames of " + text(range) + ", found none");
   if (!options.source.open.raw && formatOfName(input) == "images") checkImages(sequence.frames.front());
-  for (const FrameFiles& frame : sequence.frames) checkOutput(frame.output, options.output, {frame.input});
+  checkOutputs(sequence, options);
   sequence.missing = missingFrames(sequence.frames, range);
   return sequence;
 }
@@ -71,10 +81,10 @@ FrameSequence findFramesInside(const fs::path& input, const fs::path& output, co
     throw OptionsError("wanted: expected first <= last and a step of at least 1, found frames " + text(range));
   FrameSequence sequence;
   for (std::int64_t number = std::max<std::int64_t>(range.first, 0); number <= std::min(range.last, all.last); ++number)
-    if (range.contains(number)) sequence.frames.push_back({number, input, framePath(output, number), true});
+    if (range.contains(number)) sequence.frames.push_back({number, input, outputOf(output, number), true});
   if (sequence.frames.empty())
     throw OptionsError(input.string() + ": expected some of its frames " + text(all) + ", found frames " + text(range));
-  for (const FrameFiles& frame : sequence.frames) checkOutput(frame.output, options.output, {input});
+  checkOutputs(sequence, options);
   sequence.missing = missingFrames(sequence.frames, range);
   return sequence;
 }

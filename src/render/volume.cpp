@@ -26,9 +26,10 @@ struct Volume::LazyGradient {
   double largest = 0;
 };
 
-Volume::Volume(const VolumeReference& file, const std::function<void(double share)>& progress) {
+Volume::Volume(const VolumeReference& file, const std::function<void(double share)>& progress,
+               const std::shared_ptr<KeptStream>& kept) {
   const Stopwatch load;
-  VolumeFile read = readVolumeFile(file, progress);
+  VolumeFile read = readVolumeFile(file, progress, kept);
   *this = Volume(std::move(read.grid), file.file.string());
   foreign_ = read.foreign && grid_.metadata("source_format").empty();
   orientation_ = orientationOf(grid_, foreign_, read.creator);
@@ -39,7 +40,7 @@ Volume::Volume(const VolumeReference& file, const std::function<void(double shar
 
 Volume::Volume(ScalarGrid grid, std::string name)
     : grid_(std::move(grid)), name_(std::move(name)), largestGradient_(std::make_shared<LazyGradient>()) {
-  if (grid_.activeBox().empty()) throw InvalidArgument(name_ + ": grid \"" + grid_.name + "\" has no active voxel");
+  if (grid_.activeBox().empty()) throw EmptyVolume(name_ + ": grid \"" + grid_.name + "\" has no active voxel");
   indexToWorld_ = grid_.indexToWorld();
   worldBounds_ = grid_.worldBounds();
   orientation_ = orientationOf(grid_);

@@ -12,6 +12,7 @@
 #include "umbrick/core/short_number.h"
 #include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/render/open_reference.h"
+#include "umbrick/render/volume.h"
 #include "umbrick/vdb/grid_listing.h"
 #include "umbrick/vdb/read_grid.h"
 #include "umbrick/vdb/read_vectors.h"
@@ -27,10 +28,11 @@ std::pair<std::string, std::string> splitComponent(const std::string& selector) 
   return {selector.substr(0, dot), selector.substr(dot + 1)};
 }
 
-void readVolume(VolumeFile& file, const LoadProgress& progress) {
+void readVolume(VolumeFile& file, const LoadProgress& progress, const std::shared_ptr<KeptStream>& kept) {
   const VolumeReference& source = file.source;
   ConvertOptions options;
   options.source.open = openOptions(source);
+  options.source.open.parts.kept = kept;
   if (progress) options.progress = [&progress](const ConvertProgress& stage) { progress(stage.share); };
   LoadedVolume loaded = loadVolume(source.file, options);
   const auto border = loaded.report.background;
@@ -40,7 +42,7 @@ void readVolume(VolumeFile& file, const LoadProgress& progress) {
     loaded = loadVolume(source.file, options);
     file.notes.push_back("all of its voxels are " + shortNumber(border->value, 6));
   } else if (uniform) {
-    throw InvalidArgument(source.file.string() + ": all of its voxels are 0: there is nothing to show");
+    throw EmptyVolume(source.file.string() + ": all of its voxels are 0: there is nothing to show");
   } else if (border && border->value != 0) {
     file.notes.push_back("beyond its voxels it is taken to be " + shortNumber(border->value, 6) + ", as at its border");
   }
@@ -113,7 +115,8 @@ void readGrid(VolumeFile& file, const LoadProgress& progress) {
 
 }  // namespace
 
-VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& progress) {
+VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& progress,
+                          const std::shared_ptr<KeptStream>& kept) {
   VolumeFile file;
   file.source = reference;
   if (isFramePattern(reference.file)) {
@@ -126,7 +129,7 @@ VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& 
   if (!file.source.raw && holdsGrids(file.source.file))
     readGrid(file, progress);
   else
-    readVolume(file, progress);
+    readVolume(file, progress, kept);
   return file;
 }
 

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "umbrick/grid/scalar_grid.h"
+#include "umbrick/ingest/volume_parts.h"
 #include "umbrick/scene/scene.h"
 
 namespace umbrick {
@@ -25,6 +27,7 @@ struct VolumeFile {
 /// number of voxels of several, as in "v.x" for a grid of vec3, and of a volume "[3]" the frame before it, as in
 /// "[3].x".
 /// @throw IoError, InvalidArgument  as Volume(VolumeReference)
-VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& progress = {});
+VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& progress = {},
+                          const std::shared_ptr<KeptStream>& kept = {});
 
 }  // namespace umbrick

@@ -27,7 +27,7 @@ TEST_CASE("A picture that is interrupted leaves no file and says so", "[tools]")
   if (!testContext()) return;
   const TemporaryFolder folder;
   const ProgramResult result =
-      interruptProgram(folder, "render " + kSmoke + "--tf smoke --size 512x512 --frames 1000000 -o a.png",
+      interruptProgram(folder, "render " + kSmoke + "--tf smoke --size 512x512 --repeat 1000000 -o a.png",
                        hasSaid(folder, "rendering: "), kTellingSteps);
   CHECK(result.status == 1);
   CHECK(result.out.empty());

@@ -112,7 +112,7 @@ TEST_CASE("Samples of a scene without directions are refused in one line and lea
       "need the model emission, or cone, ambient or lights and the method ordinates or light-volume";
   check("--model cone --method dos --progressive 4", 2, needs);
   check("--model cone --method dos --target-error 0.1", 2, needs);
-  check("--model cone --progressive 4 --frames 2", 2, "--frames and --progressive exclude each other");
+  check("--model cone --progressive 4 --repeat 2", 2, "--repeat and --progressive exclude each other");
   check("--model cone --progressive 3 --target-error 0.1", 1, "passes is 3, a target error needs at least 4");
   check("--model cone --method dos --quality high", 2, "--quality");
   check("--model emission --quality high", 2, "--quality");

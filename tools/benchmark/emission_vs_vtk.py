@@ -83,7 +83,7 @@ def run_umbrick(program, how, extra, scene, frames, work, transfer):
          "--size", f"{camera['width']}x{camera['height']}", "--model", "emission", "--spacing", spacing,
          "--segments", segments or 1, "--technique", technique,
          "--backend", "osmesa" if technique == "slices" else "cpu",
-         "--frames", frames + 1, "--exr-pixel", "float", *extra, "--stats", stats, "-o", picture])
+         "--repeat", frames + 1, "--exr-pixel", "float", *extra, "--stats", stats, "-o", picture])
     with open(stats) as file:
         return json.load(file)["frames_ms"][1:], exr.read_rgba(picture)
 

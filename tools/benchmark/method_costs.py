@@ -53,7 +53,7 @@ def main():
 
     def seconds(slices, options, frames):
         child = subprocess.Popen([arguments.umbrick, "render", arguments.scene, *others, *map(str, options), "--spacing",
-                                  str(arguments.through / slices), "--frames", str(frames), "-o", picture],
+                                  str(arguments.through / slices), "--repeat", str(frames), "-o", picture],
                                  stdout=subprocess.DEVNULL)
         _, status, used = os.wait4(child.pid, 0)
         if status:

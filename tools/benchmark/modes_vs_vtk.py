@@ -66,7 +66,7 @@ def picture_of(path, mode):
 def umbrick(program, scene, mode, frames, more=()):
     work = pathlib.Path(scene["work"])
     output, stats = work / f"umbrick-{mode}.exr", work / f"umbrick-{mode}.json"
-    run([program, "render", work / "volume.vdb", *mode_options(scene, mode), "--backend", "cpu", "--frames", frames + 1,
+    run([program, "render", work / "volume.vdb", *mode_options(scene, mode), "--backend", "cpu", "--repeat", frames + 1,
          "--stats", stats, "-o", output, *more])
     with open(stats) as file:
         return json.load(file)["frames_ms"][1:], picture_of(output, mode)

@@ -42,7 +42,7 @@ def render(program, volume, transfer, work, name, options, frames):
     """-> frame times without the first, ms; statistics; picture."""
     stem = work / name.replace(" ", "_").replace("/", "")
     picture, stats = stem.with_suffix(".exr"), stem.with_suffix(".json")
-    subprocess.run([program, "render", volume, "--tf", transfer, *options, "--frames", str(frames + 1), "--exr-pixel", "float",
+    subprocess.run([program, "render", volume, "--tf", transfer, *options, "--repeat", str(frames + 1), "--exr-pixel", "float",
                     "--stats", stats, "-o", picture], check=True, stdout=subprocess.DEVNULL)
     statistics_read = json.loads(stats.read_text())
     return statistics_read["frames_ms"][1:], statistics_read, exr.read_rgba(picture)

@@ -33,7 +33,7 @@ struct FrameSequence {
 
 /// Finds the frames of a sequence.
 /// @param input   a pattern of numbered files: isFramePattern
-/// @param output  a pattern too
+/// @param output  a pattern too; empty: the frames are not converted, and have no outputs
 /// @param wanted  where there is none, all frames there are
 /// @throw IoError       there is no such frame
 /// @throw OptionsError  wanted.last < wanted.first or wanted.step < 1; frames that are single images, which are slices
@@ -43,7 +43,7 @@ FrameSequence findFrames(const std::filesystem::path& input, const std::filesyst
                          const std::optional<FrameRange>& wanted, const ConvertOptions& options = {});
 
 /// Finds the frames of one file that holds several volumes. They are numbered from 0, as in PartChoice::frame.
-/// @param output  a pattern of numbered files
+/// @param output  a pattern of numbered files, or empty as above
 /// @throw OptionsError, IoError  as findFrames does, or as describeVolume
 FrameSequence findFramesInside(const std::filesystem::path& input, const std::filesystem::path& output,
                                const std::optional<FrameRange>& wanted, const ConvertOptions& options = {});

@@ -11,11 +11,19 @@
 #include <vector>
 
 #include "umbrick/brick/bricks.h"
+#include "umbrick/core/error.h"
 #include "umbrick/grid/scalar_grid.h"
 #include "umbrick/render/orientation.h"
 #include "umbrick/scene/resolve.h"
 
 namespace umbrick {
+
+struct KeptStream;  // see ingest/volume_parts.h
+
+/// A volume holds nothing that could be shown, which a frame of a sequence may.
+struct EmptyVolume : InvalidArgument {
+  using InvalidArgument::InvalidArgument;
+};
 
 /// A grid that holds something, with its place in the world.
 class Volume {
@@ -24,12 +32,16 @@ class Volume {
   /// see loadVolume), or the first frame of a numbered sequence. Of a file with several grids and no name given it
   /// takes "density", or else the first scalar one that holds something.
   /// @throw IoError          as readScalarGrid and openVolume
-  /// @throw InvalidArgument  as readScalarGrid and loadVolume; the grid has no active voxel
+  /// @throw InvalidArgument  as readScalarGrid and loadVolume
+  /// @throw EmptyVolume      the grid has no active voxel, or all voxels of the volume are 0
   /// @param progress  as for readScalarGrid
-  explicit Volume(const VolumeReference& file, const std::function<void(double share)>& progress = {});
+  /// @param kept      of frames of one file that are loaded one after the other, see keepStream(); may be null
+  explicit Volume(const VolumeReference& file, const std::function<void(double share)>& progress = {},
+                  const std::shared_ptr<KeptStream>& kept = {});
   /// Takes a grid.
   /// @param name  what messages call it
-  /// @throw InvalidArgument  the transform is not affine; the grid has no active voxel
+  /// @throw InvalidArgument  the transform is not affine
+  /// @throw EmptyVolume      the grid has no active voxel
   Volume(ScalarGrid grid, std::string name);
 
   const std::string& name() const { return name_; }

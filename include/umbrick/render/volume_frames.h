@@ -1,0 +1,55 @@
+// The volumes of a sequence, one after the other: the next one is read while one is drawn.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <future>
+#include <memory>
+#include <vector>
+
+#include "umbrick/render/volume.h"
+
+namespace umbrick {
+
+/// A volume of a sequence, and the bricks that it was cut into.
+struct VolumeFrame {
+  std::shared_ptr<const Volume> volume;  // null: the frame holds nothing
+  std::unique_ptr<const Bricks> bricks;  // null with it; ends before the volume
+  double brickMs = 0;                    // to cut it
+};
+
+/// Reads and cuts volumes in a thread of its own. While the caller draws one, the next one is read, and no other: with
+/// the one that is drawn two are in memory, if the caller lets go of a frame before it asks for another.
+class VolumeFrames {
+ public:
+  /// Makes the bricks of a volume, in the thread that reads. What it throws ends the frame.
+  using Cut = std::function<std::unique_ptr<Bricks>(const Volume&)>;
+
+  /// Begins to read the first one.
+  VolumeFrames(std::vector<VolumeReference> files, Cut cut);
+  /// Ends what is being read.
+  ~VolumeFrames();
+  VolumeFrames(const VolumeFrames&) = delete;
+  VolumeFrames& operator=(const VolumeFrames&) = delete;
+
+  bool done() const { return given_ == files_.size(); }
+  /// Waits for the next frame and begins to read the one behind it.
+  /// @param waiting  is called a few times a second meanwhile; what it throws ends the wait, and next() may be called
+  ///                 again
+  /// @throw Error    what the frame met; next() then goes on with the one behind it
+  /// @pre not done()
+  VolumeFrame next(const std::function<void()>& waiting = {});
+
+ private:
+  void begin();
+
+  std::vector<VolumeReference> files_;
+  Cut cut_;
+  std::shared_ptr<KeptStream> kept_;  // a packed file of several frames is unpacked once
+  std::size_t given_ = 0;
+  std::atomic<bool> ends_ = false;
+  std::future<VolumeFrame> reading_;
+};
+
+}  // namespace umbrick

@@ -1,0 +1,401 @@
+// umbrick render of many pictures: a sequence of volumes, or a camera that moves around one.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+#include <iostream>
+#include <limits>
+#include <numbers>
+#include <set>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "command.h"
+#include "empty_picture.h"
+#include "film.h"
+#include "frame_job.h"
+#include "frame_samples.h"
+#include "frame_words.h"
+#include "mode_options.h"
+#include "progress.h"
+#include "render_command.h"
+#include "umbrick/core/pending_file.h"
+#include "umbrick/core/printable.h"
+#include "umbrick/core/short_number.h"
+#include "umbrick/core/stopwatch.h"
+#include "umbrick/core/turned_camera.h"
+#include "umbrick/render/volume_frames.h"
+#include "umbrick/shade/prepare.h"
+#include "validators.h"
+
+namespace umbrick::tools {
+namespace {
+
+// While it lives, a signal is noticed within the time that a job has to do so, however long one picture takes.
+class StopWatcher {
+ public:
+  explicit StopWatcher(const StopRequest& stop)
+      : thread_([&stop](const std::stop_token& end) {
+          while (!end.stop_requested() && !stop.requested()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }) {}
+
+ private:
+  std::jthread thread_;
+};
+
+// The camera goes around what an orbit looks at, or else around the point that it looks at.
+struct CameraPath {
+  Camera camera;
+  glm::dvec3 centre{0}, axis{0, 0, 1};
+  double radians = 0;  // over all frames
+
+  Camera at(double share) const { return turnedCamera(camera, centre, axis, share * radians); }
+};
+
+CameraPath pathOf(const OpenedScene& opened, const Camera& camera, double degrees) {
+  CameraPath path{.camera = camera, .centre = camera.lookAt, .axis = camera.up};
+  path.radians = degrees * std::numbers::pi / 180;
+  if (opened.scene.orbit) {
+    path.centre = (opened.seen ? *opened.seen : opened.volume->visibleBounds(*opened.scene.transfer)).centre();
+    path.axis = orbitView(*opened.scene.orbit).up;
+  }
+  return path;
+}
+
+// The picture of a volume that holds nothing.
+Picture blankPicture(const ResolvedScene& scene, bool layers) {
+  const int width = scene.camera.width, height = scene.camera.height;
+  Picture picture;
+  picture.colour = Image(width, height, 4);
+  if (scene.background)
+    for (std::size_t i = 0; i < picture.colour.pixels.size(); ++i)
+      picture.colour.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>((*scene.background)[static_cast<int>(i % 4)]);
+  if (!layers) return picture;
+  picture.visibility = picture.opacity = picture.depth = Image(width, height, 1);
+  std::fill(picture.depth.pixels.begin(), picture.depth.pixels.end(), std::numeric_limits<float>::infinity());
+  return picture;
+}
+
+// Draws the frames of a job, writes them and says what has become of each.
+class FrameRun {
+ public:
+  FrameRun(const RenderCommand& command, FrameJob job, const Scene& scene);
+  int run();
+
+ private:
+  void open(const Scene& scene);
+  void drawOne(const FrameJob::Frame& frame, VolumeFrame read);
+  void makeRenderer();
+  ResolvedScene sceneFor(const Volume& volume) const;
+  std::unique_ptr<Bricks> cut(const Volume& volume);
+  void write(const FrameJob::Frame& frame, const Picture& picture, double drawMs, bool holdsSomething);
+  void skip(const FrameJob::Frame& frame, const std::string& why);
+  void say(const std::string& line);
+  void show(double share);
+  void tellInterrupted() const;
+
+  const RenderCommand& command_;
+  FrameJob job_;
+  StopRequest stop_;
+  ProgressBar bar_{"rendering"};
+  OpenedScene opened_;
+  Engine engine_;
+  std::unique_ptr<GlContext, ContextCloser> context_;  // null: on the CPU
+  std::optional<LoadedScene> shown_;                   // the frame at hand
+  FrameKind kind_;                                     // of the frames
+  CameraPath path_;
+  std::unique_ptr<ResidentVolume> resident_;
+  std::unique_ptr<Renderer> renderer_;
+  std::vector<std::unique_ptr<Film>> films_;
+  nlohmann::ordered_json stats_ = nlohmann::ordered_json::array();
+  std::set<std::string> said_;
+  std::vector<std::int64_t> written_;
+  std::size_t wanted_ = 0, done_ = 0;
+  double drawn_ = 0, lastShare_ = 0;  // samples of the picture at hand
+  Stopwatch work_;
+  bool chosenSaid_ = false, strictFailed_ = false;
+  std::string beyond_;  // the first frame that shows more than the camera was placed for, once it is known
+  std::atomic<bool> beyondKnown_ = false;
+};
+
+FrameRun::FrameRun(const RenderCommand& command, FrameJob job, const Scene& scene)
+    : command_(command), job_(std::move(job)) {
+  wanted_ = static_cast<std::size_t>(
+      std::count_if(job_.frames.begin(), job_.frames.end(), [](const auto& frame) { return !frame.finished; }));
+  if (wanted_ > 0) open(scene);
+}
+
+void FrameRun::open(const Scene& scene) {
+  bar_.begin("loading " + scene.volume.file.filename().string());
+  opened_ = openFrames(command_, job_, scene, showShare(bar_, stop_, "interrupted; nothing was written"));
+  engine_ = chooseEngine(opened_.scene, parseName(kEngineKinds, command_.backend, "--backend"));
+  context_.reset(engine_.context.release());
+  bar_.clear();
+  tellUnused(command_, engine_.technique, !context_);
+  tellUnusedByMode(*command_.scene, opened_.scene, command_.output->layers);
+  shown_ = job_.oneVolume ? loadScene(opened_, engine_.technique, !context_, false)
+                          : LoadedScene{.scene = sceneFor(*opened_.volume), .units = unitsOf(opened_.volume->grid())};
+  path_ = pathOf(opened_, shown_->scene.camera, command_.frames.orbit);
+  prepareLook(*command_.output, command_.scene->backdrop, shown_->scene, shown_->units);
+  for (const std::filesystem::path& film : job_.films) {
+    const Camera& camera = shown_->scene.camera;
+    if (camera.width % 2 != 0 || camera.height % 2 != 0)
+      std::cerr << film.string() << ": the film is " << camera.width / 2 * 2 << " x " << camera.height / 2 * 2
+                << " pixels, since films have even numbers of them\n";
+    films_.push_back(std::make_unique<Film>(film, camera.width, camera.height,
+                                            FilmOptions{command_.frames.fps, command_.frames.filmQuality}));
+  }
+  if (job_.oneVolume) return;
+  // The reader brings the first frame again: no volume is kept besides the two that are read and drawn.
+  kind_ = kindOf(*opened_.volume);
+  opened_.volume.reset();
+  for (FrameJob::Frame& frame : job_.frames)
+    if (frame.volume.grid.empty()) frame.volume.grid = opened_.scene.volume.grid;
+}
+
+// The scene of a volume, seen as the first frame is.
+ResolvedScene FrameRun::sceneFor(const Volume& volume) const {
+  ResolvedScene scene = volume.resolve(opened_.scene, opened_.seen.value_or(volume.worldBounds()));
+  scene.technique = engine_.technique;
+  return scene;
+}
+
+std::unique_ptr<Bricks> FrameRun::cut(const Volume& volume) {
+  requireAlike(volume, kind_);
+  if (opened_.seen && !beyondKnown_) {
+    const auto leaves = [&](const Box& box) {
+      const double rounding = 1e-6 * glm::length(opened_.seen->extent());
+      return glm::any(glm::lessThan(box.min, opened_.seen->min - rounding)) ||
+             glm::any(glm::greaterThan(box.max, opened_.seen->max + rounding));
+    };
+    if (leaves(volume.worldBounds()) && leaves(volume.visibleBounds(*opened_.scene.transfer))) {
+      beyond_ = volume.name();
+      beyondKnown_ = true;
+    }
+  }
+  const ResolvedScene scene = sceneFor(volume);
+  return context_ ? volume.cut(scene) : volume.cutForCpu(scene);
+}
+
+void FrameRun::say(const std::string& line) {
+  if (!said_.insert(line).second) return;
+  bar_.clear();
+  std::cerr << printable(line) << '\n';
+}
+
+void FrameRun::show(double share) {
+  const double seconds = work_.elapsedMs() / 1000;
+  std::string step = std::to_string(done_) + " of " + std::to_string(wanted_) + " frames";
+  if (done_ > 0) step += ", " + shortNumber(seconds / static_cast<double>(done_), 3) + " s each";
+  bar_.show((static_cast<double>(done_) + share) / static_cast<double>(wanted_), step);
+}
+
+void FrameRun::makeRenderer() {
+  RenderOptions options = renderOptions(command_);
+  // A frame is drawn once for each sample of the area of a pixel, each of which begins at 0.
+  options.progress = [this](double share) {
+    if (share < lastShare_) ++drawn_;
+    lastShare_ = share;
+    show((drawn_ + share) / shown_->scene.sampling.pixelSamples);
+  };
+  renderer_.reset();
+  resident_.reset();
+  if (context_)
+    resident_ =
+        std::make_unique<ResidentVolume>(*context_, *shown_->bricks, atlasOptions(shown_->scene, *shown_->bricks));
+  renderer_ = resident_ ? umbrick::makeRenderer(*resident_, shown_->scene, options)
+                        : umbrick::makeRenderer(*shown_->bricks, shown_->scene, options);
+  if (!std::exchange(chosenSaid_, true)) {
+    bar_.clear();
+    std::cerr << opened_.chosen;
+  }
+}
+
+void FrameRun::drawOne(const FrameJob::Frame& frame, VolumeFrame read) {
+  const Stopwatch draw;
+  shown_->scene.camera = path_.at(frame.turn);
+  shown_->scene.volume = frame.volume;
+  if (!job_.oneVolume) {
+    shown_->scene.volume.grid = read.volume ? read.volume->source().grid : frame.volume.grid;
+    // A renderer points to the bricks, and these to their volume.
+    renderer_.reset();
+    resident_.reset();
+    shown_->bricks = std::move(read.bricks);
+    shown_->volume = std::move(read.volume);
+    shown_->brickMs = read.brickMs;
+    shown_->loadMs = shown_->volume ? shown_->volume->loadMs() : 0;
+    if (shown_->volume) shown_->scene.bricks.interior = sceneFor(*shown_->volume).bricks.interior;
+  }
+  drawn_ = lastShare_ = 0;
+  if (!shown_->bricks) {
+    say(frame.volume.file.string() + ": frame " + std::to_string(frame.number) + " holds nothing and is drawn empty");
+    write(frame, blankPicture(shown_->scene, command_.output->layers), draw.elapsedMs(), false);
+    return;
+  }
+  if (!renderer_)
+    makeRenderer();
+  else
+    renderer_->setScene(shown_->scene);
+  const Picture picture = renderer_->render();
+  for (const std::string& note : notesOn(picture, shown_->scene)) say(note);
+  if (!job_.oneVolume && shown_->bricks->nonFiniteVoxels > 0) {
+    bar_.clear();
+    Scene named = opened_.scene;
+    named.volume = frame.volume;
+    warnOfNonFinite(named, shown_->bricks->nonFiniteVoxels);
+  }
+  if (command_.strict && describeEmptyPicture(picture.colour, shown_->scene, *shown_->volume)) strictFailed_ = true;
+  write(frame, picture, draw.elapsedMs(), true);
+}
+
+void FrameRun::write(const FrameJob::Frame& frame, const Picture& picture, double drawMs, bool holdsSomething) {
+  const Stopwatch writing;
+  PictureOutput output = *command_.output;
+  output.files = frame.pictures;
+  if (output.annotations) output.annotations = annotationsFor(output, shown_->scene, shown_->units);
+  bar_.clear();
+  writePicture(output, picture, shown_->scene, engine_.description);
+  for (const std::unique_ptr<Film>& film : films_) film->add(shownPicture(output, picture.colour));
+  printOutputs(output);
+  std::cout.flush();
+  if (!frame.stats.empty() || !job_.stats.empty()) {
+    nlohmann::ordered_json stats{{"frame", frame.number}};
+    if (holdsSomething)
+      stats.update(
+          printStats(*shown_, picture, {drawMs}, engine_.description, writing.elapsedMs(), command_.timePasses));
+    else
+      stats["empty"] = true;
+    if (!frame.stats.empty()) writeTextFile(frame.stats, stats.dump(2) + "\n");
+    if (!job_.stats.empty()) stats_.push_back(std::move(stats));
+  }
+  written_.push_back(frame.number);
+  ++done_;
+}
+
+// Goes on without a frame, or ends the job.
+void FrameRun::skip(const FrameJob::Frame& frame, const std::string& why) {
+  const std::string line = "frame " + std::to_string(frame.number) + ": " + why;
+  if (!command_.frames.skipMissing) throw Error(line + "; --skip-missing goes on without it");
+  say(line + "; left out");
+  ++done_;
+}
+
+void FrameRun::tellInterrupted() const {
+  std::vector<std::int64_t> there = written_;
+  for (const FrameJob::Frame& frame : job_.frames)
+    if (frame.finished) there.push_back(frame.number);
+  std::sort(there.begin(), there.end());
+  const bool pictures = !job_.frames.front().pictures.empty();
+  std::cerr << "umbrick: interrupted after " << there.size() << " of " << job_.frames.size() << " frames";
+  if (pictures && !there.empty())
+    std::cerr << "; these are there: " << rangesText(rangesOf(there, job_.step)) << ", and the same command goes on";
+  for (const std::filesystem::path& film : job_.films) std::cerr << "; " << film.string() << " is not written";
+  std::cerr << '\n';
+}
+
+int FrameRun::run() {
+  if (wanted_ == 0) return 0;
+  stop_.keepParts();
+  const StopWatcher watcher(stop_);
+  std::vector<VolumeReference> files;
+  for (const FrameJob::Frame& frame : job_.frames)
+    if (!frame.finished) files.push_back(frame.volume);
+  std::optional<VolumeFrames> reader;
+  if (!job_.oneVolume) reader.emplace(std::move(files), [this](const Volume& volume) { return cut(volume); });
+  bar_.begin("rendering");
+  work_ = Stopwatch();
+  bool stopped = false;
+  for (const FrameJob::Frame& frame : job_.frames) {
+    if (frame.finished) continue;
+    try {
+      VolumeFrame read;
+      if (reader) {
+        // What was drawn last is let go of, so that no more than two frames are in memory.
+        renderer_.reset();
+        resident_.reset();
+        shown_->bricks.reset();
+        shown_->volume.reset();
+        try {
+          read = reader->next([this] {
+            if (stop_.requested()) throw Interrupted("");
+            show(0);
+          });
+        } catch (const Interrupted&) {
+          throw;
+        } catch (const Error& error) {
+          skip(frame, error.what());
+          continue;
+        }
+      }
+      drawOne(frame, std::move(read));
+    } catch (const Interrupted&) {
+      stopped = true;
+      break;
+    }
+    if (beyondKnown_ && said_.insert("beyond").second) {
+      bar_.clear();
+      std::cerr << printable(beyond_) << ": shows something outside of the box that the camera was placed for by the "
+                << "first, the middle and the last frame; --zoom or --eye shows more\n";
+    }
+    if (stop_.requested() && done_ < wanted_) {
+      stopped = true;
+      break;
+    }
+  }
+  bar_.clear();
+  if (!job_.stats.empty()) writeTextFile(job_.stats, stats_.dump(2) + "\n");
+  if (stopped) {
+    tellInterrupted();
+    return 1;
+  }
+  for (const std::unique_ptr<Film>& film : films_) {
+    film->finish();
+    std::cout << printable(film->path().string()) << '\n';
+  }
+  return strictFailed_ ? 1 : 0;
+}
+
+}  // namespace
+
+std::optional<int> renderFrames(const RenderCommand& command, const Scene& scene) {
+  std::optional<FrameJob> job = findFrameJob(command, scene);
+  if (!job) return {};
+  return FrameRun(command, std::move(*job), scene).run();
+}
+
+void addFrameOptions(CLI::App& app, FrameOptions& options) {
+  const std::string group = "Frames";
+  app.add_option("--frames", options.range,
+                 "of a sequence, where input and output have a number in their names ('smoke_%04d.vdb', out_%04d.png), "
+                 "or the input is one file of several volumes, counted from 0: A, A-B or A-B:step [all there are]")
+      ->group(group);
+  app.add_option("--count", options.count, "make so many pictures of one volume, numbered from 0, as of a turntable")
+      ->check(CLI::Range(1, 1000000))
+      ->group(group);
+  app.add_option("--orbit", options.orbit,
+                 "degrees that the camera goes around the volume over all frames, counter-clockwise from above; after "
+                 "360 the first picture would follow the last one")
+      ->check(numberIn(-360000, 360000, "-360000 to 360000"))
+      ->capture_default_str()
+      ->group(group);
+  app.add_flag("--skip-missing", options.skipMissing,
+               "go on without frames that are missing, damaged or unlike the first one (other transform or unit), and "
+               "say which; else they end the job")
+      ->group(group);
+  app.add_flag("--overwrite", options.overwrite,
+               "draw all frames again; else those whose files are all there stay, so that a job goes on where it ended")
+      ->group(group);
+  app.add_option("--fps", options.fps, "of a film (-o film.mp4 or film.webm, made by ffmpeg): frames a second")
+      ->check(numberIn(0.01, 1000, "0.01 to 1000"))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--film-quality", options.filmQuality,
+                 "of a film: the encoder's constant rate factor, 0 (best) to 51 (.mp4) or 63 (.webm) [16; .webm 24]")
+      ->check(CLI::Range(0, 63))
+      ->group(group);
+}
+
+}  // namespace umbrick::tools
