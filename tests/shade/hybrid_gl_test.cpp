@@ -15,8 +15,8 @@ using Catch::Contains;
 
 namespace {
 
-Picture cast(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene, bool layers = false,
-             const AtlasLimits& limits = {}) {
+Picture castHybrid(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene, bool layers = false,
+                   const AtlasLimits& limits = {}) {
   RenderOptions options;
   options.visibilityAndDepth = layers;
   BrickOptions cut;
@@ -40,7 +40,7 @@ TEST_CASE("The medium behind the first surface is seen on OpenGL with what that 
   for (const double opacity : {0.0, 0.35, 1.0}) {
     const double behind = 1 - std::exp(-kDense * 13), through = 1 - opacity;
     ResolvedScene scene = fallingScene(opacity);
-    const Picture picture = cast(*context, grid, scene, true);
+    const Picture picture = castHybrid(*context, grid, scene, true);
     const float* const pixel = picture.colour.at(1, 2);
     CHECK(pixel[0] == Approx(opacity + through * behind * kBlue.r).margin(kPlace));
     CHECK(pixel[2] == Approx(through * behind * kBlue.b).margin(kPlace));
@@ -52,7 +52,7 @@ TEST_CASE("The medium behind the first surface is seen on OpenGL with what that 
           Approx((opacity * 46 + through * (46 * behind + sum)) / (opacity + through * behind)).margin(5e-3));
     CHECK(*picture.visibility.at(1, 2) == Approx(opacity + through * behind).margin(kPlace));
     // Without layers the colour is the same, and there are no others.
-    const Picture alone = cast(*context, grid, scene);
+    const Picture alone = castHybrid(*context, grid, scene);
     CHECK(maxDifference(alone.colour, picture.colour) == 0);
     CHECK(alone.layers.empty());
     CHECK(alone.depth.pixels.empty());
@@ -64,7 +64,7 @@ TEST_CASE("A ray that meets no surface shows nothing on OpenGL", "[shade][rays][
   if (!context) return;
   ResolvedScene scene = fallingScene(0.35);
   scene.clipBox = Box{{0, 0, 15}, {19, 19, 18}};  // before both surfaces
-  CHECK(largestAlpha(cast(*context, fallingGrid(), scene).colour) == 0);
+  CHECK(largestAlpha(castHybrid(*context, fallingGrid(), scene).colour) == 0);
 }
 
 TEST_CASE("Behind a clear surface around it a medium on OpenGL is the one of integrate", "[shade][rays][modes][gl]") {
@@ -79,9 +79,9 @@ TEST_CASE("Behind a clear surface around it a medium on OpenGL is the one of int
         scene.method = Method::lightVolume;
       }
       if (light == 2) scene.shading.kind = Shading::phong;
-      const Picture hybrid = cast(*context, grid, scene, true);
+      const Picture hybrid = castHybrid(*context, grid, scene, true);
       scene.mode = Mode::integrate;
-      const Picture whole = cast(*context, grid, scene, true);
+      const Picture whole = castHybrid(*context, grid, scene, true);
       CHECK(largestAlpha(whole.colour) > 0.5);
       // A segment that the surface cuts is integrated from there, where it is clear up to the medium: its value runs
       // linearly over less of the cell, so that it is nearer to the truth.
@@ -105,7 +105,7 @@ TEST_CASE("Surfaces with a medium behind them are on OpenGL those of the referen
       scene.sampling.spacing = 0.1 * shortestVoxelEdge(blobs.indexToWorld());
       scene.shading.kind = shading;
       INFO("perspective " << (projection == Projection::perspective) << ", shading " << static_cast<int>(shading));
-      const Picture seen = cast(*context, blobs, scene, true);
+      const Picture seen = castHybrid(*context, blobs, scene, true);
       CHECK(rmsDifference(seen.colour, renderReference(blobs, scene).colour) < 2e-3);
       CHECK(rmsDifference(seen.colour, valuePicture(blobs, scene, 8).colour) < 2e-3);
     }
@@ -114,7 +114,7 @@ TEST_CASE("Surfaces with a medium behind them are on OpenGL those of the referen
     ResolvedScene scene = hybridScene(colonTransfer(), colonCamera(fov * kDegree, 40), {surfaceAt(0.5, 0.6)});
     scene.sampling.spacing = 0.1;  // of depths, which are up to 5.4 times as far apart along a ray at 150 degrees
     CAPTURE(fov);
-    CHECK(rmsDifference(cast(*context, colon, scene).colour, renderReference(colon, scene).colour) < 2e-3);
+    CHECK(rmsDifference(castHybrid(*context, colon, scene).colour, renderReference(colon, scene).colour) < 2e-3);
   }
 }
 
@@ -126,18 +126,18 @@ TEST_CASE("Bricks that are skipped, cut and drawn in runs change no hybrid on Op
   ResolvedScene scene =
       hybridScene(nothingBelow(0.1), perspectiveCamera(centre + glm::dvec3(70, 90, 120), centre, 0.7, 60),
                   {surfaceAt(0.5, 0.5), surfaceAt(0.3, 0.2)});
-  const Picture first = cast(*context, grid, scene, true);
+  const Picture first = castHybrid(*context, grid, scene, true);
   CHECK(largestAlpha(first.colour) > 0.5);
   AtlasLimits small;
   small.budgetBytes = first.stats.textureBytes / 5;
-  const Picture inRuns = cast(*context, grid, scene, true, small);
+  const Picture inRuns = castHybrid(*context, grid, scene, true, small);
   CHECK(inRuns.stats.textureBytes < first.stats.textureBytes / 2);
   // A ray along a rim may meet it in one and not in the other.
   CHECK(rmsDifference(inRuns.colour, first.colour) < 1e-3);
   scene.bricks.culling = false;
-  CHECK(rmsDifference(cast(*context, grid, scene).colour, first.colour) < 1e-3);
+  CHECK(rmsDifference(castHybrid(*context, grid, scene).colour, first.colour) < 1e-3);
   scene.bricks.bricked = false;
-  CHECK(rmsDifference(cast(*context, grid, scene).colour, first.colour) < 1e-3);
+  CHECK(rmsDifference(castHybrid(*context, grid, scene).colour, first.colour) < 1e-3);
 }
 
 TEST_CASE("A renderer on OpenGL comes to hybrid and leaves it", "[shade][rays][modes][gl]") {

@@ -22,8 +22,8 @@ ResolvedScene projectionScene(Mode mode, const Camera& camera) {
   return scene;
 }
 
-Picture cast(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
-             const AtlasLimits& limits = {}) {
+Picture castProjection(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
+                       const AtlasLimits& limits = {}) {
   const auto volume = valueBricks(grid, scene);
   return RayCaster(context, *volume, scene, {}, limits).render();
 }
@@ -61,7 +61,7 @@ TEST_CASE("A face-on parallel projection on OpenGL is that of voxel columns, to 
     for (int axis = 0; axis < 3; ++axis)
       for (const Mode mode : kValueModes) {
         INFO("steps " << steps << ", axis " << axis << ", mode " << modeName(mode));
-        const Picture picture = cast(*context, grid, projectionScene(mode, faceOnCamera(dims, axis)));
+        const Picture picture = castProjection(*context, grid, projectionScene(mode, faceOnCamera(dims, axis)));
         const Image& values = layerOf(picture, "value");
         double worst = 0;
         for (int y = 0; y < values.height; ++y)
@@ -106,13 +106,13 @@ TEST_CASE("Projections on OpenGL are those on the CPU and approach the reference
           const glm::dvec3 forward = cameraFrame(camera).forward, middle = grid.worldBounds().centre();
           scene.clipPlanes = {{forward, 1 - glm::dot(forward, middle)}, {-forward, 1 + glm::dot(forward, middle)}};
         }
-        const Picture ours = cast(*context, grid, scene), theirs = valuePicture(grid, scene);
+        const Picture ours = castProjection(*context, grid, scene), theirs = valuePicture(grid, scene);
         // A packet of the CPU's rays has one main axis, so that a ray near a diagonal may have other slices there.
         CHECK(rmsDifference(layerOf(ours, "value"), layerOf(theirs, "value")) < 1e-3);
         scene.sampling.spacing = 0.125 * shortestVoxelEdge(grid.indexToWorld());
         const Image exact = layerOf(renderReference(grid, scene), "value");
         CHECK(meanOf(exact) > 0.005);
-        CHECK(rmsDifference(layerOf(cast(*context, grid, scene), "value"), exact) <
+        CHECK(rmsDifference(layerOf(castProjection(*context, grid, scene), "value"), exact) <
               (mode == Mode::average ? 2e-4 : 1e-3));
       }
     }
@@ -128,7 +128,7 @@ TEST_CASE("Parallel projections on OpenGL have the samples of those on the CPU",
       ResolvedScene scene = projectionScene(mode, orthographicCamera({30, 22, 40}, kSmallCentre, 30, 32));
       scene.sampling.spacing = 1.0 / perVoxel;
       INFO("samples " << perVoxel << ", mode " << modeName(mode));
-      const Picture ours = cast(*context, grid, scene), theirs = valuePicture(grid, scene);
+      const Picture ours = castProjection(*context, grid, scene), theirs = valuePicture(grid, scene);
       CHECK(maxDifference(layerOf(ours, "value"), layerOf(theirs, "value")) < kSamePlaces);
       CHECK(maxDifference(ours.colour, theirs.colour) < 1e-3);  // the slope of sRGB near black
     }
@@ -147,19 +147,19 @@ TEST_CASE("Bricks that are skipped, cut and drawn in runs change no projection o
       ResolvedScene scene =
           projectionScene(mode, perspective ? perspectiveCamera(centre + glm::dvec3(70, 90, 120), centre, 0.7, 40)
                                             : orthographicCamera(centre + glm::dvec3(-70, 90, 120), centre, 120, 40));
-      const Picture first = cast(*context, grid, scene);
+      const Picture first = castProjection(*context, grid, scene);
       const Image& skipped = layerOf(first, "value");
       CHECK(meanOf(skipped) > 0.001);
       AtlasLimits small;
       small.budgetBytes = first.stats.textureBytes / 5;
-      const Picture inRuns = cast(*context, grid, scene, small);
+      const Picture inRuns = castProjection(*context, grid, scene, small);
       CHECK(inRuns.stats.textureBytes < first.stats.textureBytes / 2);
       CHECK(maxDifference(layerOf(inRuns, "value"), skipped) <= (mode == Mode::average ? 1e-5 : 0));
       scene.bricks.culling = false;
-      const Image all = layerOf(cast(*context, grid, scene), "value");
+      const Image all = layerOf(castProjection(*context, grid, scene), "value");
       CHECK(maxDifference(skipped, all) <= (mode == Mode::average ? 1e-6 : 0));
       scene.bricks.bricked = false;
-      const Image whole = layerOf(cast(*context, grid, scene), "value");
+      const Image whole = layerOf(castProjection(*context, grid, scene), "value");
       CHECK(maxDifference(all, whole) < 10 * kSamePlaces);
     }
 }
@@ -176,7 +176,7 @@ TEST_CASE("An eye within the volume projects what is before it on OpenGL", "[sha
       INFO("fov " << fov << ", mode " << modeName(mode));
       const Image exact = layerOf(renderReference(grid, scene), "value");
       CHECK(meanOf(exact) > 0.02);
-      CHECK(rmsDifference(layerOf(cast(*context, grid, scene), "value"), exact) < 2e-3);
+      CHECK(rmsDifference(layerOf(castProjection(*context, grid, scene), "value"), exact) < 2e-3);
     }
 }
 
@@ -190,7 +190,7 @@ TEST_CASE("A slab that is thinner than a voxel is projected on OpenGL as what it
   for (const Mode mode : kValueModes) {
     scene.mode = mode;
     const double expected = 0.05 * (mode == Mode::mip ? 6.6 : mode == Mode::minip ? 6.3 : 6.45);
-    const Picture picture = cast(*context, grid, scene);
+    const Picture picture = castProjection(*context, grid, scene);
     for (const float value : layerOf(picture, "value").pixels) CHECK(value == Approx(expected).epsilon(1e-5));
   }
 }
@@ -201,7 +201,7 @@ TEST_CASE("An X-ray on OpenGL is what emission leaves of the light behind it", "
   const ScalarGrid grid = blobs();
   ResolvedScene scene = projectionScene(Mode::xray, orthographicCamera({30, 22, 40}, kSmallCentre, 30, 32));
   scene.sampling.spacing = 0.25;
-  const Picture picture = cast(*context, grid, scene);
+  const Picture picture = castProjection(*context, grid, scene);
   const Image& through = layerOf(picture, "value");
   const Image exact = layerOf(renderReference(grid, scene), "value");
   CHECK(meanOf(exact) < 0.9);
@@ -210,7 +210,7 @@ TEST_CASE("An X-ray on OpenGL is what emission leaves of the light behind it", "
   CHECK(rmsDifference(through, layerOf(valuePicture(grid, scene, 4), "value")) < 5e-4);
   scene.mode = Mode::integrate;
   scene.sampling.saturation = 0;
-  const Image colour = cast(*context, grid, scene).colour;
+  const Image colour = castProjection(*context, grid, scene).colour;
   for (std::size_t i = 0; i < through.pixels.size(); ++i) CHECK(through.pixels[i] == 1 - colour.pixels[4 * i + 3]);
 }
 

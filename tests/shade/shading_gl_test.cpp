@@ -29,8 +29,8 @@ void addLights(ResolvedScene& scene) {
 
 TransferFunction coloured() { return TransferFunction({{0.05, {{0.9, 0.6, 0.3}, 0}}, {1, {{0.4, 0.7, 0.9}, 0.8}}}); }
 
-Picture cast(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
-             const AtlasLimits& limits = {}) {
+Picture castShaded(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene,
+                   const AtlasLimits& limits = {}) {
   const auto volume = valueBricks(grid, scene);
   return RayCaster(context, *volume, scene, {}, limits).render();
 }
@@ -50,7 +50,7 @@ TEST_CASE("A medium of one slope reflects on OpenGL what Phong's model says", "[
   scene.clipBox = Box{glm::dvec3(8), glm::dvec3(24)};
   for (const bool sources : {false, true}) {
     if (sources) addLights(scene);
-    const Image colour = cast(*context, grid, scene).colour;
+    const Image colour = castShaded(*context, grid, scene).colour;
     const CameraFrame frame = cameraFrame(scene.camera);
     const glm::dvec3 viewer = -frame.forward;
     glm::dvec3 normal = glm::normalize(slope), reflected(0.15);
@@ -88,16 +88,16 @@ TEST_CASE("A medium that reflects light on OpenGL is that of the reference and o
       INFO("perspective " << (projection == Projection::perspective) << ", sources " << sources);
       const Image exact = renderReference(grid, scene).colour;
       CHECK(largestAlpha(exact) > 0.5);
-      const Picture ours = cast(*context, grid, scene);
+      const Picture ours = castShaded(*context, grid, scene);
       // Light counts as that of a segment's middle.
       CHECK(rmsDifference(ours.colour, exact) < 1e-3);
       CHECK(rmsDifference(ours.colour, valuePicture(grid, scene, 4).colour) < 1e-3);
       AtlasLimits small;
       small.budgetBytes = ours.stats.textureBytes / 3;
-      CHECK(maxDifference(cast(*context, grid, scene, small).colour, ours.colour) < 1e-4);
+      CHECK(maxDifference(castShaded(*context, grid, scene, small).colour, ours.colour) < 1e-4);
       ResolvedScene unshaded = scene;
       unshaded.shading = {};
-      CHECK(rmsDifference(cast(*context, grid, unshaded).colour, exact) > 1e-2);
+      CHECK(rmsDifference(castShaded(*context, grid, unshaded).colour, exact) > 1e-2);
     }
 }
 

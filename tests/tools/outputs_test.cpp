@@ -21,7 +21,7 @@ namespace {
 const std::string kReference = "reference ball.vdb --tf ball.json --size 12x10 --azimuth 0 --up z --model emission ";
 const std::string kPng = "\x89PNG", kExr = "v/1\x01";
 
-std::size_t lines(const std::string& text) {
+std::size_t linesOf(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
@@ -222,7 +222,7 @@ TEST_CASE("A stdout that is full or closed is an error of one line", "[tools]") 
   CHECK(at.run("info c.vdb").status == 0);
   const ProgramResult picture = runShell(at.folder, "$umbrick " + kReference + "-o - >&-");
   CHECK(picture.status == 1);
-  CHECK(lines(picture.err) == 1);
+  CHECK(linesOf(picture.err) == 1);
 }
 
 TEST_CASE("The name of an output is printed as it is, and on a terminal as what no terminal obeys", "[tools]") {
