@@ -10,7 +10,7 @@ namespace umbrick {
 namespace {
 
 // Adds what the medium took to what the surfaces took. Bricks that both hold count twice, as they do in memory.
-void addWork(RenderStats& sum, const RenderStats& medium) {
+void addMediumWork(RenderStats& sum, const RenderStats& medium) {
   sum.slices = medium.slices;
   sum.bricks = medium.bricks;
   sum.visibleBricks += medium.visibleBricks;
@@ -64,7 +64,7 @@ Picture composite(const ResolvedScene& scene, FirstSurfaces surfaces, const Pict
     }
     storeOver(scene, sum, pixel);
   }
-  addWork(picture.stats, medium.stats);
+  addMediumWork(picture.stats, medium.stats);
   return picture;
 }
 
