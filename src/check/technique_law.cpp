@@ -12,7 +12,7 @@ namespace umbrick {
 namespace {
 
 // Returns the RMS difference of R, G and B, as estimates of errors are meant.
-double rmsDifference(const Image& a, const Image& b) {
+double rmsBetween(const Image& a, const Image& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i)
     if (i % 4 != 3) sum += std::pow(static_cast<double>(a.pixels[i]) - static_cast<double>(b.pixels[i]), 2);
@@ -48,7 +48,7 @@ void TechniqueLaw::compare(Renderer& slices, std::optional<ProgressivePicture>& 
   if (!bySlices) bySlices = drawn(slices);
   const ProgressivePicture picture = drawn(other);
   const double said = bySlices->error.total() + picture.error.total();
-  addMeasurement(result, rmsDifference(bySlices->picture.colour, picture.picture.colour),
+  addMeasurement(result, rmsBetween(bySlices->picture.colour, picture.picture.colour),
                  2 * said + rounding(bySlices->picture.stats), bySlices->picture.colour.pixels.size() / 4, where);
 }
 

@@ -15,10 +15,10 @@ namespace umbrick {
 namespace {
 
 void checkPlanes(const GlFunctions& gl, std::size_t planes) {
-  constexpr GLint kOtherUniforms = 256;
+  constexpr GLint kValueUniforms = 256;
   GLint vectors = 0;
   gl.GetIntegerv(GL_MAX_FRAGMENT_UNIFORM_VECTORS, &vectors);
-  const auto most = static_cast<std::size_t>(std::max(vectors - kOtherUniforms, 0));
+  const auto most = static_cast<std::size_t>(std::max(vectors - kValueUniforms, 0));
   if (planes > most)
     throw InvalidArgument("clip.planes: " + std::to_string(planes) +
                           " planes in all are beyond the driver's limit of " + std::to_string(most));

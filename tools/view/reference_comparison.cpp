@@ -30,9 +30,9 @@ using Json = nlohmann::ordered_json;
 
 // Coarser than umbrick reference takes by itself, since people wait for it: in a seventh of the time, and off by 0.0009
 // (RMSE of RGB) on a head of CT.
-constexpr int kDirections = 64;      // of light
-constexpr double kTolerance = 1e-3;  // of the radiance
-constexpr double kTellMs = 200;      // between two words on how far it is
+constexpr int kDirections = 64;       // of light
+constexpr double kTolerance = 1e-3;   // of the radiance
+constexpr double kTellShareMs = 200;  // between two words on how far it is
 
 // A picture that another thread draws.
 struct Drawn {
@@ -134,14 +134,14 @@ std::uint64_t ReferenceComparison::start(std::shared_ptr<const Volume> volume, c
 
 void ReferenceComparison::compare(const Compared& compared, std::uint64_t number) {
   const Stopwatch watch;
-  double told = -kTellMs;
+  double told = -kTellShareMs;
   ReferenceOptions options;
   options.threads = threadsBeside();
   options.directions = kDirections;
   options.tolerance = kTolerance;
   options.progress = [&](double share) {
     if (!isCurrent(number)) return false;
-    if (watch.elapsedMs() - told >= kTellMs) {
+    if (watch.elapsedMs() - told >= kTellShareMs) {
       told = watch.elapsedMs();
       tell_(number, {{"state", "running"}, {"share", share}, {"size", sizeOf(compared.scene.camera)}});
     }
