@@ -27,6 +27,7 @@
 #include "umbrick/core/short_number.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/core/turned_camera.h"
+#include "umbrick/draw/value_picture.h"
 #include "umbrick/render/volume_frames.h"
 #include "umbrick/shade/prepare.h"
 #include "validators.h"
@@ -70,9 +71,8 @@ Picture blankPicture(const ResolvedScene& scene, bool layers) {
   const int width = scene.camera.width, height = scene.camera.height;
   Picture picture;
   picture.colour = Image(width, height, 4);
-  if (scene.background)
-    for (std::size_t i = 0; i < picture.colour.pixels.size(); ++i)
-      picture.colour.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>((*scene.background)[static_cast<int>(i % 4)]);
+  for (std::size_t i = 0; i < picture.colour.pixels.size(); i += 4)
+    storeOver(scene, glm::dvec4(0), &picture.colour.pixels[i]);
   if (!layers) return picture;
   picture.visibility = picture.opacity = picture.depth = Image(width, height, 1);
   std::fill(picture.depth.pixels.begin(), picture.depth.pixels.end(), std::numeric_limits<float>::infinity());

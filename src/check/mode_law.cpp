@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/picture_difference.h"
 #include "check/result.h"
 #include "umbrick/draw/value_picture.h"
 #include "umbrick/render/techniques.h"
@@ -12,13 +13,6 @@
 
 namespace umbrick {
 namespace {
-
-double rmsDifference(const Image& a, const Image& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i)
-    sum += std::pow(static_cast<double>(a.pixels[i]) - static_cast<double>(b.pixels[i]), 2);
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, a.pixels.size())));
-}
 
 // Returns a value in the middle of the function's, or else of the volume's.
 double surfaceValue(const ResolvedScene& scene, const Range& values) {

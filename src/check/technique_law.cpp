@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "check/technique_law.h"
 
-#include <cmath>
-
+#include "check/picture_difference.h"
 #include "umbrick/core/error.h"
 #include "umbrick/draw/progressive.h"
 #include "umbrick/render/techniques.h"
@@ -10,14 +9,6 @@
 
 namespace umbrick {
 namespace {
-
-// Returns the RMS difference of R, G and B, as estimates of errors are meant.
-double rmsBetween(const Image& a, const Image& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i)
-    if (i % 4 != 3) sum += std::pow(static_cast<double>(a.pixels[i]) - static_cast<double>(b.pixels[i]), 2);
-  return std::sqrt(sum / (0.75 * static_cast<double>(a.pixels.size())));
-}
 
 // Samples go through the centres of pixels, and have the same directions in all techniques.
 ProgressivePicture drawn(Renderer& renderer) {
@@ -48,7 +39,7 @@ void TechniqueLaw::compare(Renderer& slices, std::optional<ProgressivePicture>& 
   if (!bySlices) bySlices = drawn(slices);
   const ProgressivePicture picture = drawn(other);
   const double said = bySlices->error.total() + picture.error.total();
-  addMeasurement(result, rmsBetween(bySlices->picture.colour, picture.picture.colour),
+  addMeasurement(result, rmsOfColour(bySlices->picture.colour, picture.picture.colour),
                  2 * said + rounding(bySlices->picture.stats), bySlices->picture.colour.pixels.size() / 4, where);
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "draw/added_work.h"
 #include "umbrick/draw/value_picture.h"
 
 namespace umbrick {
@@ -11,23 +12,17 @@ namespace {
 
 // Adds what the medium took to what the surfaces took. Bricks that both hold count twice, as they do in memory.
 void addMediumWork(RenderStats& sum, const RenderStats& medium) {
+  addWork(sum, medium);
   sum.slices = medium.slices;
   sum.bricks = medium.bricks;
   sum.visibleBricks += medium.visibleBricks;
-  sum.fragments += medium.fragments;
   sum.brickSlots += medium.brickSlots;
-  sum.uploadedBricks += medium.uploadedBricks;
   sum.bufferBytes += medium.bufferBytes;
   sum.directions = medium.directions;
   sum.windowBytes = medium.windowBytes;
-  sum.windowUpdates = medium.windowUpdates;
   sum.lightMs = medium.lightMs;
   sum.lightSpacing = medium.lightSpacing;
   sum.lightSpacingError = medium.lightSpacingError;
-  sum.geometryMs += medium.geometryMs;
-  sum.uploadMs += medium.uploadMs;
-  sum.sweepMs += medium.sweepMs;
-  sum.readMs += medium.readMs;
 }
 
 }  // namespace

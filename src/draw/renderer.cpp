@@ -3,28 +3,25 @@
 
 #include <glm/common.hpp>
 
+#include "draw/added_work.h"
 #include "umbrick/core/pixel_points.h"
 #include "umbrick/draw/picture_mean.h"
 
 namespace umbrick {
-namespace {
 
-// Adds what the pictures before took to the statistics of the last one.
-void addWork(RenderStats& last, const RenderStats& before) {
-  last.polygons += before.polygons;
-  last.fragments += before.fragments;
-  last.uploadedBricks += before.uploadedBricks;
-  last.windowUpdates += before.windowUpdates;
-  last.geometryMs += before.geometryMs;
-  last.uploadMs += before.uploadMs;
-  last.sweepMs += before.sweepMs;
-  last.readMs += before.readMs;
-  last.passes.extinctionMs += before.passes.extinctionMs;
-  last.passes.windowsMs += before.passes.windowsMs;
-  last.passes.eyeMs += before.passes.eyeMs;
+void addWork(RenderStats& sum, const RenderStats& other) {
+  sum.polygons += other.polygons;
+  sum.fragments += other.fragments;
+  sum.uploadedBricks += other.uploadedBricks;
+  sum.windowUpdates += other.windowUpdates;
+  sum.geometryMs += other.geometryMs;
+  sum.uploadMs += other.uploadMs;
+  sum.sweepMs += other.sweepMs;
+  sum.readMs += other.readMs;
+  sum.passes.extinctionMs += other.passes.extinctionMs;
+  sum.passes.windowsMs += other.passes.windowsMs;
+  sum.passes.eyeMs += other.passes.eyeMs;
 }
-
-}  // namespace
 
 void Renderer::setScene(const ResolvedScene& scene) {
   if (scene_ && *scene_ == scene) return;

@@ -39,32 +39,7 @@ SliceInterval slicesThrough(const Corners& corners, double spacing, double phase
     farthest = std::max(farthest, corner.z);
   }
   if (!(farthest > 0)) return {};
-  const auto middle = [&](std::int64_t i) { return (static_cast<double>(i) + phase) * spacing; };
-  // Rounding may put the quotient off by one, so the loops step from outside of it to the exact answer.
-  std::int64_t first = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(nearest / spacing - phase)) - 1);
-  while (middle(first) <= nearest) ++first;
-  std::int64_t last = static_cast<std::int64_t>(std::ceil(farthest / spacing - phase)) + 1;
-  while (last >= first && middle(last) > farthest) --last;
-  return {first, last};
-}
-
-// Keeps the part with distance >= 0 (Sutherland-Hodgman). A crossing is computed from the lesser end of an edge to the
-// greater, so that two polygons that share an edge cut it at the same point.
-void clip(Polygon& polygon, Polygon& scratch, const glm::dvec3& line) {
-  scratch.clear();
-  const auto distance = [&](const glm::dvec2& p) { return line.x * p.x + line.y * p.y + line.z; };
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec2 a = polygon[i], b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
-    const double da = distance(a), db = distance(b);
-    if (da >= 0) scratch.push_back(a);
-    if ((da >= 0) != (db >= 0)) {
-      const bool ordered = a.x < b.x || (a.x == b.x && a.y < b.y);
-      const glm::dvec2 p = ordered ? a : b, q = ordered ? b : a;
-      const double dp = ordered ? da : db, dq = ordered ? db : da;
-      scratch.push_back(p + (q - p) * (dp / (dp - dq)));
-    }
-  }
-  std::swap(polygon, scratch);
+  return slicesBetween(nearest, farthest, spacing, phase, 0);
 }
 
 // Moves a plane outwards by as much as the middle of a slab may lie beyond it while the slab still reaches the kept
@@ -99,7 +74,9 @@ class SliceCutter {
       const Corners& corners = corners_[static_cast<std::size_t>(brick)];
       crossSection(corners, depth, polygon);
       for (const glm::dvec4& plane : planes_)
-        if (polygon.size() >= 3) clip(polygon, scratch, {plane.x, plane.y, plane.z * depth + plane.w});
+        if (polygon.size() >= 3)
+          clip(polygon, scratch,
+               [&](const glm::dvec2& p) { return plane.x * p.x + plane.y * p.y + (plane.z * depth + plane.w); });
       if (polygon.size() < 3) continue;
       for (glm::dvec2& point : polygon) point *= scale;
       addPolygon(view_, polygon, scratch, brick, out);

@@ -93,6 +93,16 @@ void checkSlices(double spacing, double phase) {
     throw InvalidArgument("slices: phase is " + std::to_string(phase) + ", must be in (0, 1)");
 }
 
+SliceInterval slicesBetween(double nearest, double farthest, double spacing, double phase, std::int64_t least) {
+  const auto middle = [&](std::int64_t i) { return (static_cast<double>(i) + phase) * spacing; };
+  // Rounding may put the quotient off by one, so the loops step from outside of it to the exact answer.
+  std::int64_t first = std::max(least, static_cast<std::int64_t>(std::floor(nearest / spacing - phase)) - 1);
+  while (middle(first) <= nearest) ++first;
+  std::int64_t last = static_cast<std::int64_t>(std::ceil(farthest / spacing - phase)) + 1;
+  while (last >= first && middle(last) > farthest) --last;
+  return {first, last};
+}
+
 void addPolygon(const IndexView& view, const Polygon& points, Polygon& vertices, std::int32_t brick,
                 SlicePolygons& out) {
   // Vertices are moved to the rasteriser's grid, and neighbours that fall on one point become one.

@@ -5,6 +5,7 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "umbrick/slice/proxy_slices.h"
@@ -26,6 +27,32 @@ struct SliceInterval {
 
 /// @throw InvalidArgument  spacing <= 0 or not finite; phase outside (0, 1)
 void checkSlices(double spacing, double phase);
+
+/// Returns the slices whose middle, at (i + phase) spacing, is in (nearest, farthest], from slice `least` on.
+SliceInterval slicesBetween(double nearest, double farthest, double spacing, double phase, std::int64_t least);
+
+/// Keeps the part of a convex polygon with distance >= 0 (Sutherland-Hodgman). A crossing is computed from the lesser
+/// end of an edge to the greater, so that two polygons that share an edge cut it at the same point.
+template <class Point, class Distance>
+void clip(std::vector<Point>& polygon, std::vector<Point>& scratch, const Distance& distance) {
+  scratch.clear();
+  const auto isLess = [](const Point& a, const Point& b) {
+    for (int c = 0; c + 1 < Point::length(); ++c)
+      if (a[c] != b[c]) return a[c] < b[c];
+    return a[Point::length() - 1] < b[Point::length() - 1];
+  };
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point a = polygon[i], b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    const double da = distance(a), db = distance(b);
+    if (da >= 0) scratch.push_back(a);
+    if ((da >= 0) == (db >= 0)) continue;
+    const bool ordered = isLess(a, b);
+    const Point p = ordered ? a : b, q = ordered ? b : a;
+    const double dp = ordered ? da : db, dq = ordered ? db : da;
+    scratch.push_back(p + (q - p) * (dp / (dp - dq)));
+  }
+  std::swap(polygon, scratch);
+}
 
 /// Adds a polygon, moved to the grid of kSubpixels, unless it lies outside the image.
 /// @param points   screen points over view.halfExtent; at least three

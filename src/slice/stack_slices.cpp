@@ -5,32 +5,14 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <string>
-#include <utility>
 
 #include "slice/slice_polygons.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
 namespace {
-
-// Keeps the part of a convex polygon with distance >= 0 (Sutherland-Hodgman). A crossing is computed from the lesser
-// end of an edge to the greater, so that two polygons that share an edge cut it at the same point.
-template <class Point, class Distance, class Less>
-void clip(std::vector<Point>& polygon, std::vector<Point>& scratch, const Distance& distance, const Less& less) {
-  scratch.clear();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Point a = polygon[i], b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
-    const double da = distance(a), db = distance(b);
-    if (da >= 0) scratch.push_back(a);
-    if ((da >= 0) == (db >= 0)) continue;
-    const bool ordered = less(a, b);
-    const Point p = ordered ? a : b, q = ordered ? b : a;
-    const double dp = ordered ? da : db, dq = ordered ? db : da;
-    scratch.push_back(p + (q - p) * (dp / (dp - dq)));
-  }
-  std::swap(polygon, scratch);
-}
 
 // How index coordinate `axis` changes with view coordinates.
 glm::dvec3 rateOf(const IndexView& view, int axis) {
@@ -44,9 +26,7 @@ Polygon partOf(const IndexView& view, int axis, int sign) {
   Polygon part{low, {high.x, low.y}, high, {low.x, high.y}}, scratch;
   const glm::dvec3 rate = static_cast<double>(sign) * rateOf(view, axis);
   const auto keep = [&](const glm::dvec3& line) {
-    clip(
-        part, scratch, [&](const glm::dvec2& p) { return line.x * p.x + line.y * p.y + line.z; },
-        [](const glm::dvec2& a, const glm::dvec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+    clip(part, scratch, [&](const glm::dvec2& p) { return line.x * p.x + line.y * p.y + line.z; });
   };
   for (int other = 0; other < 3; ++other)
     if (other != axis)
@@ -116,11 +96,7 @@ class StackCutter {
     Polygon points, vertices;
     const auto keep = [&](const glm::dvec4& plane) {
       if (polygon.size() < 3) return;
-      clip(
-          polygon, scratch, [&](const glm::dvec3& p) { return glm::dot(glm::dvec3(plane), p) + plane.w; },
-          [](const glm::dvec3& a, const glm::dvec3& b) {
-            return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-          });
+      clip(polygon, scratch, [&](const glm::dvec3& p) { return glm::dot(glm::dvec3(plane), p) + plane.w; });
     };
     for (const std::int32_t brick : bricks) {
       rectangle(origins_[static_cast<std::size_t>(brick)], index, polygon);
@@ -191,7 +167,6 @@ ProxySlices cutStack(const IndexView& view, const StackAim& aim, std::span<const
   checkSlices(aim.spacing, std::min(aim.phase, 0.5));
   const bool perspective = view.projection == Projection::perspective;
   const auto depthOf = [&](double index) { return aim.sign * (index - view.eyeIndex[aim.axis]); };
-  const auto middle = [&](std::int64_t i) { return (static_cast<double>(i) + aim.phase) * aim.spacing; };
   std::vector<SliceInterval> intervals(origins.size());
   for (std::size_t i = 0; i < origins.size(); ++i) {
     const double a = depthOf(origins[i][aim.axis] - 0.5);
@@ -200,13 +175,9 @@ ProxySlices cutStack(const IndexView& view, const StackAim& aim, std::span<const
     if (std::max(std::abs(nearest), std::abs(farthest)) / aim.spacing > 9e15)
       throw InvalidArgument("slices: spacing " + std::to_string(aim.spacing) +
                             " voxels is too small for a volume at depth " + std::to_string(farthest));
-    // Those whose middle is in (nearest, farthest] and, under perspective, in front of the eye.
-    std::int64_t first = static_cast<std::int64_t>(std::floor(nearest / aim.spacing - aim.phase)) - 1;
-    if (perspective) first = std::max<std::int64_t>(0, first);
-    while (middle(first) <= nearest) ++first;
-    std::int64_t last = static_cast<std::int64_t>(std::ceil(farthest / aim.spacing - aim.phase)) + 1;
-    while (last >= first && middle(last) > farthest) --last;
-    intervals[i] = {first, last};
+    // Under perspective nothing is seen behind the eye.
+    const std::int64_t least = perspective ? 0 : std::numeric_limits<std::int64_t>::min();
+    intervals[i] = slicesBetween(nearest, farthest, aim.spacing, aim.phase, least);
   }
   const StackCutter cutter(view, aim, origins, interior, viewPlanes);
   ProxySlices slices = cutEach(

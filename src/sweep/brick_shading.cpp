@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "umbrick/draw/value_picture.h"
 #include "umbrick/optics/phong.h"
 
 namespace umbrick {
@@ -56,8 +55,6 @@ std::vector<std::uint8_t> readGroups(const VoxelBrick& brick, const glm::ivec3& 
 bool isGrey(const glm::dvec3& colour) { return colour.r == colour.g && colour.g == colour.b; }
 
 }  // namespace
-
-void BrickShading::check(const ResolvedScene& scene, const Bricks& volume) { checkShading(scene, volume.layout.apron); }
 
 void BrickShading::update(BrickVoxels& voxels, const ResolvedScene& scene) {
   const Bricks& volume = voxels.volume();

@@ -16,13 +16,7 @@ namespace umbrick {
 /// interpolate it as they do light. A voxel without a gradient faces the viewer.
 class BrickShading {
  public:
-  /// Bricks need an apron of this: rays read one voxel of it, whose difference looks at the next.
-  static constexpr int kApron = 2;
-
-  /// @throw InvalidArgument  as shadingLights; the medium is lit in another way, too; the apron is too small
-  static void check(const ResolvedScene& scene, const Bricks& volume);
-
-  /// @pre check()
+  /// @pre checkShading()
   void update(BrickVoxels& voxels, const ResolvedScene& scene);
 
   int channels() const { return channels_; }

@@ -28,9 +28,8 @@ struct SurfaceHit {
 /// Amanatides and Woo 1987.
 class SurfaceRays {
  public:
-  /// Bricks need an apron of this, for the gradients.
-  static constexpr int kApron = 2;
-  /// @param box  of the voxels between which there is a value that is not the background
+  /// Bricks need an apron of kGradientApron. @param box  of the voxels between which there is a value that is not the
+  /// background
   SurfaceRays(const BrickVoxels& voxels, const BrickTable& table, const IndexBox& box,
               std::span<const SceneSurface> surfaces);
 

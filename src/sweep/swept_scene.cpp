@@ -11,6 +11,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/memory.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/draw/value_picture.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/lights.h"
 
@@ -42,7 +43,7 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
   if (!sweptSupports(next))
     throw InvalidArgument("method: " + methodName(next.method) + " is one of slices; " + technique_ +
                           " takes light from a light volume");
-  if (isShaded(next)) BrickShading::check(next, volume());
+  if (isShaded(next)) checkShading(next, volume().layout.apron);
   if (next.transfer.is2d() && !volume().hasGradients)
     throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
   constexpr std::size_t kMostVoxels = std::size_t{1} << 29;  // of a brick, whose places are 32-bit numbers of bytes

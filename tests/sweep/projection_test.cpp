@@ -215,7 +215,7 @@ TEST_CASE("An X-ray is what emission leaves of the light behind it", "[sweep][cp
 TEST_CASE("A renderer goes from mode to mode", "[sweep][cpu][modes]") {
   const ScalarGrid grid = blobs();
   const ResolvedScene first = projectionScene(Mode::integrate, orthographicCamera({30, 22, 40}, kSmallCentre, 30, 24));
-  const auto bricks = cutGrid(grid, BrickOptions{.interior = 16, .apron = SurfaceRays::kApron}, true);
+  const auto bricks = cutGrid(grid, BrickOptions{.interior = 16, .apron = kGradientApron}, true);
   RayRenderer renderer(*bricks, first);
   for (const Mode mode : {Mode::mip, Mode::integrate, Mode::xray, Mode::isosurface, Mode::average, Mode::integrate}) {
     ResolvedScene scene = first;

@@ -10,6 +10,7 @@
 #include "support/test_scenes.h"
 #include "sweep/surface_rays.h"
 #include "umbrick/brick/brick_grid.h"
+#include "umbrick/draw/value_picture.h"
 #include "umbrick/reference/reference.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/sweep/ray_renderer.h"
@@ -26,7 +27,7 @@ inline SceneSurface surfaceAt(double value, double opacity = 1) {
 inline std::unique_ptr<Bricks> valueBricks(const ScalarGrid& grid, const ResolvedScene& scene) {
   BrickOptions bricks;
   bricks.interior = scene.bricks.interior;
-  bricks.apron = isShaded(scene) || traitsOf(scene.mode).surfaces ? SurfaceRays::kApron : 1;
+  bricks.apron = isShaded(scene) || traitsOf(scene.mode).surfaces ? kGradientApron : 1;
   bricks.gradients = scene.transfer.is2d();
   return cutGrid(grid, bricks, scene.bricks.bricked);
 }

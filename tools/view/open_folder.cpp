@@ -22,25 +22,6 @@ namespace {
 
 constexpr std::size_t kLongestPath = 1000;  // bytes
 
-// A descriptor that closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  int get() const { return number_; }
-  int release() { return std::exchange(number_, -1); }
-
- private:
-  int number_;
-};
-
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
   throw InvalidArgument("open: '" + printable(path.substr(0, 200)) + "' " + why);
 }
@@ -95,28 +76,26 @@ std::optional<EntryKind> kindOfName(const std::string& name) {
 OpenFolder::OpenFolder(const std::filesystem::path& path) {
   std::error_code failed;
   path_ = std::filesystem::canonical(path, failed);
-  descriptor_ = failed ? -1 : ::open(path_.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ < 0) throw IoError(path.string() + ": is no folder that can be opened");
+  if (!failed) descriptor_ = Descriptor(::open(path_.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  if (!descriptor_) throw IoError(path.string() + ": is no folder that can be opened");
 }
 
-OpenFolder::~OpenFolder() { ::close(descriptor_); }
-
-int OpenFolder::walk(const std::string& path) const {
-  Descriptor at(::openat(descriptor_, ".", O_PATH | O_DIRECTORY | O_CLOEXEC));
-  if (at.get() < 0) fail(path, std::strerror(errno));
+Descriptor OpenFolder::walk(const std::string& path) const {
+  Descriptor at(::openat(descriptor_.number(), ".", O_PATH | O_DIRECTORY | O_CLOEXEC));
+  if (!at) fail(path, std::strerror(errno));
   for (const std::string& name : namesOf(path)) {
-    at = Descriptor(::openat(at.get(), name.c_str(), O_PATH | O_NOFOLLOW | O_CLOEXEC));
-    if (at.get() < 0) fail(path, std::strerror(errno));
-    const mode_t mode = statusOf(at.get(), path).st_mode;
+    at = Descriptor(::openat(at.number(), name.c_str(), O_PATH | O_NOFOLLOW | O_CLOEXEC));
+    if (!at) fail(path, std::strerror(errno));
+    const mode_t mode = statusOf(at.number(), path).st_mode;
     if (S_ISLNK(mode)) refuse(path, "has a link in it, which is not followed");
     if (!S_ISDIR(mode) && !S_ISREG(mode)) refuse(path, "is neither a file nor a folder");
   }
-  return at.release();
+  return at;
 }
 
 FoundFile OpenFolder::find(const std::string& path) const {
   const Descriptor found(walk(path));
-  const struct stat status = statusOf(found.get(), path);
+  const struct stat status = statusOf(found.number(), path);
   return {path.empty() ? path_ : path_ / path, S_ISDIR(status.st_mode) != 0, status.st_dev, status.st_ino};
 }
 
@@ -129,7 +108,7 @@ void OpenFolder::requireSame(const std::string& path, const FoundFile& found) co
 FolderListing OpenFolder::list(const std::string& path) const {
   const Descriptor found(walk(path));
   // A descriptor of a path cannot be read; "." of it can.
-  const int readable = ::openat(found.get(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int readable = ::openat(found.number(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (readable < 0) fail(path, std::strerror(errno));
   const std::unique_ptr<DIR, int (*)(DIR*)> folder(::fdopendir(readable), ::closedir);
   if (!folder) fail(path, std::strerror(errno));
@@ -139,7 +118,7 @@ FolderListing OpenFolder::list(const std::string& path) const {
     const std::string name = entry->d_name;
     if (name.front() == '.' || asUtf8(name) != name) continue;  // hidden, or a name that JSON cannot hold
     struct stat status {};
-    if (::fstatat(found.get(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) continue;  // has just gone
+    if (::fstatat(found.number(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) continue;  // has just gone
     if (S_ISLNK(status.st_mode)) {
       ++listing.links;
     } else if (S_ISDIR(status.st_mode)) {

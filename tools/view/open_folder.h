@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "core/descriptor.h"
+
 namespace umbrick::view {
 
 enum class EntryKind { folder, volume, scene };
@@ -45,9 +47,6 @@ class OpenFolder {
  public:
   /// @throw IoError  it cannot be opened
   explicit OpenFolder(const std::filesystem::path& path);
-  ~OpenFolder();
-  OpenFolder(const OpenFolder&) = delete;
-  OpenFolder& operator=(const OpenFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
   /// Lists folders, volumes by the endings of their names, and scenes (.json). What is hidden is left out.
@@ -60,10 +59,10 @@ class OpenFolder {
   void requireSame(const std::string& path, const FoundFile& found) const;
 
  private:
-  int walk(const std::string& path) const;
+  Descriptor walk(const std::string& path) const;
 
   std::filesystem::path path_;
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 /// Returns what a file is by the ending of its name; nothing for what a page cannot open.
