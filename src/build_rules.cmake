@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # Compiles by way of ccache, if it is installed. It keeps what uses a precompiled header only if it may overlook when that
-# was made, and if the compiler names the header in preprocessed text.
+# was made, and if the compiler names the header in preprocessed text. Another checkout finds what this one has compiled.
 macro(umbrick_use_ccache)
   find_program(CCACHE ccache)
   if(CCACHE)
     set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+        CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
         CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE})
     add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
   endif()
