@@ -74,6 +74,8 @@ std::optional<FrameJob> framesOf(const RenderCommand& command, const VolumeRefer
   const bool several = numbered != files.end() || film != files.end() || !options.range.empty();
   if (!several && options.orbit != 0)
     throw UsageError("--orbit: expected several pictures: --count, or a sequence with an output such as out_%04d.png");
+  if (!several && options.shutter > 0)
+    throw UsageError("--shutter: expected several pictures, by --count or of a sequence");
   if (!several) return {};
   ConvertOptions open;
   open.source.open = openOptions(volume);
@@ -159,6 +161,15 @@ std::optional<FrameJob> findFrameJob(const RenderCommand& command, const Scene& 
   if (!job) return {};
   if (command.progressive())
     throw UsageError("--progressive, --max-seconds and --target-error are for one picture; --samples averages frames");
+  if (command.frames.shutter > 0) {
+    const bool moves = command.frames.orbit != 0 || std::ranges::any_of(scene.tracks, [](const SceneTrack& track) {
+                         return track.field.starts_with("camera.");
+                       });
+    if (!moves) throw UsageError("--shutter: expected a camera that moves, by --orbit or by keys of the scene");
+    if (scene.sampling.pixelSamples < 2)
+      throw UsageError("--shutter: expected --samples of 2 or more, which are taken at as many times, found " +
+                       std::to_string(scene.sampling.pixelSamples));
+  }
   if (command.repeat > 1) throw UsageError("--repeat: is for one picture, found several frames");
   placeOutputs(command, *job);
   tellFinished(*job);

@@ -51,7 +51,7 @@ class SampleView {
     }
     numbers_.push_back(number);
     if (!scene_.orbit) return;
-    const Box box = volume.visibleBounds(*shown.transfer);
+    const Box box = visibleAtAnyKey(volume, shown);
     if (!hints_.seen) hints_.seen = Box{};
     hints_.seen->include(box.min);
     hints_.seen->include(box.max);
@@ -80,7 +80,12 @@ class SampleView {
 
 OpenedScene openFrames(const RenderCommand& command, const FrameJob& job, const Scene& scene,
                        const Progress& progress) {
-  if (job.oneVolume) return openScene(*command.scene, scene, progress);
+  if (job.oneVolume) {
+    OpenedScene opened = openScene(*command.scene, scene, progress);
+    // An orbit looks at one box in all frames.
+    if (scene.orbit && !scene.tracks.empty()) opened.seen = visibleAtAnyKey(*opened.volume, opened.scene);
+    return opened;
+  }
   const std::size_t count = job.frames.size();
   SampleView view(command, scene);
   std::shared_ptr<const Volume> first;
@@ -96,6 +101,18 @@ OpenedScene openFrames(const RenderCommand& command, const FrameJob& job, const 
       if (const auto volume = loadSample(command, job.frames[sample], progress))
         view.add(job.frames[sample].number, *volume);
   return completeScene(*command.scene, scene, first, view.hints());
+}
+
+Box visibleAtAnyKey(const Volume& volume, const Scene& scene) {
+  Box seen = volume.visibleBounds(*scene.transfer);
+  for (const SceneTrack& track : scene.tracks)
+    for (const SceneTrack::Key& key : track.keys)
+      if (key.transfer) {
+        const Box box = volume.visibleBounds(*key.transfer);
+        seen.include(box.min);
+        seen.include(box.max);
+      }
+  return seen;
 }
 
 FrameKind kindOf(const Volume& volume) {

@@ -20,6 +20,10 @@ namespace umbrick::tools {
 OpenedScene openFrames(const RenderCommand& command, const FrameJob& job, const Scene& scene,
                        const std::function<void(double)>& progress);
 
+/// Returns the box around what is visible of a volume with any of the scene's transfer functions.
+/// @pre scene.transfer
+Box visibleAtAnyKey(const Volume& volume, const Scene& scene);
+
 /// What frames must have in common, so that one scene can show them.
 struct FrameKind {
   std::string name;  // of the frame that it was taken from

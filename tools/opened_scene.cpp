@@ -44,6 +44,9 @@ void chooseTransfer(const SceneOptions& options, const SceneHints& hints, Opened
       choices.reasons.push_back("the transfer function, made for values in " + scene.transfer->unit() +
                                 ", is shifted to " + fitting.unit());
     scene.transfer = fitting;
+    for (SceneTrack& track : scene.tracks)
+      for (SceneTrack::Key& key : track.keys)
+        if (key.transfer) key.transfer = fitted(*key.transfer, *opened.volume);
     return;
   }
   const SuggestedTransfer suggested = hints.transfer ? *hints.transfer : suggestTransfer(*opened.volume);

@@ -160,6 +160,7 @@ ProgressivePicture renderPasses(const RenderCommand& command, const MakeRenderer
 int render(const RenderCommand& command) {
   const Scene scene = askedScene(command);
   if (const std::optional<int> several = renderFrames(command, scene)) return *several;
+  tellFrameShown(*command.scene, scene);
   checkOutputs(*command.output);
   const PictureOutput& output = *command.output;
   const bool progressive = command.progressive();

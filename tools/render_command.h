@@ -20,6 +20,7 @@ struct FrameOptions {
   std::string range;         // of --frames; empty: all there are
   std::optional<int> count;  // pictures of one volume
   double orbit = 0;          // degrees that the camera goes around the volume over all frames
+  double shutter = 0;        // share of the time from frame to frame in which the camera is seen to move
   bool skipMissing = false, overwrite = false;
   double fps = 25;                 // of a film
   std::optional<int> filmQuality;  // none: the usual one of the format

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 #include <iostream>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <string>
 #include <thread>
@@ -18,16 +15,18 @@
 #include "film.h"
 #include "frame_job.h"
 #include "frame_samples.h"
+#include "frame_scenes.h"
 #include "frame_words.h"
 #include "mode_options.h"
 #include "progress.h"
 #include "render_command.h"
 #include "umbrick/core/pending_file.h"
+#include "umbrick/core/pixel_points.h"
 #include "umbrick/core/printable.h"
 #include "umbrick/core/short_number.h"
 #include "umbrick/core/stopwatch.h"
-#include "umbrick/core/turned_camera.h"
 #include "umbrick/draw/value_picture.h"
+#include "umbrick/image/exr.h"
 #include "umbrick/render/volume_frames.h"
 #include "umbrick/shade/prepare.h"
 #include "validators.h"
@@ -46,25 +45,6 @@ class StopWatcher {
  private:
   std::jthread thread_;
 };
-
-// The camera goes around what an orbit looks at, or else around the point that it looks at.
-struct CameraPath {
-  Camera camera;
-  glm::dvec3 centre{0}, axis{0, 0, 1};
-  double radians = 0;  // over all frames
-
-  Camera at(double share) const { return turnedCamera(camera, centre, axis, share * radians); }
-};
-
-CameraPath pathOf(const OpenedScene& opened, const Camera& camera, double degrees) {
-  CameraPath path{.camera = camera, .centre = camera.lookAt, .axis = camera.up};
-  path.radians = degrees * std::numbers::pi / 180;
-  if (opened.scene.orbit) {
-    path.centre = (opened.seen ? *opened.seen : opened.volume->visibleBounds(*opened.scene.transfer)).centre();
-    path.axis = orbitView(*opened.scene.orbit).up;
-  }
-  return path;
-}
 
 // The picture of a volume that holds nothing.
 Picture blankPicture(const ResolvedScene& scene, bool layers) {
@@ -87,15 +67,17 @@ class FrameRun {
 
  private:
   void open(const Scene& scene);
+  Picture taken(const FrameJob::Frame& frame);
   void drawOne(const FrameJob::Frame& frame, VolumeFrame read);
   void makeRenderer();
-  ResolvedScene sceneFor(const Volume& volume) const;
-  std::unique_ptr<Bricks> cut(const Volume& volume);
+  std::unique_ptr<Bricks> cut(const Volume& volume, const FrameJob::Frame& frame);
+  std::unique_ptr<Bricks> cut(const Volume& volume, const ResolvedScene& scene) const;
   void write(const FrameJob::Frame& frame, const Picture& picture, double drawMs, bool holdsSomething);
   void skip(const FrameJob::Frame& frame, const std::string& why);
   void say(const std::string& line);
   void show(double share);
   void tellInterrupted() const;
+  void tellOtherScene() const;
 
   const RenderCommand& command_;
   FrameJob job_;
@@ -105,8 +87,8 @@ class FrameRun {
   Engine engine_;
   std::unique_ptr<GlContext, ContextCloser> context_;  // null: on the CPU
   std::optional<LoadedScene> shown_;                   // the frame at hand
-  FrameKind kind_;                                     // of the frames
-  CameraPath path_;
+  std::optional<FrameScenes> scenes_;
+  FrameKind kind_;  // of the frames
   std::unique_ptr<ResidentVolume> resident_;
   std::unique_ptr<Renderer> renderer_;
   std::vector<std::unique_ptr<Film>> films_;
@@ -136,9 +118,10 @@ void FrameRun::open(const Scene& scene) {
   bar_.clear();
   tellUnused(command_, engine_.technique, !context_);
   tellUnusedByMode(*command_.scene, opened_.scene, command_.output->layers);
+  scenes_.emplace(opened_, job_, engine_.technique, command_.frames.orbit);
   shown_ = job_.oneVolume ? loadScene(opened_, engine_.technique, !context_, false)
-                          : LoadedScene{.scene = sceneFor(*opened_.volume), .units = unitsOf(opened_.volume->grid())};
-  path_ = pathOf(opened_, shown_->scene.camera, command_.frames.orbit);
+                          : LoadedScene{.scene = scenes_->at(job_.frames.front(), opened_.volume.get()),
+                                        .units = unitsOf(opened_.volume->grid())};
   prepareLook(*command_.output, command_.scene->backdrop, shown_->scene, shown_->units);
   for (const std::filesystem::path& film : job_.films) {
     const Camera& camera = shown_->scene.camera;
@@ -148,6 +131,7 @@ void FrameRun::open(const Scene& scene) {
     films_.push_back(std::make_unique<Film>(film, camera.width, camera.height,
                                             FilmOptions{command_.frames.fps, command_.frames.filmQuality}));
   }
+  tellOtherScene();
   if (job_.oneVolume) return;
   // The reader brings the first frame again: no volume is kept besides the two that are read and drawn.
   kind_ = kindOf(*opened_.volume);
@@ -156,28 +140,44 @@ void FrameRun::open(const Scene& scene) {
     if (frame.volume.grid.empty()) frame.volume.grid = opened_.scene.volume.grid;
 }
 
-// The scene of a volume, seen as the first frame is.
-ResolvedScene FrameRun::sceneFor(const Volume& volume) const {
-  ResolvedScene scene = volume.resolve(opened_.scene, opened_.seen.value_or(volume.worldBounds()));
-  scene.technique = engine_.technique;
-  return scene;
+// Says where the frames that are there were drawn otherwise than the others will be: the header of an EXR tells.
+void FrameRun::tellOtherScene() const {
+  const auto there = std::ranges::find_if(job_.frames, &FrameJob::Frame::finished);
+  if (there == job_.frames.end()) return;
+  const auto file = std::ranges::find_if(there->pictures, [](const auto& path) { return path.extension() == ".exr"; });
+  if (file == there->pictures.end()) return;
+  const auto known = [](const std::string& scene) {
+    nlohmann::json json = nlohmann::json::parse(scene, nullptr, false);
+    for (const char* ofTheFrame : {"volume", "bricks"})
+      if (json.is_object()) json.erase(ofTheFrame);
+    return json;
+  };
+  std::string what;
+  try {
+    const ExrFile picture = readExr(*file);
+    const auto scene = picture.metadata.find("umbrick.scene");
+    const nlohmann::json drawn = known(scene == picture.metadata.end() ? std::string() : scene->second);
+    const nlohmann::json change =
+        nlohmann::json::diff(drawn, known(printScene(scenes_->at(*there, opened_.volume.get()))));
+    if (change.empty()) return;
+    what = "was drawn of another scene (" + change.at(0).at("path").get<std::string>() + ")";
+  } catch (const IoError&) {
+    what = "is no picture that can be read";
+  }
+  std::cerr << printable(file->string()) << ": " << what << " and stays; --overwrite draws all again\n";
 }
 
-std::unique_ptr<Bricks> FrameRun::cut(const Volume& volume) {
-  requireAlike(volume, kind_);
-  if (opened_.seen && !beyondKnown_) {
-    const auto leaves = [&](const Box& box) {
-      const double rounding = 1e-6 * glm::length(opened_.seen->extent());
-      return glm::any(glm::lessThan(box.min, opened_.seen->min - rounding)) ||
-             glm::any(glm::greaterThan(box.max, opened_.seen->max + rounding));
-    };
-    if (leaves(volume.worldBounds()) && leaves(volume.visibleBounds(*opened_.scene.transfer))) {
-      beyond_ = volume.name();
-      beyondKnown_ = true;
-    }
-  }
-  const ResolvedScene scene = sceneFor(volume);
+std::unique_ptr<Bricks> FrameRun::cut(const Volume& volume, const ResolvedScene& scene) const {
   return context_ ? volume.cut(scene) : volume.cutForCpu(scene);
+}
+
+std::unique_ptr<Bricks> FrameRun::cut(const Volume& volume, const FrameJob::Frame& frame) {
+  requireAlike(volume, kind_);
+  if (!beyondKnown_ && scenes_->leavesView(volume)) {
+    beyond_ = volume.name();
+    beyondKnown_ = true;
+  }
+  return cut(volume, scenes_->at(frame, &volume));
 }
 
 void FrameRun::say(const std::string& line) {
@@ -214,12 +214,17 @@ void FrameRun::makeRenderer() {
   }
 }
 
+Picture FrameRun::taken(const FrameJob::Frame& frame) {
+  if (command_.frames.shutter == 0) return renderer_->render();
+  const std::vector<double> times = pixelTimes(shown_->scene.sampling.pixelSamples);
+  return renderer_->render({}, [&](std::size_t i) {
+    renderer_->setCamera(scenes_->cameraAt(frame, *shown_->volume, times[i] * command_.frames.shutter));
+  });
+}
+
 void FrameRun::drawOne(const FrameJob::Frame& frame, VolumeFrame read) {
   const Stopwatch draw;
-  shown_->scene.camera = path_.at(frame.turn);
-  shown_->scene.volume = frame.volume;
   if (!job_.oneVolume) {
-    shown_->scene.volume.grid = read.volume ? read.volume->source().grid : frame.volume.grid;
     // A renderer points to the bricks, and these to their volume.
     renderer_.reset();
     resident_.reset();
@@ -227,19 +232,26 @@ void FrameRun::drawOne(const FrameJob::Frame& frame, VolumeFrame read) {
     shown_->volume = std::move(read.volume);
     shown_->brickMs = read.brickMs;
     shown_->loadMs = shown_->volume ? shown_->volume->loadMs() : 0;
-    if (shown_->volume) shown_->scene.bricks.interior = sceneFor(*shown_->volume).bricks.interior;
   }
+  shown_->scene = scenes_->at(frame, shown_->volume.get());
   drawn_ = lastShare_ = 0;
   if (!shown_->bricks) {
     say(frame.volume.file.string() + ": frame " + std::to_string(frame.number) + " holds nothing and is drawn empty");
     write(frame, blankPicture(shown_->scene, command_.output->layers), draw.elapsedMs(), false);
     return;
   }
+  // What bricks must have may change with the scene's keys.
+  if (renderer_ && scenes_->haveKeys() &&
+      (shown_->bricks->hasGradients < shown_->scene.transfer.is2d() || !renderer_->sampling(shown_->scene))) {
+    renderer_.reset();
+    resident_.reset();
+    shown_->bricks = cut(*shown_->volume, shown_->scene);
+  }
   if (!renderer_)
     makeRenderer();
   else
     renderer_->setScene(shown_->scene);
-  const Picture picture = renderer_->render();
+  const Picture picture = taken(frame);
   for (const std::string& note : notesOn(picture, shown_->scene)) say(note);
   if (!job_.oneVolume && shown_->bricks->nonFiniteVoxels > 0) {
     bar_.clear();
@@ -301,10 +313,16 @@ int FrameRun::run() {
   stop_.keepParts();
   const StopWatcher watcher(stop_);
   std::vector<VolumeReference> files;
+  std::vector<const FrameJob::Frame*> left;
   for (const FrameJob::Frame& frame : job_.frames)
-    if (!frame.finished) files.push_back(frame.volume);
+    if (!frame.finished) {
+      files.push_back(frame.volume);
+      left.push_back(&frame);
+    }
   std::optional<VolumeFrames> reader;
-  if (!job_.oneVolume) reader.emplace(std::move(files), [this](const Volume& volume) { return cut(volume); });
+  if (!job_.oneVolume)
+    reader.emplace(std::move(files),
+                   [&](const Volume& volume, std::size_t index) { return cut(volume, *left[index]); });
   bar_.begin("rendering");
   work_ = Stopwatch();
   bool stopped = false;
@@ -379,6 +397,12 @@ void addFrameOptions(CLI::App& app, FrameOptions& options) {
                  "degrees that the camera goes around the volume over all frames, counter-clockwise from above; after "
                  "360 the first picture would follow the last one")
       ->check(numberIn(-360000, 360000, "-360000 to 360000"))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--shutter", options.shutter,
+                 "of a camera that moves, by --orbit or by keys of the scene: it is open for this share of the time "
+                 "from a frame to the next one, and the --samples of a pixel are taken at as many times; 0.5 is usual")
+      ->check(numberIn(0, 1, "0 to 1"))
       ->capture_default_str()
       ->group(group);
   app.add_flag("--skip-missing", options.skipMissing,

@@ -15,7 +15,7 @@
 namespace umbrick::tools {
 
 Scene askedScene(const RenderCommand& command) {
-  Scene scene = makeScene(*command.scene, {.model = Model::cone});
+  Scene scene = makeScene(*command.scene, {.model = Model::cone, .frames = true});
   if (command.progressive() && !canAverage(scene))
     throw UsageError(
         "--progressive, --max-seconds and --target-error need the model emission, or cone, ambient or lights and the "

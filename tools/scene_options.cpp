@@ -298,6 +298,30 @@ void applyClipping(const SceneOptions& options, Scene& scene) {
   }
 }
 
+// What the command line says holds at all frames.
+void dropOverriddenKeys(const SceneOptions& options, Scene& scene) {
+  const auto drop = [&](const std::string& option, std::string_view field) {
+    if (dropKeys(scene, field))
+      std::cerr << option << " takes the place of the keys of " << field << " in " << printable(options.input.string())
+                << '\n';
+  };
+  for (const auto& [option, set] : options.fields)
+    if (const SceneField* field = findSceneField(option)) drop(options.nameOf(option), field->path);
+  if (options.view)
+    for (const char* field : {"camera.azimuth", "camera.elevation"}) drop("--view", field);
+  if (options.up) drop("--up", "camera.up");
+  if (options.transfer) drop("--tf", "transfer");
+  if (!options.clipPlanes.empty()) drop("--clip-plane", "clip.planes");
+  if (options.clipBox) drop("--clip-box", "clip.box");
+  if (!options.isoValues.empty() || !options.isoOpacities.empty()) drop("--iso", "surfaces");
+  // A camera that is placed in another way than the keys place it.
+  const bool orbits = scene.orbit.has_value();
+  for (const char* field : {"camera.azimuth", "camera.elevation", "camera.zoom", "camera.pan"})
+    if (!orbits) drop("--eye", field);
+  for (const char* field : {"camera.eye", "camera.lookAt", "camera.up", "camera.viewHeight"})
+    if (orbits) drop("--azimuth, --elevation or --view", field);
+}
+
 }  // namespace
 
 std::vector<std::string> spellOutBackground(std::vector<std::string> arguments) {
@@ -457,19 +481,35 @@ Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults) {
   placeCamera(options, fromScene, scene);
   applyQuality(options, fromScene, scene);
   for (const auto& [option, set] : options.fields) set(scene);
+  dropOverriddenKeys(options, scene);
   checkMethodOptions(options, scene.method);
   if (options.tableSize)
     std::cerr << "--table-size has no effect any more: transfer functions are integrated exactly, without a table\n";
   applyClipping(options, scene);
   applySurfaces(options, scene);
   validate(options, scene);
+  if (!defaults.frames) tellFrameShown(options, scene);
   return scene;
+}
+
+void tellFrameShown(const SceneOptions& options, const Scene& scene) {
+  if (scene.tracks.empty()) return;
+  std::string fields;
+  for (const SceneTrack& track : scene.tracks) fields += (fields.empty() ? "" : ", ") + track.field;
+  std::cerr << printable(options.input.string()) << ": " << fields
+            << " as at frame 0; umbrick render --count, or --frames of a sequence, follows the scene's keys\n";
 }
 
 void applyWindow(const SceneOptions& options, Scene& scene) {
   if (!scene.transfer) return;
   if (options.window) scene.transfer = scene.transfer->windowed((*options.window)[0], (*options.window)[1]);
   if (options.sigmaScale) scene.transfer = scene.transfer->scaled(*options.sigmaScale);
+  for (SceneTrack& track : scene.tracks)
+    for (SceneTrack::Key& key : track.keys) {
+      if (key.transfer && options.window)
+        key.transfer = key.transfer->windowed((*options.window)[0], (*options.window)[1]);
+      if (key.transfer && options.sigmaScale) key.transfer = key.transfer->scaled(*options.sigmaScale);
+    }
 }
 
 void refuseBackdrop(const SceneOptions& options) {

@@ -68,7 +68,11 @@ std::unique_ptr<GlContext, ContextCloser> createContext(const std::string& backe
 /// What a picture shows where neither options nor a scene file say it.
 struct SceneDefaults {
   Model model = Model::emission;
+  bool frames = false;  // the command draws what changes over frames; else frame 0 is shown, and said to be
 };
+
+/// Says that a scene whose fields have keys is shown as it is at frame 0, if it is such a scene.
+void tellFrameShown(const SceneOptions& options, const Scene& scene);
 
 /// Makes a scene from a file and the command line, before its volume is known: what is wrong is said before anything is
 /// loaded. Without a transfer function, none is set. @throw UsageError, IoError, InvalidArgument

@@ -45,6 +45,7 @@ view::OpenedVolume openForPage(const std::filesystem::path& file, const std::fun
   options.volume.besideOnly = true;
   try {
     OpenedScene opened = openScene(options, makeScene(options, {.model = Model::cone}), progress);
+    opened.scene.tracks.clear();  // the page has no frames
     return {std::move(opened.scene), std::move(opened.volume), std::move(opened.chosen)};
   } catch (const UsageError& error) {
     throw InvalidArgument(error.what());
@@ -59,6 +60,7 @@ int run(const ViewCommand& command) {
       openScene(*command.scene, scene, showShare(bar, stop, "interrupted before there was anything to look at"));
   bar.clear();
   std::cerr << opened.chosen;
+  opened.scene.tracks.clear();  // the page has no frames
   view::ViewGoals goals;
   goals.draftMs = 1000 / command.framesPerSecond;
   goals.targetError = command.targetError;

@@ -67,17 +67,19 @@ void Renderer::setSampling(const SamplingOptions& sampling) {
   change([&](ResolvedScene& next) { next.sampling = sampling; });
 }
 
-Picture Renderer::render(const RenderSample& sample) {
+Picture Renderer::render(const RenderSample& sample, const std::function<void(std::size_t)>& beforeEach) {
   const std::vector<glm::dvec2> points = pixelPoints(scene().sampling.pixelSamples);
   if (points.size() == 1) {
+    if (beforeEach) beforeEach(0);
     draw(sample);
     return read();
   }
   PictureMean mean;
   Picture picture;
-  for (const glm::dvec2& point : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (beforeEach) beforeEach(i);
     RenderSample moved = sample;
-    moved.pixel = glm::fract(point + (sample.pixel - 0.5));
+    moved.pixel = glm::fract(points[i] + (sample.pixel - 0.5));
     draw(moved);
     const RenderStats before = picture.stats;
     picture = read();

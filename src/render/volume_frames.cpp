@@ -20,7 +20,8 @@ VolumeFrames::~VolumeFrames() {
 
 void VolumeFrames::begin() {
   if (done()) return;
-  reading_ = std::async(std::launch::async, [this, &file = files_[given_]] {
+  reading_ = std::async(std::launch::async, [this, index = given_] {
+    const VolumeReference& file = files_[index];
     VolumeFrame frame;
     // Only frames of one file go on where the one before ended.
     const bool inside = files_.size() > 1 && files_[0].file == files_[1].file;
@@ -33,7 +34,7 @@ void VolumeFrames::begin() {
       return frame;
     }
     const Stopwatch brick;
-    frame.bricks = cut_(*frame.volume);
+    frame.bricks = cut_(*frame.volume, index);
     frame.brickMs = brick.elapsedMs();
     return frame;
   });

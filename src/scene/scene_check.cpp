@@ -8,6 +8,7 @@
 
 #include "scene/checker.h"
 #include "scene/field_text.h"
+#include "scene/key_tracks.h"
 #include "scene/light_check.h"
 #include "umbrick/core/error.h"
 #include "umbrick/scene/capabilities.h"
@@ -110,6 +111,7 @@ std::optional<Complaint> findComplaint(const Scene& given) {
   checkFields(check, "occlusion", scene);
   checkClip(check, scene);
   checkFields(check, "bricks", scene);
+  checkTracks(check, scene);
   return check.complaint();
 }
 

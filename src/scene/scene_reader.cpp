@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/input_file.h"
 #include "core/json_reader.h"
-#include "core/overload.h"
 #include "core/text_file.h"
+#include "scene/field_json.h"
+#include "scene/key_tracks.h"
 #include "scene/light_json.h"
 #include "scene/scene_check.h"
 #include "scene/scene_folder.h"
@@ -16,28 +18,6 @@
 namespace umbrick {
 namespace {
 
-// Sets a field to a value of its kind. Ranges are checked once the scene is complete.
-void readField(const JsonValue& value, const FieldPlace& place) {
-  std::visit(Overload{[](std::monostate) {}, [&](double* target) { *target = value.number(); },
-                      [&](const Angle& angle) { *angle.radians = value.degrees(); },
-                      [&](int* target) { *target = value.integer(); },
-                      [&](std::uint64_t* target) { *target = value.unsignedInteger(); },
-                      [&](bool* target) { *target = value.boolean(); },
-                      [&](const Choice& choice) { choice.set(value.oneOf(choice.names())); },
-                      [&](glm::dvec2* target) {
-                        const std::vector<double> numbers = value.numbers(2);
-                        *target = {numbers[0], numbers[1]};
-                      },
-                      [&](glm::dvec3* target) { *target = readVector(value); },
-                      [&](std::optional<glm::dvec3>* target) { *target = readVector(value); },
-                      [&](const PixelSize& size) {
-                        const std::vector<JsonValue> items = value.items(2);
-                        *size.width = items[0].integer();
-                        *size.height = items[1].integer();
-                      }},
-             place);
-}
-
 // Reads the fields of a section from its object.
 // @param others  keys that the section may have besides
 void readSection(const JsonValue& object, std::string_view section, Scene& scene,
@@ -45,10 +25,13 @@ void readSection(const JsonValue& object, std::string_view section, Scene& scene
   std::vector<std::string_view>& known = others;
   for (const SceneField& field : sceneFields())
     if (field.section() == section) known.push_back(field.key());
+  const bool keyed = section != "sampling" && section != "bricks";
+  if (keyed) known.insert(known.end(), {"keys", "curve"});
   object.allowFields(known);
   for (const SceneField& field : sceneFields())
     if (field.section() == section)
       if (const auto value = object.find(field.key())) readField(*value, field.place(scene));
+  if (keyed) readKeys(object, section, scene);
 }
 
 RawLayout readRawLayout(const JsonValue& value) {
@@ -81,7 +64,11 @@ void readVolume(const JsonValue& value, const SceneFolder& folder, VolumeReferen
 
 // Reads the camera, which is placed by its eye or by angles around the volume.
 void readCamera(const JsonValue& value, Scene& scene) {
-  if (value.isObject() && value.find("eye")) {
+  const auto keys = value.isObject() ? value.find("keys") : std::nullopt;
+  const bool eyeAtKeys = keys && std::ranges::any_of(keys->items(), [](const JsonValue& key) {
+                           return key.isObject() && key.find("eye");
+                         });
+  if (eyeAtKeys || (value.isObject() && value.find("eye"))) {
     for (const char* key : {"azimuth", "elevation", "upAxis", "frontAxis", "zoom", "pan"})
       if (const auto field = value.find(key)) field->fail("places the camera, but so does 'eye': give one of them");
     scene.orbit.reset();
@@ -108,36 +95,33 @@ TransferFunction readTransfer(const JsonValue& value, const SceneFolder& folder)
   return parseTransferFunction(readTextFile(file), file.string());
 }
 
+// Reads the transfer function, which may have keys.
+void readMedium(const JsonValue& value, const SceneFolder& folder, Scene& scene) {
+  if (value.isObject() && value.find("keys"))
+    readTransferKeys(value, scene, [&](const JsonValue& function) { return readTransfer(function, folder); });
+  else if (!value.isString() || value.string() != "auto")
+    scene.transfer = readTransfer(value, folder);
+}
+
+// Applies to the transfer function, at all of its keys.
+void applyToTransfer(Scene& scene, const std::function<TransferFunction(const TransferFunction&)>& change) {
+  scene.transfer = change(*scene.transfer);
+  for (SceneTrack& track : scene.tracks)
+    for (SceneTrack::Key& key : track.keys)
+      if (key.transfer) key.transfer = change(*key.transfer);
+}
+
 void readLight(const JsonValue& value, const SceneFolder& folder, Scene& scene) {
   readSection(value, "light", scene, {"sources"});
   if (const auto sources = value.find("sources"))
     for (const JsonValue& source : sources->items()) scene.lights.push_back(readLightSource(source, folder));
 }
 
-void readSurfaces(const JsonValue& value, Scene& scene) {
-  for (const JsonValue& item : value.items()) {
-    item.allowFields({"value", "colour", "opacity"});
-    SceneSurface& surface = scene.surfaces.emplace_back();
-    surface.value = item.at("value").number();
-    if (const auto colour = item.find("colour")) surface.colour = readVector(*colour);
-    if (const auto opacity = item.find("opacity")) surface.opacity = opacity->number();
-  }
-}
-
 void readClip(const JsonValue& value, Scene& scene) {
-  value.allowFields({"planes", "box"});
-  if (const auto planes = value.find("planes"))
-    for (const JsonValue& plane : planes->items()) {
-      const std::vector<double> numbers = plane.numbers(4);
-      scene.clipPlanes.emplace_back(numbers[0], numbers[1], numbers[2], numbers[3]);
-    }
-  if (const auto box = value.find("box")) {
-    const std::vector<JsonValue> corners = box->items(2);
-    const std::vector<double> low = corners[0].numbers(3), high = corners[1].numbers(3);
-    Box& clip = scene.clipBox.emplace();
-    clip.min = {low[0], low[1], low[2]};
-    clip.max = {high[0], high[1], high[2]};
-  }
+  value.allowFields({"planes", "box", "keys", "curve"});
+  if (const auto planes = value.find("planes")) readClipPlanes(*planes, scene);
+  if (const auto box = value.find("box")) readClipBox(*box, scene);
+  readKeys(value, "clip", scene);
 }
 
 }  // namespace
@@ -153,13 +137,14 @@ Scene parseScene(std::string_view text, const std::string& source, const std::fi
   if (const auto description = root.find("description")) description->string();
   if (const auto volume = root.find("volume")) readVolume(*volume, folder, scene.volume);
   if (const auto camera = root.find("camera")) readCamera(*camera, scene);
-  if (const auto transfer = root.find("transfer"))
-    if (!transfer->isString() || transfer->string() != "auto") scene.transfer = readTransfer(*transfer, folder);
+  if (const auto transfer = root.find("transfer")) readMedium(*transfer, folder, scene);
   for (const char* key : {"window", "sigmaScale"})
     if (const auto value = root.find(key); value && !scene.transfer)
       value->fail("there is no 'transfer' to apply it to");
-  if (const auto window = root.find("window")) scene.transfer = windowedBy(*scene.transfer, *window);
-  if (const auto factor = root.find("sigmaScale")) scene.transfer = scaledBy(*scene.transfer, *factor);
+  if (const auto window = root.find("window"))
+    applyToTransfer(scene, [&](const TransferFunction& transfer) { return windowedBy(transfer, *window); });
+  if (const auto factor = root.find("sigmaScale"))
+    applyToTransfer(scene, [&](const TransferFunction& transfer) { return scaledBy(transfer, *factor); });
   if (const auto light = root.find("light")) readLight(*light, folder, scene);
   // Scenes of earlier versions have the size of a table that no longer exists.
   if (const auto sampling = root.find("sampling")) readSection(*sampling, "sampling", scene, {"tableSize"});
@@ -168,7 +153,10 @@ Scene parseScene(std::string_view text, const std::string& source, const std::fi
   if (const auto surfaces = root.find("surfaces")) readSurfaces(*surfaces, scene);
   if (const auto shading = root.find("shading")) readSection(*shading, "shading", scene);
   if (const auto bricks = root.find("bricks")) readSection(*bricks, "bricks", scene);
+  // What has keys is shown as it is at frame 0, where a picture is of no frame.
+  scene = sceneAt(scene, 0);
   // The ranges are those of any scene; here they are reported at the place in the text that breaks them.
+  if (const auto complaint = findComplaintAtKeys(scene)) document.closest(complaint->field).fail(complaint->message);
   if (const auto complaint = findComplaint(scene)) document.closest(complaint->field).fail(complaint->message);
   return scene;
 }

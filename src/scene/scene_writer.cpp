@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/json_writer.h"
+#include "scene/field_json.h"
 #include "scene/field_text.h"
+#include "scene/key_tracks.h"
 #include "scene/light_json.h"
 
 namespace umbrick {
@@ -15,6 +17,7 @@ JsonFields printedFields(std::string_view section, Scene& scene) {
     const std::string text = jsonText(field.place(scene));
     if (!text.empty()) fields.emplace_back(field.key(), text);
   }
+  for (const auto& field : printedKeys(section, scene)) fields.push_back(field);
   return fields;
 }
 
@@ -49,24 +52,17 @@ std::string printedLight(Scene& scene) {
   return jsonObject(fields);
 }
 
-std::string printedSurfaces(const Scene& scene) {
-  std::vector<std::string> surfaces;
-  for (const SceneSurface& surface : scene.surfaces) {
-    JsonFields fields{{"value", jsonNumber(surface.value)}};
-    if (surface.colour) fields.emplace_back("colour", printed(*surface.colour));
-    fields.emplace_back("opacity", jsonNumber(surface.opacity));
-    surfaces.push_back(jsonObject(fields));
-  }
-  return jsonArray(surfaces);
-}
-
 std::string printedClip(const Scene& scene) {
   JsonFields fields;
-  std::vector<std::string> planes;
-  for (const ClipPlane& plane : scene.clipPlanes) planes.push_back(jsonNumbers({plane.x, plane.y, plane.z, plane.w}));
-  if (!planes.empty()) fields.emplace_back("planes", jsonArray(planes));
-  if (scene.clipBox) fields.emplace_back("box", jsonArray({printed(scene.clipBox->min), printed(scene.clipBox->max)}));
+  if (!scene.clipPlanes.empty()) fields.emplace_back("planes", printedClipPlanes(scene));
+  if (scene.clipBox) fields.emplace_back("box", printedClipBox(scene));
+  for (const auto& field : printedKeys("clip", scene)) fields.push_back(field);
   return jsonObject(fields);
+}
+
+std::string printedTransfer(const Scene& scene) {
+  const JsonFields keys = printedKeys("transfer", scene);
+  return keys.empty() ? printTransferFunction(*scene.transfer) : jsonObject(keys);
 }
 
 }  // namespace
@@ -76,14 +72,16 @@ std::string printScene(const Scene& given) {
   JsonFields fields;
   if (scene.volume != VolumeReference{}) fields.emplace_back("volume", printedVolume(scene.volume));
   fields.emplace_back("camera", jsonObject(printedFields("camera", scene)));
-  if (scene.transfer) fields.emplace_back("transfer", printTransferFunction(*scene.transfer));
+  if (scene.transfer) fields.emplace_back("transfer", printedTransfer(scene));
   for (const auto& field : printedFields("", scene)) fields.push_back(field);
   if (!scene.surfaces.empty()) fields.emplace_back("surfaces", printedSurfaces(scene));
-  if (scene.shading != ShadingOptions{}) fields.emplace_back("shading", jsonObject(printedFields("shading", scene)));
+  if (scene.shading != ShadingOptions{} || !printedKeys("shading", scene).empty())
+    fields.emplace_back("shading", jsonObject(printedFields("shading", scene)));
   fields.emplace_back("light", printedLight(scene));
   fields.emplace_back("sampling", jsonObject(printedFields("sampling", scene)));
   fields.emplace_back("occlusion", jsonObject(printedFields("occlusion", scene)));
-  if (!scene.clipPlanes.empty() || scene.clipBox) fields.emplace_back("clip", printedClip(scene));
+  if (!scene.clipPlanes.empty() || scene.clipBox || !printedKeys("clip", scene).empty())
+    fields.emplace_back("clip", printedClip(scene));
   fields.emplace_back("bricks", jsonObject(printedFields("bricks", scene)));
   return jsonObject(fields);
 }

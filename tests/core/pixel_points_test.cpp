@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/core/pixel_points.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <numbers>
 #include <set>
@@ -71,4 +72,23 @@ TEST_CASE("The share of points beside a line tends to the area beside it, with a
 TEST_CASE("A pixel needs a point", "[core]") {
   CHECK_THROWS_AS(pixelPoints(0), InvalidArgument);
   CHECK_THROWS_AS(pixelPoints(-3), InvalidArgument);
+}
+
+TEST_CASE("Each part of the time of a moving camera is seen once, whatever the place in the pixel", "[core]") {
+  for (const int count : {1, 2, 7, 16, 100}) {
+    std::vector<double> times = pixelTimes(count), sorted = times;
+    std::sort(sorted.begin(), sorted.end());
+    for (int i = 0; i < count; ++i) CHECK(sorted[static_cast<std::size_t>(i)] == Approx((i + 0.5) / count));
+    if (count < 16) continue;
+    // The correlation of times and places is 1 where they go together.
+    const std::vector<glm::dvec2> points = pixelPoints(count);
+    glm::dvec2 together(0);
+    for (int i = 0; i < count; ++i)
+      together += (points[static_cast<std::size_t>(i)] - 0.5) * (times[static_cast<std::size_t>(i)] - 0.5);
+    together *= 12.0 / count;
+    CAPTURE(count, together.x, together.y);
+    CHECK(std::abs(together.x) < 0.2);
+    CHECK(std::abs(together.y) < 0.2);
+  }
+  CHECK_THROWS_AS(pixelTimes(0), InvalidArgument);
 }

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "umbrick/core/error.h"
 
@@ -35,4 +36,19 @@ TEST_CASE("A camera that is not turned is equal to the last bit", "[core]") {
   camera.eye = {0.1, 0.7, 1.3};
   CHECK(turnedCamera(camera, {3, 1, 4}, {1, 5, 9}, 0) == camera);
   CHECK_THROWS_AS(turnedCamera(camera, {}, {0, 0, 0}, 1), InvalidArgument);
+}
+
+TEST_CASE("A picture rolls by the angle that its up turns around the view, and not by turns of the view", "[core]") {
+  const Camera camera{.eye = {4, 1, 2}, .lookAt = {0, 0, 0}, .up = {0, 0, 1}};
+  for (const double angle : {0.0, 0.3, 1.0, 3.0})
+    CHECK(rollBetween(camera, turnedCamera(camera, camera.eye, camera.lookAt - camera.eye, angle)) ==
+          Approx(angle).margin(1e-7));
+  // Turned as a whole around an axis at right angles to the view, it does not roll.
+  const CameraFrame frame = cameraFrame(camera);
+  for (const double angle : {0.2, 1.5, 3.0})
+    CHECK(rollBetween(camera, turnedCamera(camera, camera.eye, frame.up + frame.right, angle)) < 1e-7);
+  // Over the pole, the picture turns over.
+  const Camera before{.eye = {0.1, 0, 5}, .lookAt = {0, 0, 0}, .up = {0, 0, 1}},
+      after{.eye = {-0.1, 0, 5}, .lookAt = {0, 0, 0}, .up = {0, 0, 1}};
+  CHECK(rollBetween(before, after) == Approx(std::numbers::pi));
 }

@@ -40,7 +40,7 @@ TEST_CASE("Frames come in their order, one that cannot be read ends nothing but 
   VolumeReference missing = bytesOf(folder, 1);
   missing.file = folder.path() / "not_there.raw";
   VolumeFrames frames({bytesOf(folder, 3), bytesOf(folder, 0), missing, bytesOf(folder, 7), bytesOf(folder, 9)},
-                      [](const Volume& volume) -> std::unique_ptr<Bricks> {
+                      [](const Volume& volume, std::size_t) -> std::unique_ptr<Bricks> {
                         if (numberOf(volume) == 9) throw InvalidArgument("not this one");
                         return nullptr;
                       });
@@ -56,7 +56,8 @@ TEST_CASE("Frames come in their order, one that cannot be read ends nothing but 
 TEST_CASE("One frame is read ahead and no more", "[render]") {
   const TemporaryFolder folder;
   std::atomic<int> cut = 0;
-  VolumeFrames frames({bytesOf(folder, 1), bytesOf(folder, 2), bytesOf(folder, 3)}, [&](const Volume&) {
+  VolumeFrames frames({bytesOf(folder, 1), bytesOf(folder, 2), bytesOf(folder, 3)}, [&](const Volume&, std::size_t index) {
+    CHECK(index == static_cast<std::size_t>(cut));
     ++cut;
     return std::unique_ptr<Bricks>();
   });
@@ -75,7 +76,7 @@ TEST_CASE("One frame is read ahead and no more", "[render]") {
 TEST_CASE("A wait for a frame can be given up and begun again", "[render]") {
   const TemporaryFolder folder;
   std::atomic<bool> mayEnd = false;
-  VolumeFrames frames({bytesOf(folder, 5)}, [&](const Volume&) {
+  VolumeFrames frames({bytesOf(folder, 5)}, [&](const Volume&, std::size_t) {
     while (!mayEnd) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return std::unique_ptr<Bricks>();
   });

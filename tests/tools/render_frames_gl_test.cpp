@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/gl_fixture.h"
+#include "tools/frames_workplace.h"
 #include "tools/interrupt.h"
 #include "tools/program.h"
 #include "tools/refusal.h"
@@ -20,75 +21,8 @@ using namespace umbrick;
 namespace fs = std::filesystem;
 using Catch::Contains;
 
-namespace {
-
-constexpr int kEdge = 12;
-const std::string kSeen = "--tf t.json --size 40x30 --azimuth 20 --elevation 10 --zoom 1 --exr-pixel float ";
-
-std::string header(const std::string& more) { return "NRRD0004\ntype: uint8\n" + more + "encoding: raw\n\n"; }
-
-// A ball of that radius around the middle, as bytes that grow with it.
-std::string ball(double radius, int most) {
-  std::string voxels;
-  for (int z = 0; z < kEdge; ++z)
-    for (int y = 0; y < kEdge; ++y)
-      for (int x = 0; x < kEdge; ++x) {
-        const double far = std::hypot(x - 5.5, y - 5.5, z - 5.5);
-        voxels += static_cast<char>(far < radius ? static_cast<int>(most * (1 - far / radius)) + 1 : 0);
-      }
-  return voxels;
-}
-
-struct Workplace {
-  TemporaryFolder folder;
-
-  Workplace() {
-    writeBytes(folder.path() / "t.json", R"({"points": [{"value": 0, "albedo": [1, 0.6, 0.2], "sigma_t": 0},
-                                                        {"value": 250, "albedo": [0.9, 0.8, 0.7], "sigma_t": 2}]})");
-  }
-  // A ball that grows with the number of its frame, as f_03.nrrd; sampled with that distance.
-  void addFrame(int number, const std::string& spacing = "1 1 1") const {
-    addVolume(number, ball(1.5 + number, 40 * number), spacing);
-  }
-  void addVolume(int number, const std::string& voxels, const std::string& spacing = "1 1 1") const {
-    char name[32];
-    std::snprintf(name, sizeof name, "f_%02d.nrrd", number);
-    writeBytes(folder.path() / name, header("dimension: 3\nsizes: 12 12 12\nspacings: " + spacing + "\n") + voxels);
-  }
-  ProgramResult run(const std::string& arguments) const { return runProgram(folder, arguments); }
-  ProgramResult render(const std::string& arguments) const {
-    ProgramResult result = run("render " + arguments);
-    INFO(arguments << ": " << result.err);
-    REQUIRE(result.status == 0);
-    return result;
-  }
-  std::vector<float> pixels(const std::string& name) const {
-    const fs::path path = folder.path() / name;
-    return path.extension() == ".exr" ? readExr(path).layers.at(0).image.pixels : readPng(path).pixels;
-  }
-  nlohmann::json sceneOf(const std::string& name) const {
-    return nlohmann::json::parse(readExr(folder.path() / name).metadata.at("umbrick.scene"));
-  }
-  bool has(const std::string& name) const { return fs::exists(folder.path() / name); }
-};
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++found;
-  return found;
-}
-
-double largestDifference(const std::vector<float>& a, const std::vector<float>& b) {
-  REQUIRE(a.size() == b.size());
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max<double>(most, std::abs(a[i] - b[i]));
-  return most;
-}
-
-}  // namespace
-
 TEST_CASE("A frame of a sequence is the picture that its scene makes of its file alone", "[tools]") {
-  const Workplace at;
+  const FramesWorkplace at;
   for (const int n : {1, 2, 3, 4}) at.addFrame(n);
   const auto check = [&](const std::string& backend) {
     CAPTURE(backend);
@@ -109,7 +43,7 @@ TEST_CASE("A frame of a sequence is the picture that its scene makes of its file
 }
 
 TEST_CASE("All frames have one transfer function and one camera, which suit the largest of them", "[tools]") {
-  const Workplace at;
+  const FramesWorkplace at;
   for (const int n : {1, 2, 3, 4, 5}) at.addFrame(n);
   const ProgramResult all = at.render("f_%02d.nrrd --backend cpu --size 16x16 -o o_%d.exr");
   CHECK_THAT(all.err, Contains("by frame 5, whose values reach farthest of 1, 3 and 5"));
@@ -124,7 +58,7 @@ TEST_CASE("All frames have one transfer function and one camera, which suit the 
 }
 
 TEST_CASE("A still camera and a still volume give equal frames bit for bit", "[tools]") {
-  const Workplace at;
+  const FramesWorkplace at;
   for (const int n : {1, 2, 3}) at.addVolume(n, ball(4, 200));
   const auto check = [&](const std::string& backend) {
     CAPTURE(backend);
@@ -142,7 +76,7 @@ TEST_CASE("A still camera and a still volume give equal frames bit for bit", "[t
 }
 
 TEST_CASE("An orbit goes around the volume as the azimuth does", "[tools]") {
-  const Workplace at;
+  const FramesWorkplace at;
   at.addFrame(4);
   at.render("f_04.nrrd " + kSeen + "--backend cpu --count 4 --orbit -360 -o o_%d.exr --annotate triad -o o_%d.png");
   for (const int n : {0, 1, 2, 3}) {
@@ -166,7 +100,7 @@ TEST_CASE("An orbit goes around the volume as the azimuth does", "[tools]") {
 }
 
 TEST_CASE("A job goes on where it ended, and draws all again when it is told to", "[tools]") {
-  const Workplace at;
+  const FramesWorkplace at;
   for (const int n : {1, 2, 3, 4}) at.addFrame(n);
   const std::string job = "f_%02d.nrrd --backend cpu " + kSeen + "-o o_%d.png -o o_%d.exr ";
   at.render(job);
@@ -176,14 +110,21 @@ TEST_CASE("A job goes on where it ended, and draws all again when it is told to"
   const ProgramResult rest = at.render(job);
   CHECK(rest.out == "o_2.png\no_2.exr\no_4.png\no_4.exr\n");
   CHECK_THAT(rest.err, Contains("2 of 4 frames are there and stay: 1, 3; --overwrite draws all again\n"));
+  CHECK(count(rest.err, "another scene") == 0);
   CHECK_THAT(at.render(job).err, Contains("4 of 4 frames are there and stay: 1 to 4"));
+  fs::remove(at.folder.path() / "o_2.exr");
+  CHECK_THAT(at.render(job + "--model cone").err, Contains("o_1.exr: was drawn of another scene (/") &&
+                                                      Contains(") and stays; --overwrite draws all again\n"));
+  writeBytes(at.folder.path() / "o_1.exr", "not a picture");
+  fs::remove(at.folder.path() / "o_2.exr");
+  CHECK_THAT(at.render(job).err, Contains("o_1.exr: is no picture that can be read and stays"));
   writeBytes(at.folder.path() / "o_1.exr", "not a picture");
   CHECK(count(at.render(job + "--overwrite").out, "\n") == 8);
   CHECK((readBytes(at.folder.path() / "o_1.exr") == before));
 }
 
 TEST_CASE("Frames that are missing, damaged or unlike the first one end the job or are left out", "[tools]") {
-  const Workplace at;
+  const FramesWorkplace at;
   for (const int n : {1, 2, 4, 6}) at.addFrame(n);
   const std::string job = "render f_%02d.nrrd --backend cpu " + kSeen + "-o o_%d.png ";
   expectRefusal(at.folder, job, 1, "f_%02d.nrrd: 2 frames are missing: 3, 5; --skip-missing goes on without them");
@@ -204,7 +145,7 @@ TEST_CASE("Frames that are missing, damaged or unlike the first one end the job 
 }
 
 TEST_CASE("A frame that holds nothing is drawn empty", "[tools]") {
-  const Workplace at;
+  const FramesWorkplace at;
   at.addVolume(1, std::string(kEdge * kEdge * kEdge, '\0'));
   at.addFrame(2);
   const ProgramResult all = at.render("f_%02d.nrrd --backend cpu " + kSeen + "-o o_%d.exr --layers --stats s_%d.json");
@@ -216,7 +157,7 @@ TEST_CASE("A frame that holds nothing is drawn empty", "[tools]") {
 }
 
 TEST_CASE("Frames in one file are counted from 0", "[tools]") {
-  const Workplace at;
+  const FramesWorkplace at;
   writeBytes(at.folder.path() / "four.nrrd",
              header("dimension: 4\nsizes: 12 12 12 3\nkinds: domain domain domain time\n") + ball(3, 90) +
                  ball(4, 150) + ball(5, 240));
@@ -236,7 +177,7 @@ TEST_CASE("Frames in one file are counted from 0", "[tools]") {
 }
 
 TEST_CASE("Several frames go to stdout one after another", "[tools]") {
-  const Workplace at;
+  const FramesWorkplace at;
   at.addFrame(3);
   const ProgramResult out = at.render("f_03.nrrd --backend cpu " + kSeen + "--count 3 -o -");
   CHECK(count(out.out, "\x89PNG\r\n") == 3);
@@ -244,7 +185,7 @@ TEST_CASE("Several frames go to stdout one after another", "[tools]") {
 }
 
 TEST_CASE("Frames that were drawn before an interrupt stay, and the job goes on behind them", "[tools]") {
-  const Workplace at;
+  const FramesWorkplace at;
   at.addFrame(4);
   const std::string job =
       "render f_04.nrrd --backend cpu --tf t.json --size 200x200 --count 1000 --orbit 360 -o o_%03d.exr ";
@@ -262,7 +203,7 @@ TEST_CASE("Frames that were drawn before an interrupt stay, and the job goes on 
 }
 
 TEST_CASE("What several pictures cannot be made of is refused in one line", "[tools]") {
-  const Workplace at;
+  const FramesWorkplace at;
   for (const int n : {1, 2}) at.addFrame(n);
   const auto refused = [&](const std::string& arguments, int status, const std::string& message) {
     expectRefusal(at.folder, "render " + arguments, status, message);

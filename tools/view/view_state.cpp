@@ -14,10 +14,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A transfer function by the name of a file would read that file.
+// A transfer function by the name of a file would read that file. Keys name functions, too, and a page has no frames
+// for them.
 void refuseFiles(const Json& patch) {
   if (!patch.is_object()) throw InvalidArgument("patch: is no object");
   if (patch.contains("volume")) throw InvalidArgument("volume: a page cannot change it");
+  const auto refuseKeys = [](const Json& section) {
+    if (section.is_object() && section.contains("keys")) throw InvalidArgument("keys: a page cannot set them");
+  };
+  refuseKeys(patch);
+  for (const Json& section : patch) refuseKeys(section);
   const auto transfer = patch.find("transfer");
   if (transfer == patch.end() || !transfer->is_string()) return;
   const auto name = transfer->get<std::string>();

@@ -20,6 +20,11 @@ inline constexpr double kGoldenStep = 0.6180339887498949;
 /// @throw InvalidArgument  count < 1
 std::vector<glm::dvec2> pixelPoints(int count);
 
+/// Returns when each of pixelPoints(count) is seen while something moves, as shares of the time: one in the middle of
+/// each of `count` parts, in an order (of the multiples of the square root of 2) that has nothing to do with where in
+/// the pixel the points lie. @throw InvalidArgument  count < 1
+std::vector<double> pixelTimes(int count);
+
 /// Returns what a file says of the filter: "box, 16 samples a pixel", or "point, the centre of each pixel".
 std::string pixelFilter(int count);
 

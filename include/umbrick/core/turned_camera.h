@@ -14,4 +14,10 @@ namespace umbrick {
 /// @throw InvalidArgument  the axis has no length
 Camera turnedCamera(const Camera& camera, const glm::dvec3& centre, const glm::dvec3& axis, double angle);
 
+/// Returns how far the picture turns around its middle from one camera to another, rad, in [0, pi], besides what must
+/// turn where the direction of view changes (as little as possible). It is large where a camera passes a direction of
+/// view along its up, and the picture is upside down from then on.
+/// @throw InvalidArgument  as cameraFrame
+double rollBetween(const Camera& from, const Camera& to);
+
 }  // namespace umbrick

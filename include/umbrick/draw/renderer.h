@@ -145,7 +145,9 @@ class Renderer {
   /// Draws and reads. Where the scene asks for several samples a pixel (sampling.pixelSamples) so many pictures are
   /// drawn through other places in the pixels, see pixelPoints, and averaged: premultiplied colour and V as they are,
   /// depth by opacity. Times and counts are then sums over these pictures.
-  Picture render(const RenderSample& sample = {});
+  /// @param beforeEach  is called with the number of each of these pictures before it is drawn, and may move the
+  ///   camera, for a picture that is taken while it moves: see pixelTimes. It stays where it was moved last.
+  Picture render(const RenderSample& sample = {}, const std::function<void(std::size_t index)>& beforeEach = {});
 
  protected:
   /// Prepares for a scene, while scene() is still the one before, or none is set. Where this throws,

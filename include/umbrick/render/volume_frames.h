@@ -24,7 +24,8 @@ struct VolumeFrame {
 class VolumeFrames {
  public:
   /// Makes the bricks of a volume, in the thread that reads. What it throws ends the frame.
-  using Cut = std::function<std::unique_ptr<Bricks>(const Volume&)>;
+  /// @param index  of the volume in the list of files
+  using Cut = std::function<std::unique_ptr<Bricks>(const Volume&, std::size_t index)>;
 
   /// Begins to read the first one.
   VolumeFrames(std::vector<VolumeReference> files, Cut cut);

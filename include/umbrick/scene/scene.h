@@ -17,6 +17,7 @@
 #include "umbrick/optics/transfer_function.h"
 #include "umbrick/scene/light_source.h"
 #include "umbrick/scene/mode.h"
+#include "umbrick/scene/scene_keys.h"
 
 namespace umbrick {
 
@@ -228,6 +229,8 @@ struct Scene : SceneSettings {
   std::optional<Orbit> orbit = Orbit{};          // when set, eye, lookAt, up and viewHeight follow from the volume
   SpacingUnit spacingUnit = SpacingUnit::voxel;  // of sampling.spacing
   GradientUnit gradientUnit = GradientUnit::grid;
+  /// What changes over frames: see sceneAt(). All of it has here the value that it has at frame 0.
+  std::vector<SceneTrack> tracks = {};
   bool operator==(const Scene&) const = default;
 };
 
@@ -259,6 +262,9 @@ struct Scene : SceneSettings {
 ///              pixelSamples (tableSize, of scenes made by earlier versions, is read and means nothing)
 ///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits, directions, scale, lightSpacing
 ///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]
+///   keys       [{frame, ...}, ...], curve ("smooth", "linear")    in camera, shading, light, occlusion, clip and the
+///              scene itself: numbers, vectors, planes, box and surfaces (as many at all keys) at those frames; in
+///              transfer {frame, function}. A field that only some keys have runs between these
 ///   bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16", "half", "float32"), budgetMiB
 /// @param source  what messages call the text, usually its file name
 /// @param besideOnly  refuses files outside of `folder` and what is below it, for scenes of others; so does the volume
