@@ -60,12 +60,16 @@ endfunction()
 
 # A library of rooms: umbrick_library(volume core ingest) makes umbrick::volume from src/core and src/ingest.
 # A program that uses some rooms of it links no foreign library that only the others need.
+# Static, or shared with -DBUILD_SHARED_LIBS=ON: a shared one is good for all programs that were linked to the same minor version.
 function(umbrick_library name)
   set(UMBRICK_LIBRARY umbrick_${name})
-  add_library(${UMBRICK_LIBRARY} STATIC)
+  add_library(${UMBRICK_LIBRARY})
   add_library(umbrick::${name} ALIAS ${UMBRICK_LIBRARY})
   # Where many files are compiled as one, they are of one room: its unnamed namespaces are one then.
-  set_target_properties(${UMBRICK_LIBRARY} PROPERTIES EXPORT_NAME ${name} UNITY_BUILD_MODE GROUP)
+  set_target_properties(${UMBRICK_LIBRARY} PROPERTIES EXPORT_NAME ${name} UNITY_BUILD_MODE GROUP
+                        VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  # Without a macro of its own, a shared library can use the precompiled header of another one.
+  set_target_properties(${UMBRICK_LIBRARY} PROPERTIES DEFINE_SYMBOL "")
   umbrick_flags(${UMBRICK_LIBRARY})
   target_include_directories(${UMBRICK_LIBRARY} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>
                                                 PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/shaders)

@@ -3,7 +3,7 @@
 # Links are [text](file#heading) and [text](#heading). Names of files are those in `backquotes` that begin with a folder of the
 # checkout; they may have a * in them, and capitals like NAME stand for what a reader puts there.
 # SPDX-License-Identifier: Apache-2.0
-file(GLOB pages ${TOP}/README.md ${TOP}/*/README.md ${TOP}/*/*/README.md)
+file(GLOB pages ${TOP}/README.md ${TOP}/*/README.md ${TOP}/*/*/README.md ${TOP}/tools/docs/*.md)
 list(FILTER pages EXCLUDE REGEX "^${TOP}/(build|out)/")
 
 # All matches, one a line: lists would be cut at the brackets and semicolons of a page.

@@ -1,10 +1,11 @@
 // A sub-command of the umbrick program declares its options, then runs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <stdexcept>
 #include <utility>
+
+#include "command_line.h"
 
 namespace umbrick::tools {
 
@@ -22,8 +23,10 @@ struct UsageError : std::runtime_error {
 // Each of these is in the file of its name. It adds a sub-command with its options to `app`.
 Command addCheck(CLI::App& app);
 Command addCompare(CLI::App& app);
+Command addCompletion(CLI::App& app);
 Command addConvert(CLI::App& app);
 Command addInfo(CLI::App& app);
+Command addManual(CLI::App& app);
 Command addReference(CLI::App& app);
 Command addRender(CLI::App& app);
 Command addStudy(CLI::App& app);

@@ -1,7 +1,6 @@
 // What umbrick convert is asked for.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line.h"
 #include "umbrick/convert/convert_options.h"
 
 namespace umbrick::tools {

@@ -1,7 +1,7 @@
 // Prints the list of formats that are read.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <CLI/CLI.hpp>
+#include "command_line.h"
 
 namespace umbrick::tools {
 

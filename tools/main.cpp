@@ -61,8 +61,8 @@ int runProgram(int argc, char** argv) {
   app.failure_message(
       [](const CLI::App*, const CLI::Error& error) { return std::string("umbrick: ") + error.what() + "\n"; });
   const std::vector<Command> commands{
-      addConvert(app), addInfo(app),  addRender(app), addReference(app), addCompare(app),
-      addCheck(app),   addStudy(app), addTf(app),     addView(app),
+      addConvert(app), addInfo(app), addRender(app), addReference(app),  addCompare(app), addCheck(app),
+      addStudy(app),   addTf(app),   addView(app),   addCompletion(app), addManual(app),
   };
   try {
     std::vector<std::string> arguments(argv + 1, argv + argc);

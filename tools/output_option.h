@@ -1,9 +1,10 @@
 // What the names of outputs mean on the command line, for all commands that write files.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
+
+#include "command_line.h"
 
 namespace umbrick::tools {
 

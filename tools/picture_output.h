@@ -1,7 +1,6 @@
 // Decides where a picture goes and in which form, for the sub-commands that make one.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line.h"
 #include "umbrick/grid/scalar_grid.h"
 #include "umbrick/image/display.h"
 #include "umbrick/image/exr.h"

@@ -364,6 +364,7 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNam
       .add_option("--tf", o.transfer,
                   "transfer function: a preset (umbrick tf list), a JSON file, or auto: one that fits the volume "
                   "[that of the scene, or auto]")
+      ->type_name(kPresetOrPath)
       ->group(medium);
   command.add_option("--window", o.window, "stretch the transfer function to these values, grid units")
       ->expected(2)
@@ -378,12 +379,14 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNam
                   "by name: front, back, left, right, top, bottom; of a patient whose file states the anatomy also "
                   "anterior, posterior, superior, inferior, and left and right are the patient's own [azimuth 30, "
                   "elevation 15]")
+      ->type_name(kViewType)
       ->group("Camera");
   command
       .add_option(
           "--up", o.up,
           "what is up: x, y, z, -x, -y, -z or auto (the patient's head; z for other scans; of a .vdb that other "
           "programs wrote mostly y); beside --eye also three numbers [auto; with --eye 0 0 1]")
+      ->type_name(kAxisType)
       ->group("Camera");
 
   addFieldOptions(command, o, "Mode");

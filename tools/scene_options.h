@@ -1,7 +1,6 @@
 // The options that describe a scene, for all sub-commands that make pictures.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -11,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "command_line.h"
 #include "umbrick/gl/context.h"
 #include "umbrick/image/display.h"
 #include "umbrick/scene/scene.h"

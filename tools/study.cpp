@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/study/study.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -185,6 +184,7 @@ void addSweeps(CLI::App& sub, StudyCommand& c) {
   std::string quickMethods;
   for (const std::string& name : quick.methods) quickMethods += " " + name;
   sub.add_option("--methods", c.methods, methodNames() + " [all that are not marked; quick:" + quickMethods + "]")
+      ->type_name(kMethodType)
       ->group(group);
   sub.add_option(
          "--slices", c.slices,

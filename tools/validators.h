@@ -1,9 +1,10 @@
 // Checks values of options: finite numbers, with messages that say what was expected.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <string>
+
+#include "command_line.h"
 
 namespace umbrick::tools {
 

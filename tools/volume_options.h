@@ -1,12 +1,12 @@
 // The options that say what a scene's volume is read from: those of convert that a picture needs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_line.h"
 #include "umbrick/scene/scene.h"
 
 namespace umbrick::tools {

@@ -56,4 +56,11 @@ Orbit namedView(std::string_view name, Orbit orbit, const Orientation& orientati
   return orbit;
 }
 
+std::vector<std::string> viewNames() {
+  std::vector<std::string> names;
+  for (const View& view : kViews)
+    if (std::find(names.begin(), names.end(), view.name) == names.end()) names.emplace_back(view.name);
+  return names;
+}
+
 }  // namespace umbrick

@@ -1,7 +1,9 @@
 // Views of a volume by the way it stands in the world.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "umbrick/grid/orientation.h"
 #include "umbrick/scene/scene.h"
@@ -16,5 +18,8 @@ Orbit settledOrbit(const Orbit& orbit, const Orientation& orientation);
 /// is what lies on the left in the view of the front.
 /// @throw InvalidArgument  no such view, or one of a patient of a volume that does not state its anatomy
 Orbit namedView(std::string_view name, Orbit orbit, const Orientation& orientation);
+
+/// Returns the names of views that namedView() knows of some volume or other, each once.
+std::vector<std::string> viewNames();
 
 }  // namespace umbrick
