@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
-#include <stdexcept>
 #include <utility>
 
 #include "command_line.h"
+#include "usage_error.h"
 
 namespace umbrick::tools {
 
@@ -14,11 +14,6 @@ using Run = std::function<int()>;
 
 /// A sub-command and what it does.
 using Command = std::pair<CLI::App*, Run>;
-
-/// An error of usage that CLI11 cannot see, such as options that exclude each other. The exit status is 2.
-struct UsageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 // Each of these is in the file of its name. It adds a sub-command with its options to `app`.
 Command addCheck(CLI::App& app);

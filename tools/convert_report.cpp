@@ -125,10 +125,7 @@ void printNotes(const ConvertReport& report, std::set<std::string>* said) {
     if (!said || said->insert(note).second) std::cerr << printable(report.output.string() + ": " + note) << '\n';
 }
 
-namespace {
-
-// What a user should see in the numbers: nothing is left, or so much that another background would leave it out.
-void printUsual(const ConvertedGrid& grid) {
+std::string usualLine(const ConvertedGrid& grid) {
   char line[256];
   const double all = double(grid.build.voxels);
   const char* name = grid.label.c_str();
@@ -146,21 +143,25 @@ void printUsual(const ConvertedGrid& grid) {
                   "--threshold or --tolerance leave out what is of no interest",
                   name, 100.0 * double(grid.build.activeVoxels) / all, double(*grid.border));
   else
-    return;
-  std::cerr << printable(grid.input.string() + ": " + line) << '\n';
+    return {};
+  return line;
 }
 
-}  // namespace
+std::string keptLine(const ConvertedGrid& grid) {
+  if (!grid.keptLevelSet) return {};
+  return "grid \"" + grid.label +
+         "\" is a level set: --background, --tolerance, --threshold and --range do not apply to it";
+}
 
 void printWarnings(const ConvertReport& report) {
-  for (const ConvertedGrid& grid : report.grids) printUsual(grid);
+  const auto print = [](const ConvertedGrid& grid, const std::string& line) {
+    if (!line.empty()) std::cerr << printable(grid.input.string() + ": " + line) << '\n';
+  };
+  for (const ConvertedGrid& grid : report.grids) print(grid, usualLine(grid));
   for (const LeftOutGrid& grid : report.leftOut)
     std::cerr << printable(report.grids.front().input.string()) << ": grid \"" << printable(grid.label)
               << "\" is left out: expected a scalar grid, found " << grid.type << '\n';
-  for (const ConvertedGrid& grid : report.grids)
-    if (grid.keptLevelSet)
-      std::cerr << printable(grid.input.string()) << ": grid \"" << printable(grid.label)
-                << "\" is a level set: --background, --tolerance, --threshold and --range do not apply to it\n";
+  for (const ConvertedGrid& grid : report.grids) print(grid, keptLine(grid));
 }
 
 }  // namespace umbrick::tools

@@ -24,6 +24,12 @@ void printNotes(const ConvertReport& report, std::set<std::string>* said = nullp
 /// Grids that were left out, and options that did not apply, on stderr.
 void printWarnings(const ConvertReport& report);
 
+/// What a user should see in the numbers of a grid: nothing is left, or so much that another background would leave it
+/// out. Empty: nothing. Options have the words of the command line.
+std::string usualLine(const ConvertedGrid& grid);
+/// Which options did not apply to a level set. Empty: all did.
+std::string keptLine(const ConvertedGrid& grid);
+
 /// What a volume would become, on stdout.
 /// @param codec  of the .vdb
 void printPlan(const VolumePlan& plan, VdbCodec codec);

@@ -22,12 +22,6 @@ struct OpenedScene {
   std::optional<Box> seen = {};
 };
 
-/// What is known of a volume that is one of many: where nothing is given, the volume itself is asked.
-struct SceneHints {
-  std::optional<SuggestedTransfer> transfer = {};
-  std::optional<Box> seen = {};  // what is visible, world units
-};
-
 /// Loads the volume of a scene that makeScene() made and completes the scene.
 /// @param progress  as Volume has it
 /// @throw UsageError, IoError, InvalidArgument

@@ -4,8 +4,9 @@
 #include <exception>
 #include <string>
 
-#include "command.h"
 #include "umbrick/convert/options_error.h"
+#include "umbrick/render/asked_scene.h"
+#include "usage_error.h"
 
 namespace umbrick::tools {
 
@@ -23,6 +24,8 @@ auto asUsage(const Job& job) try {
   return job();
 } catch (const OptionsError& error) {
   throw UsageError(inOptionWords(error));
+} catch (const AskedSceneError& error) {
+  throw UsageError(error.what());
 }
 
 }  // namespace umbrick::tools

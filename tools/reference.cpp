@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "command.h"
-#include "empty_picture.h"
 #include "mode_options.h"
 #include "opened_scene.h"
 #include "picture_output.h"
@@ -19,6 +18,7 @@
 #include "umbrick/core/pending_file.h"
 #include "umbrick/core/pixel_points.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/render/picture_notes.h"
 #include "umbrick/scene/capabilities.h"
 #include "validators.h"
 
@@ -125,7 +125,8 @@ int runReference(ReferenceCommand& command) {
   if (picture.stats.unconvergedPixels > 0)
     std::cerr << "umbrick: " << picture.stats.unconvergedPixels << " pixels took all " << options.samples
               << " samples and have a standard error above " << options.standardError << '\n';
-  const auto empty = picture.complete ? describeEmptyPicture(picture.colour, resolved, volume) : std::nullopt;
+  const auto empty =
+      picture.complete ? describeEmptyPicture(picture.colour, resolved, volume, *command.scene) : std::nullopt;
   if (empty) std::cerr << *empty << '\n';
   if (picture.complete) return empty && command.strict ? 1 : 0;
   std::cerr << "umbrick: stopped; the picture holds " << static_cast<int>(100 * picture.stats.share)

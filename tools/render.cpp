@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "command.h"
-#include "empty_picture.h"
 #include "mode_options.h"
 #include "opened_scene.h"
 #include "picture_output.h"
@@ -26,6 +25,7 @@
 #include "umbrick/core/pixel_points.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/draw/progressive.h"
+#include "umbrick/render/picture_notes.h"
 #include "umbrick/render/render.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/shade/prepare.h"
@@ -214,7 +214,7 @@ int render(const RenderCommand& command) {
     }
     watch.bar.clear();
   }
-  for (const std::string& note : notesOn(picture, loaded.scene)) std::cerr << note << '\n';
+  for (const std::string& note : notesOn(picture, loaded.scene, *command.scene)) std::cerr << note << '\n';
   const Stopwatch write;
   writePicture(output, picture, loaded.scene, engine.description,
                passes ? printPasses(*passes, command.seed).dump() : std::string());
@@ -224,7 +224,7 @@ int render(const RenderCommand& command) {
     if (passes) stats["progressive"] = printPasses(*passes, command.seed);
     writeTextFile(output.stats, stats.dump(2) + "\n");
   }
-  const auto empty = describeEmptyPicture(picture.colour, loaded.scene, *loaded.volume);
+  const auto empty = describeEmptyPicture(picture.colour, loaded.scene, *loaded.volume, *command.scene);
   if (empty) std::cerr << *empty << '\n';
   // A picture that is whole by now is written, whenever the user stops; the samples of one that is not are kept.
   const bool stopped = passes && watch.stop.requested();

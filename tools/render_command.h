@@ -60,9 +60,6 @@ LoadedScene loadScene(const OpenedScene& opened, Technique technique, bool onCpu
 
 RenderOptions renderOptions(const RenderCommand& command);
 
-/// Returns what a user should know of how a picture was made: lines for stderr.
-std::vector<std::string> notesOn(const Picture& picture, const ResolvedScene& scene);
-
 nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& picture,
                                   const std::vector<double>& framesMs, const std::string& engine, double writeMs,
                                   bool timePasses);

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "command.h"
-#include "empty_picture.h"
 #include "film.h"
 #include "frame_job.h"
 #include "frame_samples.h"
@@ -252,14 +251,15 @@ void FrameRun::drawOne(const FrameJob::Frame& frame, VolumeFrame read) {
   else
     renderer_->setScene(shown_->scene);
   const Picture picture = taken(frame);
-  for (const std::string& note : notesOn(picture, shown_->scene)) say(note);
+  for (const std::string& note : notesOn(picture, shown_->scene, *command_.scene)) say(note);
   if (!job_.oneVolume && shown_->bricks->nonFiniteVoxels > 0) {
     bar_.clear();
     Scene named = opened_.scene;
     named.volume = frame.volume;
     warnOfNonFinite(named, shown_->bricks->nonFiniteVoxels);
   }
-  if (command_.strict && describeEmptyPicture(picture.colour, shown_->scene, *shown_->volume)) strictFailed_ = true;
+  if (command_.strict && describeEmptyPicture(picture.colour, shown_->scene, *shown_->volume, *command_.scene))
+    strictFailed_ = true;
   write(frame, picture, draw.elapsedMs(), true);
 }
 

@@ -1,33 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
 #include <map>
-#include <sstream>
 #include <string_view>
 
 #include "command.h"
+#include "option_words.h"
 #include "render_command.h"
 #include "umbrick/core/memory.h"
 #include "umbrick/core/pixel_points.h"
 #include "umbrick/core/stopwatch.h"
-#include "umbrick/draw/progressive.h"
 #include "umbrick/scene/capabilities.h"
 
 namespace umbrick::tools {
 
 Scene askedScene(const RenderCommand& command) {
-  Scene scene = makeScene(*command.scene, {.model = Model::cone, .frames = true});
-  if (command.progressive() && !canAverage(scene))
-    throw UsageError(
-        "--progressive, --max-seconds and --target-error need the model emission, or cone, ambient or lights and the "
-        "method ordinates or light-volume");
-  // Ordinates can be refined further than light at voxels, so that a target takes them where there is OpenGL, unless
-  // the user names a method.
-  if (command.targetError && command.backend != "cpu" && !command.scene->has("method"))
-    scene.method = Method::ordinates;
-  // A draft is one of slices, but where these cannot be.
-  const bool bySlices =
-      command.backend != "cpu" && (scene.technique == Technique::automatic || scene.technique == Technique::slices);
-  if (!bySlices && command.scene->quality && !command.scene->has("method")) scene.method = Method::lightVolume;
+  Scene scene = makeScene(*command.scene, {.model = Model::cone}, true);
+  const AskedPicture picture{command.progressive(), command.targetError.has_value(), command.backend == "cpu"};
+  asUsage([&] { fitToPicture(*command.scene, picture, scene); });
   return scene;
 }
 
@@ -66,23 +55,6 @@ RenderOptions renderOptions(const RenderCommand& command) {
   options.timePasses = command.timePasses;
   options.lightSweep = parseName(kLightSweeps, command.lightSweep, "--light-sweep");
   return options;
-}
-
-std::vector<std::string> notesOn(const Picture& picture, const ResolvedScene& scene) {
-  std::vector<std::string> notes;
-  const auto add = [&](const auto&... parts) {
-    std::ostringstream line;
-    (line << ... << parts);
-    notes.push_back(line.str());
-  };
-  // A format that is asked for by name may round voxels; the automatic choice does not.
-  if (scene.bricks.format != "auto" && picture.stats.formatError > 0)
-    add("texels of ", scene.bricks.format, " are off by up to ", picture.stats.formatError, ", in units of the grid");
-  if (picture.stats.lightSpacing == 2 && scene.occlusion.ordinates.lightSpacing == 0)
-    add("for lack of memory light is held at every second voxel alone, which changes it by about ",
-        picture.stats.lightSpacingError, " of the whole (--memory-budget)");
-  if (!picture.stats.lightNote.empty()) add("light is computed on the CPU: ", picture.stats.lightNote);
-  return notes;
 }
 
 nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& picture,

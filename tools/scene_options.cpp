@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "mode_options.h"
+#include "option_words.h"
 #include "stop_request.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/printable.h"
@@ -163,105 +164,6 @@ void addFieldOptions(CLI::App& command, SceneOptions& options, std::string_view 
           ->group(std::string(field.group));
 }
 
-// What is wrong with a field that an option has set is said by the option's name.
-void validate(const SceneOptions& options, const Scene& scene) {
-  try {
-    validateScene(scene);
-  } catch (const InvalidArgument& error) {
-    const std::string message = error.what();
-    const SceneField* field = findSceneField(message.substr(0, message.find(':')));
-    if (!field || !options.has(field->option)) throw;
-    throw InvalidArgument(options.nameOf(field->option) + message.substr(message.find(':')));
-  }
-}
-
-// --- parts of a scene that are no single field ---
-
-// A picture of a volume of which nothing is said shows it from the front, a little from its side and from above, where
-// its shape is seen best.
-constexpr Orbit kFirstLook{.azimuth = 30 * kRadians, .elevation = 15 * kRadians};
-
-Axis parseAxis(const std::string& text) {
-  try {
-    return parseName(kAxes, text, "--up");
-  } catch (const InvalidArgument& error) {
-    throw UsageError(error.what());
-  }
-}
-
-// Sets what is up: an axis or three numbers.
-void applyUp(const std::string& up, Scene& scene) {
-  const auto numbers = parseNumbers(up);
-  if (scene.orbit) {
-    if (numbers)
-      throw UsageError("--up: three numbers need --eye; around the volume it is x, y, z, -x, -y, -z or auto");
-    scene.orbit->up = parseAxis(up);
-    return;
-  }
-  if (numbers && numbers->size() == 3)
-    scene.camera.up = toVector(*numbers);
-  else if (numbers || up == "auto")
-    throw UsageError("--up: beside an eye, expected three numbers or one of x, y, z, -x, -y, -z, found '" + up + "'");
-  else
-    scene.camera.up = axisDirection(parseAxis(up));
-}
-
-// Places the camera. An eye replaces the angles around the volume, and angles replace an eye.
-void placeCamera(const SceneOptions& options, bool fromScene, Scene& scene) {
-  Camera& camera = scene.camera;
-  if (options.orthographic) camera.projection = Projection::orthographic;
-  if (options.view && (options.has("azimuth") || options.has("elevation")))
-    throw UsageError("--view and --azimuth, --elevation exclude each other");
-  const bool angles = options.view || options.has("azimuth") || options.has("elevation") || options.has("front") ||
-                      options.has("zoom") || options.has("pan");
-  const bool eye = options.has("eye"), lookAt = options.has("look-at");
-  if (eye && angles) throw UsageError("--eye excludes --view, --azimuth, --elevation, --front, --zoom and --pan");
-  if (eye || (lookAt && !scene.orbit)) {
-    if (scene.orbit && !lookAt) throw UsageError("--eye needs --look-at");
-    if (scene.orbit) camera.up = {0, 0, 1};
-    scene.orbit.reset();
-  }
-  if (angles && !scene.orbit) scene.orbit = Orbit{};
-  if (scene.orbit && (lookAt || options.has("view-height"))) throw UsageError("--look-at and --view-height need --eye");
-  if (scene.orbit && !fromScene && !options.view && !options.has("azimuth") && !options.has("elevation"))
-    scene.orbit = kFirstLook;
-  if (options.up) applyUp(*options.up, scene);
-}
-
-// Without --tf and without a scene that has one, the transfer function is made when the volume is known, and so are
-// window and scale of it.
-void applyTransfer(const SceneOptions& options, Scene& scene) {
-  if (options.transfer && *options.transfer == "auto")
-    scene.transfer.reset();
-  else if (options.transfer)
-    scene.transfer = loadTransferFunction(*options.transfer);
-  applyWindow(options, scene);
-}
-
-// Applies model and method, and then the quality, before the fields that it sets are given one by one. A scene without
-// a file has no slices of its own, so that `normal` applies.
-void applyQuality(const SceneOptions& options, bool fromScene, Scene& scene) {
-  for (const char* option : {"model", "method"})
-    if (options.has(option)) options.fields.find(option)->second(scene);
-  const bool lit = traitsOf(scene.model).directions, byDirections = traitsOf(scene.method).directions;
-  if (options.quality && (!lit || (options.has("method") && !byDirections)))
-    throw UsageError(
-        "--quality: is for the models cone, ambient and lights by the methods ordinates and light-volume; give --model "
-        "cone");
-  if (options.quality)
-    umbrick::applyQuality(parseName(kQualities, *options.quality, "--quality"), scene);
-  else if (lit && byDirections && !fromScene)
-    umbrick::applyQuality(Quality::normal, scene);
-  else
-    return;
-  // Slabs of another spacing have segments as long as these, unless the user gives their number.
-  if (!options.has("spacing")) return;
-  Scene spaced = scene;
-  for (const char* option : {"spacing", "spacing-unit"})
-    if (options.has(option)) options.fields.find(option)->second(spaced);
-  if (spaced.spacingUnit == SpacingUnit::voxel) scene.sampling.segments = segmentsOf(spaced.sampling.spacing);
-}
-
 // Reads one number, the distance of slices, or three, the spacing of voxels.
 void readSpacing(const std::string& text, SceneOptions& options) {
   const auto numbers = parseNumbers(text);
@@ -271,55 +173,6 @@ void readSpacing(const std::string& text, SceneOptions& options) {
     options.fields["spacing"] = [distance = numbers->front()](Scene& scene) { scene.sampling.spacing = distance; };
   else
     throw CLI::ValidationError("--spacing", "expected a distance of slices, or three numbers, found '" + text + "'");
-}
-
-std::string methodsOf(const SceneField& field) {
-  std::string names;
-  for (const Method method : field.onlyOf) names += (names.empty() ? "" : " or ") + methodName(method);
-  return names;
-}
-
-// Refuses an option that only the other methods look at, since it shows that the user expects that method.
-void checkMethodOptions(const SceneOptions& options, Method method) {
-  for (const SceneField& field : sceneFields())
-    if (!field.onlyOf.empty() && std::ranges::find(field.onlyOf, method) == field.onlyOf.end() &&
-        options.has(field.option))
-      throw UsageError("--" + std::string(field.option) + ": is for --method " + methodsOf(field) + ", found " +
-                       methodName(method));
-}
-
-void applyClipping(const SceneOptions& options, Scene& scene) {
-  if (!options.clipPlanes.empty()) scene.clipPlanes.clear();
-  for (const std::vector<double>& plane : options.clipPlanes)
-    scene.clipPlanes.emplace_back(plane[0], plane[1], plane[2], plane[3]);
-  if (options.clipBox) {
-    const std::vector<double>& box = *options.clipBox;
-    scene.clipBox = Box{{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
-  }
-}
-
-// What the command line says holds at all frames.
-void dropOverriddenKeys(const SceneOptions& options, Scene& scene) {
-  const auto drop = [&](const std::string& option, std::string_view field) {
-    if (dropKeys(scene, field))
-      std::cerr << option << " takes the place of the keys of " << field << " in " << printable(options.input.string())
-                << '\n';
-  };
-  for (const auto& [option, set] : options.fields)
-    if (const SceneField* field = findSceneField(option)) drop(options.nameOf(option), field->path);
-  if (options.view)
-    for (const char* field : {"camera.azimuth", "camera.elevation"}) drop("--view", field);
-  if (options.up) drop("--up", "camera.up");
-  if (options.transfer) drop("--tf", "transfer");
-  if (!options.clipPlanes.empty()) drop("--clip-plane", "clip.planes");
-  if (options.clipBox) drop("--clip-box", "clip.box");
-  if (!options.isoValues.empty() || !options.isoOpacities.empty()) drop("--iso", "surfaces");
-  // A camera that is placed in another way than the keys place it.
-  const bool orbits = scene.orbit.has_value();
-  for (const char* field : {"camera.azimuth", "camera.elevation", "camera.zoom", "camera.pan"})
-    if (!orbits) drop("--eye", field);
-  for (const char* field : {"camera.eye", "camera.lookAt", "camera.up", "camera.viewHeight"})
-    if (orbits) drop("--azimuth, --elevation or --view", field);
 }
 
 }  // namespace
@@ -353,9 +206,14 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNam
   SceneOptions& o = *options;
   o.renamed = renamed;
   command
-      .add_option("input", o.input,
-                  "a volume of any format that convert reads, a .vdb or .nvdb, numbered files (frame_%04d.nrrd: the "
-                  "first), or a .json scene")
+      .add_option_function<std::filesystem::path>(
+          "input",
+          [&o](const std::filesystem::path& input) {
+            o.input = input;
+            o.whole = input.extension() == ".json";
+          },
+          "a volume of any format that convert reads, a .vdb or .nvdb, numbered files (frame_%04d.nrrd: the "
+          "first), or a .json scene")
       ->required();
   addVolumeOptions(command, o.volume);
 
@@ -382,8 +240,12 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNam
       ->type_name(kViewType)
       ->group("Camera");
   command
-      .add_option(
-          "--up", o.up,
+      .add_option_function<std::string>(
+          "--up",
+          [&o](const std::string& up) {
+            o.up = up;
+            o.upward = parseNumbers(up);
+          },
           "what is up: x, y, z, -x, -y, -z or auto (the patient's head; z for other scans; of a .vdb that other "
           "programs wrote mostly y); beside --eye also three numbers [auto; with --eye 0 0 1]")
       ->type_name(kAxisType)
@@ -466,32 +328,21 @@ std::unique_ptr<GlContext, ContextCloser> createContext(const std::string& backe
       createGlContext(parseName(kBackends, backend, "--backend")).release());
 }
 
-Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults) {
+Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults, bool frames) {
   Scene scene;
-  const bool fromScene = options.input.extension() == ".json";
-  if (fromScene) {
+  if (options.whole)
     scene = readScene(options.input, options.volume.besideOnly);
-  } else {
+  else
     scene.volume.file = options.input;
-    scene.model = defaults.model;
-  }
-  // Other modes, and light that is reflected, go with no light in the medium.
-  for (const char* option : {"mode", "shading"})
-    if (options.has(option)) options.fields.find(option)->second(scene);
-  if (!fromScene && (scene.mode != Mode::integrate || isShaded(scene))) scene.model = Model::emission;
   applyVolumeOptions(options.volume, scene.volume);
-  applyTransfer(options, scene);
-  placeCamera(options, fromScene, scene);
-  applyQuality(options, fromScene, scene);
-  for (const auto& [option, set] : options.fields) set(scene);
-  dropOverriddenKeys(options, scene);
-  checkMethodOptions(options, scene.method);
+  std::vector<ReplacedKeys> replaced;
+  scene = asUsage([&] { return askedScene(options, std::move(scene), defaults, &replaced); });
+  for (const ReplacedKeys& keys : replaced)
+    std::cerr << keys.option << " takes the place of the keys of " << keys.field << " in "
+              << printable(options.input.string()) << '\n';
   if (options.tableSize)
     std::cerr << "--table-size has no effect any more: transfer functions are integrated exactly, without a table\n";
-  applyClipping(options, scene);
-  applySurfaces(options, scene);
-  validate(options, scene);
-  if (!defaults.frames) tellFrameShown(options, scene);
+  if (!frames) tellFrameShown(options, scene);
   return scene;
 }
 
@@ -501,18 +352,6 @@ void tellFrameShown(const SceneOptions& options, const Scene& scene) {
   for (const SceneTrack& track : scene.tracks) fields += (fields.empty() ? "" : ", ") + track.field;
   std::cerr << printable(options.input.string()) << ": " << fields
             << " as at frame 0; umbrick render --count, or --frames of a sequence, follows the scene's keys\n";
-}
-
-void applyWindow(const SceneOptions& options, Scene& scene) {
-  if (!scene.transfer) return;
-  if (options.window) scene.transfer = scene.transfer->windowed((*options.window)[0], (*options.window)[1]);
-  if (options.sigmaScale) scene.transfer = scene.transfer->scaled(*options.sigmaScale);
-  for (SceneTrack& track : scene.tracks)
-    for (SceneTrack::Key& key : track.keys) {
-      if (key.transfer && options.window)
-        key.transfer = key.transfer->windowed((*options.window)[0], (*options.window)[1]);
-      if (key.transfer && options.sigmaScale) key.transfer = key.transfer->scaled(*options.sigmaScale);
-    }
 }
 
 void refuseBackdrop(const SceneOptions& options) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "command_line.h"
 #include "umbrick/gl/context.h"
 #include "umbrick/image/display.h"
+#include "umbrick/render/asked_scene.h"
 #include "umbrick/scene/scene.h"
 #include "volume_options.h"
 
@@ -23,26 +23,17 @@ using OptionNames = std::map<std::string, std::string, std::less<>>;
 
 /// Holds what the command line says of a scene. The rest comes from the scene file, follows from the volume or keeps
 /// its default.
-struct SceneOptions {
+struct SceneOptions : AskedScene {
   std::filesystem::path input;
   VolumeOptions volume;
-  std::optional<std::string> transfer, quality, view, up;
-  std::optional<std::vector<double>> window, clipBox;
-  std::vector<std::vector<double>> clipPlanes;
-  std::optional<double> sigmaScale;
-  std::vector<double> isoValues, isoOpacities;  // of isosurfaces, one after another
-  std::vector<std::vector<double>> isoColours;
   std::optional<int> tableSize;
-  bool orthographic = false;
   Backdrop backdrop = Backdrop::none;  // --background gradient, which a PNG has in place of the scene's background
-  /// Sets the field of each option of the table of scene fields that was given, by the name of the option.
-  std::map<std::string, std::function<void(Scene&)>, std::less<>> fields;
-  /// What options of that table are called where their own name means something else, see addSceneOptions.
+  /// What options of the table of scene fields are called where their own name means something else, see
+  /// addSceneOptions.
   OptionNames renamed;
 
   /// Returns the option on the command line for an option of the table: "--theta" for "theta".
-  std::string nameOf(std::string_view option) const;
-  bool has(std::string_view option) const { return fields.contains(option); }
+  std::string nameOf(std::string_view option) const override;
 };
 
 /// Adds the options to a sub-command. @param renamed  options of the table that get another name there
@@ -65,21 +56,13 @@ struct ContextCloser {
 /// Makes the context of that name.
 std::unique_ptr<GlContext, ContextCloser> createContext(const std::string& backend);
 
-/// What a picture shows where neither options nor a scene file say it.
-struct SceneDefaults {
-  Model model = Model::emission;
-  bool frames = false;  // the command draws what changes over frames; else frame 0 is shown, and said to be
-};
-
 /// Says that a scene whose fields have keys is shown as it is at frame 0, if it is such a scene.
 void tellFrameShown(const SceneOptions& options, const Scene& scene);
 
 /// Makes a scene from a file and the command line, before its volume is known: what is wrong is said before anything is
 /// loaded. Without a transfer function, none is set. @throw UsageError, IoError, InvalidArgument
-Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults = {});
-
-/// Applies --window and --sigma-scale, where the scene has a transfer function.
-void applyWindow(const SceneOptions& options, Scene& scene);
+/// @param frames  the command draws what changes over frames; else frame 0 is shown, and said to be
+Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults = {}, bool frames = false);
 
 /// Refuses a backdrop, for sub-commands that write no PNG. @throw UsageError
 void refuseBackdrop(const SceneOptions& options);

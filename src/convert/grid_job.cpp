@@ -109,23 +109,6 @@ bool keepsLevelSet(const openvdb::FloatGrid& grid, const BuildOptions& build) {
          (build.background || build.clipBelow || build.clipAbove || build.tolerance > 0);
 }
 
-// Makes a grid sparse, and a level set of it where that is asked for.
-openvdb::FloatGrid::Ptr build(GridJob& job, std::size_t i, BuildOptions options) {
-  ConvertedGrid& row = job.report.grids[i];
-  const ScalarGrid source =
-      job.grids.empty() ? readFiltered(job, row.label, row.masked, row.notes) : std::exchange(job.grids[i], {});
-  if (source.grid->getGridClass() != openvdb::GRID_LEVEL_SET) {
-    const float background = options.background.value_or(source.grid->background());
-    refuseKept(job.input, options, background, options.background ? "as was asked for" : "that of the grid");
-    if (mapsValues(job.options)) leaveOutBelow(background, options);
-  }
-  row.keptLevelSet = keepsLevelSet(*source.grid, options);
-  BuiltGrid built = sparsifyGrid(source, options);
-  if (job.options.isosurface) row.isosurface = replaceByIsosurface(job.input, *job.options.isosurface, built);
-  row.build = std::move(built.report);
-  return built.grid;
-}
-
 // Reads a grid back from the file and compares it with the one it was made of.
 void verify(GridJob& job, std::size_t i, const openvdb::FloatGrid& grid, const std::optional<ValueMap>& map,
             const fs::path& written, const fs::path& output) {
@@ -172,6 +155,23 @@ void readGrids(GridJob& job) {
   for (ConvertedGrid& row : job.report.grids) job.grids.push_back(readFiltered(job, row.label, row.masked, row.notes));
 }
 
+openvdb::FloatGrid::Ptr buildJobGrid(GridJob& job, std::size_t i, const BuildOptions& given) {
+  BuildOptions options = given;
+  ConvertedGrid& row = job.report.grids[i];
+  const ScalarGrid source =
+      job.grids.empty() ? readFiltered(job, row.label, row.masked, row.notes) : std::exchange(job.grids[i], {});
+  if (source.grid->getGridClass() != openvdb::GRID_LEVEL_SET) {
+    const float background = options.background.value_or(source.grid->background());
+    refuseKept(job.input, options, background, options.background ? "as was asked for" : "that of the grid");
+    if (mapsValues(job.options)) leaveOutBelow(background, options);
+  }
+  row.keptLevelSet = keepsLevelSet(*source.grid, options);
+  BuiltGrid built = sparsifyGrid(source, options);
+  if (job.options.isosurface) row.isosurface = replaceByIsosurface(job.input, *job.options.isosurface, built);
+  row.build = std::move(built.report);
+  return built.grid;
+}
+
 ConvertReport writeGridJob(GridJob& job, const fs::path& output) {
   std::vector<std::string> labels;
   for (const ConvertedGrid& row : job.report.grids) labels.push_back(row.label);
@@ -179,7 +179,7 @@ ConvertReport writeGridJob(GridJob& job, const fs::path& output) {
   BuildOptions options = job.options.build;
   options.progress = beginPass(job.options.progress, ConvertStage::converting, job.input);
   std::vector<openvdb::FloatGrid::Ptr> built;
-  for (std::size_t i = 0; i < job.report.grids.size(); ++i) built.push_back(build(job, i, options));
+  for (std::size_t i = 0; i < job.report.grids.size(); ++i) built.push_back(buildJobGrid(job, i, options));
   const std::vector<std::optional<ValueMap>> maps = prepareForTarget(job, built);
   const std::vector<openvdb::FloatGrid::ConstPtr> grids(built.begin(), built.end());
   const NanoCheck check = [&](const fs::path& written, const std::vector<QuantiseError>& quantised) {

@@ -30,6 +30,9 @@ GridJob openGridJob(const std::filesystem::path& input, const ConvertOptions& op
 /// Reads the grids ahead of writeGridJob, which else reads one after the other.
 void readGrids(GridJob& job);
 
+/// Makes a grid of the job sparse, and a level set of it where that is asked for. @param i  its row in the report
+openvdb::FloatGrid::Ptr buildJobGrid(GridJob& job, std::size_t i, const BuildOptions& options);
+
 /// Makes the grids sparse and writes them; verifies the file before it takes its name where that is asked for.
 ConvertReport writeGridJob(GridJob& job, const std::filesystem::path& output);
 

@@ -20,7 +20,7 @@ bool holdsGrids(const fs::path& path) {
 }
 
 bool holdGrids(const std::vector<fs::path>& inputs, const SourceOptions& source) {
-  if (source.open.raw) return false;
+  if (source.open.raw || source.open.array) return false;
   for (const fs::path& input : inputs) {
     if (!holdsGrids(input)) continue;
     if (inputs.size() == 1) return true;

@@ -73,6 +73,9 @@ bool shareVolume(const std::vector<VolumeJob>& jobs);
 /// Does what openAndBuild does for the components of one volume. @pre shareVolume(jobs)
 World openAndBuildTogether(std::vector<VolumeJob>& jobs);
 
+/// Looks at how much of a volume stays, so that a background that leaves out nothing is noticed.
+void judgeBackground(const openvdb::FloatGrid& grid, ConvertedGrid& report);
+
 /// Writes the grids, and verifies the file before it takes its name where that is asked for. The reports of the jobs
 /// are moved from.
 ConvertReport writeVolumes(std::span<VolumeJob> jobs, const std::filesystem::path& output);

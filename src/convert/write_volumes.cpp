@@ -14,15 +14,6 @@ namespace umbrick {
 namespace {
 namespace fs = std::filesystem;
 
-// Looks at how much of a volume stays, so that a background that leaves out nothing is noticed.
-void judgeBackground(const openvdb::FloatGrid& grid, ConvertedGrid& report) {
-  constexpr double kNearlyAll = 0.95;
-  const std::uint64_t active = report.build.activeVoxels, all = report.build.voxels;
-  if (2 * active <= all) return;
-  if (const auto usual = usualValue(grid); usual && 2 * usual->voxels > all) report.usual = usual;
-  if (static_cast<double>(active) > kNearlyAll * static_cast<double>(all)) report.border = usualBorder(grid);
-}
-
 // The grid of a job that holds the values of its volume: neither vectors nor labels.
 JobGrid* valuesOf(VolumeJob& job) {
   JobGrid& first = job.grids.front();
@@ -92,6 +83,14 @@ void verify(VolumeJob& job, std::size_t place, const fs::path& written, const fs
 }
 
 }  // namespace
+
+void judgeBackground(const openvdb::FloatGrid& grid, ConvertedGrid& report) {
+  constexpr double kNearlyAll = 0.95;
+  const std::uint64_t active = report.build.activeVoxels, all = report.build.voxels;
+  if (2 * active <= all) return;
+  if (const auto usual = usualValue(grid); usual && 2 * usual->voxels > all) report.usual = usual;
+  if (static_cast<double>(active) > kNearlyAll * static_cast<double>(all)) report.border = usualBorder(grid);
+}
 
 ConvertReport writeVolumes(std::span<VolumeJob> jobs, const fs::path& output) {
   ConvertReport report;

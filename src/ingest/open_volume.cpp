@@ -231,10 +231,21 @@ std::unique_ptr<VoxelSource> placed(std::unique_ptr<VoxelSource> source, const O
   return std::make_unique<PlacedSource>(std::move(source), std::move(info));
 }
 
+std::unique_ptr<VoxelSource> openPlacedArray(const fs::path& path, const OpenOptions& options) {
+  auto source = openArray(*options.array, path.string(), options.parts);
+  if (!options.spacing && !options.origin) return source;
+  if (options.array->indexToWorld)
+    throw StatedPlace(path.string() + ": spacing and origin: its affine matrix states its own");
+  checkNumbers(path, "spacing", options.spacing, true);
+  checkNumbers(path, "origin", options.origin, false);
+  return placed(std::move(source), options, false);
+}
+
 std::unique_ptr<VoxelSource> openPlaced(const fs::path& path, const OpenOptions& options) {
   const auto inUnit = [&](std::unique_ptr<VoxelSource> source) {
     return options.lengthUnit.empty() ? std::move(source) : inLengthUnit(std::move(source), options.lengthUnit);
   };
+  if (options.array) return inUnit(openPlacedArray(path, options));
   if (options.raw) return inUnit(openRaw(path, *options.raw, options.parts, options.strict));
   requireOrdinary(path);
   if (options.besideOnly) requireNoWayOut(path);

@@ -29,21 +29,29 @@ struct Volume::LazyGradient {
 Volume::Volume(const VolumeReference& file, const std::function<void(double share)>& progress,
                const std::shared_ptr<KeptStream>& kept) {
   const Stopwatch load;
-  VolumeFile read = readVolumeFile(file, progress, kept);
-  *this = Volume(std::move(read.grid), file.file.string());
-  foreign_ = read.foreign && grid_.metadata("source_format").empty();
-  orientation_ = orientationOf(grid_, foreign_, read.creator);
-  notes_ = std::move(read.notes);
-  source_ = std::move(read.source);
+  *this = Volume(readVolumeFile(file, progress, kept), file.file.string());
   loadMs_ = load.elapsedMs();
 }
 
-Volume::Volume(ScalarGrid grid, std::string name)
+Volume::Volume(const std::string& name, const OpenOptions& open, const std::function<void(double share)>& progress) {
+  const Stopwatch load;
+  *this = Volume(readVolumeArray(name, open, progress), name);
+  loadMs_ = load.elapsedMs();
+}
+
+Volume::Volume(VolumeFile&& read, std::string name) : Volume(std::move(read.grid), std::move(name), read.foreign) {
+  orientation_ = orientationOf(grid_, foreign_, read.creator);
+  notes_ = std::move(read.notes);
+  source_ = std::move(read.source);
+}
+
+Volume::Volume(ScalarGrid grid, std::string name, bool foreign)
     : grid_(std::move(grid)), name_(std::move(name)), largestGradient_(std::make_shared<LazyGradient>()) {
   if (grid_.activeBox().empty()) throw EmptyVolume(name_ + ": grid \"" + grid_.name + "\" has no active voxel");
   indexToWorld_ = grid_.indexToWorld();
   worldBounds_ = grid_.worldBounds();
-  orientation_ = orientationOf(grid_);
+  foreign_ = foreign && grid_.metadata("source_format").empty();
+  orientation_ = orientationOf(grid_, foreign_);
   valueUnit_ = grid_.metadata("value_unit");
 }
 

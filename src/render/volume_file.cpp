@@ -28,11 +28,10 @@ std::pair<std::string, std::string> splitComponent(const std::string& selector) 
   return {selector.substr(0, dot), selector.substr(dot + 1)};
 }
 
-void readVolume(VolumeFile& file, const LoadProgress& progress, const std::shared_ptr<KeptStream>& kept) {
+void readVolume(VolumeFile& file, const OpenOptions& open, const LoadProgress& progress) {
   const VolumeReference& source = file.source;
   ConvertOptions options;
-  options.source.open = openOptions(source);
-  options.source.open.parts.kept = kept;
+  options.source.open = open;
   if (progress) options.progress = [&progress](const ConvertProgress& stage) { progress(stage.share); };
   LoadedVolume loaded = loadVolume(source.file, options);
   const auto border = loaded.report.background;
@@ -126,10 +125,20 @@ VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& 
                          std::to_string(frames.size()));
   }
   if (reference.besideOnly && fs::is_regular_file(file.source.file)) requireBeside(file.source.file, file.source.file);
-  if (!file.source.raw && holdsGrids(file.source.file))
+  if (!file.source.raw && holdsGrids(file.source.file)) {
     readGrid(file, progress);
-  else
-    readVolume(file, progress, kept);
+  } else {
+    OpenOptions open = openOptions(file.source);
+    open.parts.kept = kept;
+    readVolume(file, open, progress);
+  }
+  return file;
+}
+
+VolumeFile readVolumeArray(const std::string& name, const OpenOptions& open, const LoadProgress& progress) {
+  VolumeFile file;
+  file.source.file = name;
+  readVolume(file, open, progress);
   return file;
 }
 

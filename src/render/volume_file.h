@@ -12,6 +12,8 @@
 
 namespace umbrick {
 
+struct OpenOptions;  // see ingest/open_volume.h
+
 /// Is called now and then with the share that is loaded; what it throws ends the loading.
 using LoadProgress = std::function<void(double share)>;
 
@@ -29,5 +31,8 @@ struct VolumeFile {
 /// @throw IoError, InvalidArgument  as Volume(VolumeReference)
 VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& progress = {},
                           const std::shared_ptr<KeptStream>& kept = {});
+
+/// Takes voxels in memory. @param name  what messages call them  @param open  has an array
+VolumeFile readVolumeArray(const std::string& name, const OpenOptions& open, const LoadProgress& progress = {});
 
 }  // namespace umbrick

@@ -126,6 +126,11 @@ void readClip(const JsonValue& value, Scene& scene) {
 
 }  // namespace
 
+void readSceneField(const SceneField& field, std::string_view json, const std::string& source, Scene& scene) {
+  const JsonDocument document(json, source);
+  readField(document.root(), field.place(scene));
+}
+
 Scene parseScene(std::string_view text, const std::string& source, const std::filesystem::path& path, bool besideOnly) {
   const SceneFolder folder(path, besideOnly);
   const JsonDocument document(text, source);

@@ -132,7 +132,26 @@ void boundWorld(const GridBase& grid, GridSummary& out) {
   }
 }
 
-GridSummary summariseGrid(VdbFile& file, const VdbFile::Entry& entry, int bins) {
+// Counts what a grid holds whose type is known.
+void countGrid(const GridBase& grid, int bins, GridSummary& out) {
+  out.activeVoxels = grid.activeVoxelCount();
+  out.activeTiles = grid.baseTree().activeTileCount();
+  out.leaves = grid.baseTree().leafCount();
+  if (out.activeVoxels > 0) {
+    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    out.activeBox = {{box.min().x(), box.min().y(), box.min().z()}, {box.max().x(), box.max().y(), box.max().z()}};
+    boundWorld(grid, out);
+    grid.apply<CountedGridTypes>([&](const auto& typed) { out.values = summariseValues(typed.tree(), bins); });
+  }
+  out.background = backgroundText(grid);
+  out.memoryBytes = grid.memUsage();
+}
+
+void requireBins(int bins) {
+  if (bins < 1) throw InvalidArgument("bins: expected 1 or more, found " + std::to_string(bins));
+}
+
+GridSummary summariseEntry(VdbFile& file, const VdbFile::Entry& entry, int bins) {
   GridSummary out;
   out.label = entry.label;
   out.valueType = entry.valueType;
@@ -145,29 +164,31 @@ GridSummary summariseGrid(VdbFile& file, const VdbFile::Entry& entry, int bins) 
   out.metadata = asText(*grid);
   placeInWorld(*grid, out);
   out.readable = layoutOf(entry.valueType) != nullptr;
-  if (!out.readable) return out;
-
-  out.activeVoxels = grid->activeVoxelCount();
-  out.activeTiles = grid->baseTree().activeTileCount();
-  out.leaves = grid->baseTree().leafCount();
-  if (out.activeVoxels > 0) {
-    const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
-    out.activeBox = {{box.min().x(), box.min().y(), box.min().z()}, {box.max().x(), box.max().y(), box.max().z()}};
-    boundWorld(*grid, out);
-    grid->apply<CountedGridTypes>([&](const auto& typed) { out.values = summariseValues(typed.tree(), bins); });
-  }
-  out.background = backgroundText(*grid);
-  out.memoryBytes = grid->memUsage();
+  if (out.readable) countGrid(*grid, bins, out);
   return out;
 }
 
 }  // namespace
 
 FileSummary summariseFile(const std::filesystem::path& path, int bins) {
-  if (bins < 1) throw InvalidArgument("bins: expected 1 or more, found " + std::to_string(bins));
+  requireBins(bins);
   VdbFile file(path);
   FileSummary out{file.fileBytes(), file.version(), file.writtenBy(), asText(file.metadata()), {}};
-  for (const VdbFile::Entry& entry : file.entries()) out.grids.push_back(summariseGrid(file, entry, bins));
+  for (const VdbFile::Entry& entry : file.entries()) out.grids.push_back(summariseEntry(file, entry, bins));
+  return out;
+}
+
+GridSummary summariseGrid(const ScalarGrid& grid, int bins) {
+  requireBins(bins);
+  GridSummary out;
+  out.label = grid.name;
+  out.valueType = grid.grid->valueType();
+  out.scalar = out.readable = true;
+  out.savedAsHalf = grid.grid->saveFloatAsHalf();
+  out.gridClass = GridBase::gridClassToString(grid.grid->getGridClass());
+  out.metadata = asText(*grid.grid);
+  placeInWorld(*grid.grid, out);
+  countGrid(*grid.grid, bins, out);
   return out;
 }
 

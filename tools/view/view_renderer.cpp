@@ -5,14 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "umbrick/atlas/resident_volume.h"
 #include "umbrick/core/camera.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/short_number.h"
 #include "umbrick/core/stopwatch.h"
-#include "umbrick/scene/capabilities.h"
-#include "umbrick/shade/prepare.h"
-#include "umbrick/sweep/swept_bricks.h"
 #include "view/frame_encoder.h"
 
 namespace umbrick::view {
@@ -31,37 +27,7 @@ ResolvedScene draftOf(const ResolvedScene& scene, double scale, int directions) 
   return draft;
 }
 
-// What a renderer and its bricks are made for: another one needs them anew.
-struct MadeFor {
-  Technique technique;
-  std::optional<Method> method;
-  Model model;
-  bool gradients;
-  int apron;   // that techniques on the CPU need
-  bool byAll;  // techniques can render the mode and its shading; else another one may have to be chosen
-  BrickSettings bricks;
-  bool operator==(const MadeFor&) const = default;
-};
-MadeFor madeFor(const ResolvedScene& scene) {
-  return {scene.technique,
-          occlusionMethod(scene),
-          scene.model,
-          scene.transfer.is2d(),
-          sweptBricks(scene).apron,
-          supportsMode(scene, Technique::slices) && supportsMode(scene, Technique::shearWarp),
-          scene.bricks};
-}
-
 }  // namespace
-
-// What draws: an engine with the volume cut for it.
-struct ViewRenderer::Drawer {
-  MadeFor key;
-  Engine engine;
-  std::unique_ptr<Bricks> bricks;
-  std::unique_ptr<ResidentVolume> resident;
-  std::unique_ptr<Renderer> renderer;
-};
 
 ViewRenderer::ViewRenderer(std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals,
                            ViewSink sink)
@@ -143,7 +109,7 @@ void ViewRenderer::drawWhole(const ResolvedScene& scene, std::function<void(cons
         if (stop_) throw Obsolete{};
       };
       Picture picture = rendererFor(scene).render();
-      done(picture, drawer_->engine.description);
+      done(picture, drawer_->engine().description);
     } catch (const Error& error) {
       failed(error.what());
     }
@@ -187,35 +153,18 @@ void ViewRenderer::run() {
 }
 
 Renderer& ViewRenderer::rendererFor(const ResolvedScene& scene) {
-  const auto make = [&] {
-    drawer_.reset();
-    auto made = std::make_unique<Drawer>(Drawer{madeFor(scene), chooseEngine(scene, engine_), {}, {}, {}});
+  if (!drawer_) {
     RenderOptions options;
     options.visibilityAndDepth = true;
     options.countFragments = false;
     options.progress = [this](double) {
       if (interrupt_) interrupt_();
     };
-    ResolvedScene decided = scene;
-    decided.technique = made->engine.technique;
-    if (made->engine.context) {
-      made->bricks = volume_->cutForRefinement(decided);
-      made->resident =
-          std::make_unique<ResidentVolume>(*made->engine.context, *made->bricks, atlasOptions(decided, *made->bricks));
-      made->renderer = makeRenderer(*made->resident, decided, options);
-    } else {
-      made->bricks = volume_->cutForCpu(decided);
-      made->renderer = makeRenderer(*made->bricks, decided, options);
-    }
-    drawer_ = std::move(made);
-    sink_.engine(drawer_->engine.description + ", " + techniqueName(drawer_->engine.technique));
-  };
-  if (!drawer_ || drawer_->key != madeFor(scene)) make();
-  ResolvedScene decided = scene;
-  decided.technique = drawer_->engine.technique;
-  if (!drawer_->renderer->sampling(decided)) make();  // slabs that reach beyond the apron need other bricks
-  drawer_->renderer->setScene(decided);
-  return *drawer_->renderer;
+    drawer_ = std::make_unique<SceneDrawer>(
+        volume_, engine_, std::move(options), /*refined=*/true,
+        [this](const Engine& engine) { sink_.engine(engine.description + ", " + techniqueName(engine.technique)); });
+  }
+  return drawer_->rendererFor(scene);
 }
 
 void ViewRenderer::draft(const ResolvedScene& scene) {

@@ -16,6 +16,7 @@
 
 #include "umbrick/draw/progressive.h"
 #include "umbrick/render/engine.h"
+#include "umbrick/render/scene_drawer.h"
 #include "umbrick/render/volume.h"
 
 namespace umbrick::view {
@@ -86,7 +87,6 @@ class ViewRenderer {
                  std::function<void(const std::string&)> failed);
 
  private:
-  struct Drawer;
   struct Obsolete {};
   void run();
   void draft(const ResolvedScene& scene);
@@ -111,7 +111,7 @@ class ViewRenderer {
   std::atomic<bool> stop_{false};
 
   // Of the thread that draws.
-  std::unique_ptr<Drawer> drawer_;
+  std::unique_ptr<SceneDrawer> drawer_;
   std::function<void()> interrupt_;  // throws Obsolete where the picture is not wanted any more
   double draftScale_ = 1;            // of the edges of drafts
   int draftDirections_ = 0;          // of their light; 0: all

@@ -21,4 +21,25 @@ struct LoadedVolume {
 /// @throw OptionsError, InvalidArgument, IoError  as convertVolumes
 LoadedVolume loadVolume(const std::filesystem::path& input, const ConvertOptions& options = {});
 
+/// Converts a volume, or a grid of a file of grids, and keeps the grid that convert() would write, background included.
+/// Of a file of several scalar grids it is the one that options.grids names, or else "density". `output`, `verify` and
+/// `labels` are not looked at.
+/// @throw OptionsError  as convert; several grids, and none is named
+/// @throw InvalidArgument, IoError  as convert
+LoadedVolume convertInMemory(const std::filesystem::path& input, const ConvertOptions& options = {});
+
+/// What became of a grid that was saved.
+struct SavedGrid {
+  std::int64_t bytes = 0;          // that were written
+  QuantiseError quantised;         // of a .nvdb whose values are packed
+  std::vector<std::string> notes;  // what the format changes or does not hold, a line each without the name
+};
+
+/// Writes a grid that is in memory as conversions write theirs, whole or not at all.
+/// @param type  of the voxels it was made of, in which a dense file stores them where it holds all values
+/// @throw OptionsError  as checkOutput; a target  @throw InvalidArgument, IoError  as writeGrids, writeNanoVdb and
+///                      writeDense
+SavedGrid saveGrid(const ScalarGrid& grid, const std::filesystem::path& output, const OutputOptions& options = {},
+                   std::optional<VoxelType> type = {});
+
 }  // namespace umbrick

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "umbrick/core/error.h"
+#include "umbrick/ingest/array_volume.h"
 #include "umbrick/ingest/raw_volume.h"
 #include "umbrick/ingest/volume_parts.h"
 #include "umbrick/ingest/voxel_source.h"
@@ -15,7 +16,8 @@
 namespace umbrick {
 
 struct OpenOptions {
-  std::optional<RawOptions> raw = {};  // when given, the file is read as headerless raw, whatever its name
+  std::optional<RawOptions> raw = {};     // when given, the file is read as headerless raw, whatever its name
+  std::optional<ArrayVolume> array = {};  // when given, voxels are read from memory, and the path is but their name
   bool strict = false;  // refuses plain files that go on behind the voxels of their header, or of `raw`: else a note
   /// The unit of length that the world gets: nm, um, mm, cm, m, or "file" for the one that the file states. Where a
   /// file states none, its numbers are taken for this unit. Empty: mm, or smaller where voxels are too small for

@@ -18,7 +18,9 @@
 
 namespace umbrick {
 
-struct KeptStream;  // see ingest/volume_parts.h
+struct KeptStream;   // see ingest/volume_parts.h
+struct OpenOptions;  // see ingest/open_volume.h
+struct VolumeFile;   // of the room alone
 
 /// A volume holds nothing that could be shown, which a frame of a sequence may.
 struct EmptyVolume : InvalidArgument {
@@ -38,11 +40,17 @@ class Volume {
   /// @param kept      of frames of one file that are loaded one after the other, see keepStream(); may be null
   explicit Volume(const VolumeReference& file, const std::function<void(double share)>& progress = {},
                   const std::shared_ptr<KeptStream>& kept = {});
+  /// Takes voxels in memory, by the rules for a file of them.
+  /// @param name  what messages call them
+  /// @param open  OpenOptions::array and where it lies in the world
+  /// @throw InvalidArgument, EmptyVolume  as above
+  Volume(const std::string& name, const OpenOptions& open, const std::function<void(double share)>& progress = {});
   /// Takes a grid.
-  /// @param name  what messages call it
+  /// @param name     what messages call it
+  /// @param foreign  it comes from a file of grids, and maybe from another program, which its metadata tell
   /// @throw InvalidArgument  the transform is not affine
   /// @throw EmptyVolume      the grid has no active voxel
-  Volume(ScalarGrid grid, std::string name);
+  Volume(ScalarGrid grid, std::string name, bool foreign = false);
 
   const std::string& name() const { return name_; }
   const ScalarGrid& grid() const { return grid_; }
@@ -86,6 +94,8 @@ class Volume {
 
  private:
   struct LazyGradient;
+  Volume(VolumeFile&& read, std::string name);
+
   ScalarGrid grid_;
   std::string name_;
   glm::dmat4 indexToWorld_{1};

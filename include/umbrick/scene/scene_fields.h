@@ -107,6 +107,11 @@ std::span<const SceneField> sceneFields();
 /// Returns the field of an option or of a path; null for none.
 const SceneField* findSceneField(std::string_view optionOrPath);
 
+/// Sets a field to a value that is written as in the JSON of a scene. Its range is checked by validateScene().
+/// @param source  what messages call the text
+/// @throw IoError  malformed JSON, or a value of another kind
+void readSceneField(const SceneField& field, std::string_view json, const std::string& source, Scene& scene);
+
 /// Returns "1 to 16", "in [0, 90)", "above 0", "16 or 32"; empty where there is nothing to say.
 std::string rangeText(const SceneField& field);
 /// Returns the text of the default, as in the JSON.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "umbrick/core/box.h"
+#include "umbrick/grid/scalar_grid.h"
 
 namespace umbrick {
 
@@ -56,5 +57,9 @@ struct FileSummary {
 /// @throw IoError          the file is missing, a directory, truncated, corrupt or not a .vdb file
 /// @throw InvalidArgument  bins < 1
 FileSummary summariseFile(const std::filesystem::path& path, int bins = 16);
+
+/// Does the same for a grid in memory, whose label is its name. It takes no bytes in a file.
+/// @throw InvalidArgument  bins < 1
+GridSummary summariseGrid(const ScalarGrid& grid, int bins = 16);
 
 }  // namespace umbrick

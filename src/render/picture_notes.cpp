@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "empty_picture.h"
+#include "umbrick/render/picture_notes.h"
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "umbrick/core/short_number.h"
 #include "umbrick/grid/value_survey.h"
 #include "umbrick/scene/capabilities.h"
 
-namespace umbrick::tools {
+namespace umbrick {
 namespace {
 
 enum class Emptiness { none, nothing, everything };
@@ -61,7 +62,8 @@ std::string shownValues(const TransferFunction& transfer) {
 
 }  // namespace
 
-std::optional<std::string> describeEmptyPicture(const Image& colour, const ResolvedScene& scene, const Volume& volume) {
+std::optional<std::string> describeEmptyPicture(const Image& colour, const ResolvedScene& scene, const Volume& volume,
+                                                const AskedScene& words) {
   const Emptiness found = findEmptiness(colour, scene);
   if (found == Emptiness::none) return std::nullopt;
   // What other modes show may well fill the picture, and does not depend on what the transfer function shows.
@@ -70,8 +72,9 @@ std::optional<std::string> describeEmptyPicture(const Image& colour, const Resol
     const std::string what = traitsOf(scene.mode).surfaces ? "a surface" : "anything but the background";
     const bool clips = !scene.clipPlanes.empty() || scene.clipBox.has_value();
     return "nothing is drawn: no ray meets " + what + "; try " + (clips ? "no clipping, or " : "") +
-           "a camera around the volume (no --eye)";
+           "a camera around the volume (no " + words.nameOf("eye") + ")";
   }
+  const std::string tryAuto = "; try " + words.nameOf("tf") + " auto";
   const ValueSurvey values = surveyValues(volume.grid());
   std::string text = found == Emptiness::nothing ? "nothing is drawn" : "every pixel is opaque";
   if (values.voxels == 0) return text + ": the volume has no finite value";
@@ -83,11 +86,29 @@ std::optional<std::string> describeEmptyPicture(const Image& colour, const Resol
   const bool meets =
       scene.transfer.majorant(values.value, scene.transfer.is2d() ? scene.transfer.gradientDomain() : Range{0, 0}) > 0;
   if (found == Emptiness::everything)
-    return text + "; try --tf auto, a smaller --sigma-scale, or a camera farther away (--zoom 0.5)";
-  if (!meets) return text + "; try --tf auto, or --window with two of these values";
+    return text + tryAuto + ", a smaller " + words.nameOf("sigma-scale") + ", or a camera farther away (" +
+           words.nameOf("zoom") + " 0.5)";
+  if (!meets) return text + tryAuto + ", or " + words.nameOf("window") + " with two of these values";
   const bool clipped = !scene.clipPlanes.empty() || scene.clipBox.has_value();
-  return text + "; try --tf auto, a larger --sigma-scale" + (clipped ? ", no clipping" : "") +
-         ", or a camera around the volume (no --eye)";
+  return text + tryAuto + ", a larger " + words.nameOf("sigma-scale") + (clipped ? ", no clipping" : "") +
+         ", or a camera around the volume (no " + words.nameOf("eye") + ")";
 }
 
-}  // namespace umbrick::tools
+std::vector<std::string> notesOn(const Picture& picture, const ResolvedScene& scene, const AskedScene& words) {
+  std::vector<std::string> notes;
+  const auto add = [&](const auto&... parts) {
+    std::ostringstream line;
+    (line << ... << parts);
+    notes.push_back(line.str());
+  };
+  // A format that is asked for by name may round voxels; the automatic choice does not.
+  if (scene.bricks.format != "auto" && picture.stats.formatError > 0)
+    add("texels of ", scene.bricks.format, " are off by up to ", picture.stats.formatError, ", in units of the grid");
+  if (picture.stats.lightSpacing == 2 && scene.occlusion.ordinates.lightSpacing == 0)
+    add("for lack of memory light is held at every second voxel alone, which changes it by about ",
+        picture.stats.lightSpacingError, " of the whole (", words.nameOf("memory-budget"), ")");
+  if (!picture.stats.lightNote.empty()) add("light is computed on the CPU: ", picture.stats.lightNote);
+  return notes;
+}
+
+}  // namespace umbrick

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "umbrick/render/scene_drawer.h"
+
+#include <optional>
+#include <utility>
+
+#include "umbrick/atlas/resident_volume.h"
+#include "umbrick/scene/capabilities.h"
+#include "umbrick/shade/prepare.h"
+#include "umbrick/sweep/swept_bricks.h"
+
+namespace umbrick {
+namespace {
+
+// What a renderer and its bricks are made for: another one needs them anew.
+struct MadeFor {
+  Technique technique;
+  std::optional<Method> method;
+  Model model;
+  bool gradients;
+  int apron;   // that techniques on the CPU need
+  bool byAll;  // techniques can render the mode and its shading; else another one may have to be chosen
+  BrickSettings bricks;
+  bool operator==(const MadeFor&) const = default;
+};
+MadeFor madeFor(const ResolvedScene& scene) {
+  return {scene.technique,
+          occlusionMethod(scene),
+          scene.model,
+          scene.transfer.is2d(),
+          sweptBricks(scene).apron,
+          supportsMode(scene, Technique::slices) && supportsMode(scene, Technique::shearWarp),
+          scene.bricks};
+}
+
+}  // namespace
+
+struct SceneDrawer::Parts {
+  MadeFor key;
+  Engine engine;
+  std::unique_ptr<Bricks> bricks;
+  std::unique_ptr<ResidentVolume> resident;  // none on the CPU
+  std::unique_ptr<Renderer> renderer;
+};
+
+SceneDrawer::SceneDrawer(std::shared_ptr<const Volume> volume, EngineKind kind, RenderOptions options, bool refined,
+                         std::function<void(const Engine& engine)> chosen)
+    : volume_(std::move(volume)),
+      kind_(kind),
+      options_(std::move(options)),
+      refined_(refined),
+      chosen_(std::move(chosen)) {}
+
+SceneDrawer::~SceneDrawer() = default;
+
+void SceneDrawer::make(const ResolvedScene& scene) {
+  parts_.reset();
+  auto made = std::make_unique<Parts>(Parts{madeFor(scene), chooseEngine(scene, kind_), {}, {}, {}});
+  ResolvedScene decided = scene;
+  decided.technique = made->engine.technique;
+  if (made->engine.context) {
+    made->bricks = refined_ ? volume_->cutForRefinement(decided) : volume_->cut(decided);
+    made->resident =
+        std::make_unique<ResidentVolume>(*made->engine.context, *made->bricks, atlasOptions(decided, *made->bricks));
+    made->renderer = makeRenderer(*made->resident, decided, options_);
+  } else {
+    made->bricks = volume_->cutForCpu(decided);
+    made->renderer = makeRenderer(*made->bricks, decided, options_);
+  }
+  parts_ = std::move(made);
+  if (chosen_) chosen_(parts_->engine);
+}
+
+Renderer& SceneDrawer::rendererFor(const ResolvedScene& scene) {
+  if (!parts_ || parts_->key != madeFor(scene)) {
+    make(scene);
+    return *parts_->renderer;
+  }
+  ResolvedScene decided = scene;
+  decided.technique = parts_->engine.technique;
+  // Slabs that reach beyond the apron need other bricks.
+  if (parts_->renderer->sampling(decided))
+    parts_->renderer->setScene(decided);
+  else
+    make(scene);
+  return *parts_->renderer;
+}
+
+const Engine& SceneDrawer::engine() const { return parts_->engine; }
+const Bricks& SceneDrawer::bricks() const { return *parts_->bricks; }
+
+}  // namespace umbrick
