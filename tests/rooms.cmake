@@ -20,7 +20,7 @@ set(may_atlas core brick gl)
 set(may_shade core image optics scene draw brick light slice gl atlas)
 set(may_reference core image optics scene grid)
 set(may_render core image optics ingest grid vdb convert scene draw brick light slice sweep gl atlas shade reference)
-set(may_check core image optics grid scene draw brick slice sweep gl atlas shade render)
+set(may_check core image optics ingest grid vdb scene draw brick slice sweep gl atlas shade reference render)
 set(may_study core image optics grid scene draw brick slice sweep gl atlas shade reference render)
 set(rooms core image optics ingest grid vdb convert scene draw brick light slice sweep gl atlas shade reference render check study)
 

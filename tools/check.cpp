@@ -1,4 +1,4 @@
-// umbrick check tells whether bricks change anything: it measures the invariants of the renderer on a volume.
+// umbrick check tells whether bricks change anything, in this renderer on a volume or in others by a kit.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "check_kit.h"
 #include "command.h"
 #include "opened_scene.h"
 #include "progress.h"
@@ -27,6 +28,7 @@ constexpr int kPictureEdge = 96;
 struct CheckCommand {
   std::shared_ptr<SceneOptions> scene;
   CheckOptions check;
+  KitCommand kit;
   std::string backend = "auto", lightSweep = "auto";
   bool json = false;
 };
@@ -129,7 +131,29 @@ void tellStopped(const std::vector<InvariantResult>& results) {
             << " invariants are measured, the rest is not\n";
 }
 
+// Returns the case of the volume that is given, or the built-in ones.
+std::vector<KitCase> casesFor(const CheckCommand& command) {
+  const SceneOptions& given = *command.scene;
+  if (given.input.empty()) return hardCases();
+  refuseBackdrop(given);
+  StopRequest stop;
+  ProgressBar bar("loading " + given.input.filename().string());
+  const OpenedScene opened =
+      openScene(given, makeSceneOf(Model::emission, given), showShare(bar, stop, "interrupted; nothing was written"));
+  bar.clear();
+  std::cerr << opened.chosen;
+  return {kitCaseOf(given.input.stem().string(), opened.volume->grid(), opened.volume->resolve(opened.scene))};
+}
+
+int workOnKit(const CLI::App& options, CheckCommand command) {
+  checkKitOptions(options, command.kit, !command.scene->input.empty());
+  if (!command.kit.against.empty()) return judgeAnswers(command.kit, command.json);
+  command.kit.options.seed = command.check.seed;
+  return writeKit(command.kit, [&] { return casesFor(command); });
+}
+
 int check(const CheckCommand& command) {
+  if (command.scene->input.empty()) throw UsageError("input is required, but for --export and --against");
   for (const int edge : command.check.edges)
     if (edge % 8 != 0) throw UsageError("--edges: " + std::to_string(edge) + " is not a multiple of 8");
   refuseBackdrop(*command.scene);
@@ -176,6 +200,8 @@ Command addCheck(CLI::App& app) {
   CLI::App* sub = app.add_subcommand(
       "check", "Measure on a volume that bricks and culling change nothing and that techniques agree.");
   command->scene = addSceneOptions(*sub);
+  // A kit has cases of its own.
+  sub->get_option("input")->required(false);
   addBackendOption(*sub, command->backend);
   addLightSweepOption(*sub, command->lightSweep);
   // The check decides what is compared: emission and cone, with and without bricks and culling. So these
@@ -193,11 +219,13 @@ Command addCheck(CLI::App& app) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str()
       ->group(group);
-  sub->add_option("--seed", command->check.seed, "of the choice of bricks whose voxels are read")
+  sub->add_option("--seed", command->check.seed,
+                  "of the choice of bricks whose voxels are read, and of the points of a kit")
       ->capture_default_str()
       ->group(group);
   sub->add_flag("--json", command->json, "print JSON instead of a table")->group(group);
-  return {sub, [command] { return check(*command); }};
+  addKitOptions(*sub, command->kit);
+  return {sub, [command, sub] { return command->kit.asked() ? workOnKit(*sub, *command) : check(*command); }};
 }
 
 }  // namespace umbrick::tools

@@ -113,7 +113,7 @@ std::size_t middleBrick(const Bricks& bricks) {
 }  // namespace
 
 // Brick edges, pools, cameras and slices on faces are those of CheckOptions and checkViews.
-TEST_CASE("All invariants hold on a dense volume", "[check]") {
+TEST_CASE("All invariants hold on a dense volume", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({45, 50, 40}, {-13, 5, 100});
@@ -122,7 +122,7 @@ TEST_CASE("All invariants hold on a dense volume", "[check]") {
   checkAllHold(*context, grid, sceneFor(grid, softMedium()), options);
 }
 
-TEST_CASE("All invariants hold on noise, whose neighbouring voxels differ by as much as they can", "[check]") {
+TEST_CASE("All invariants hold on noise, whose neighbouring voxels differ by as much as they can", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeNoise({30, 26, 34}, {1, -40, -3});
@@ -136,7 +136,7 @@ TEST_CASE("All invariants hold on noise, whose neighbouring voxels differ by as 
   checkAllHold(*context, grid, scene, options);
 }
 
-TEST_CASE("All invariants hold on a sparse volume far from the origin", "[check]") {
+TEST_CASE("All invariants hold on a sparse volume far from the origin", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeSparse({1'000'003, -500'000, -77}, 3, 8, 90);
@@ -146,7 +146,7 @@ TEST_CASE("All invariants hold on a sparse volume far from the origin", "[check]
   checkAllHold(*context, grid, sceneFor(grid, softMedium()), options);
 }
 
-TEST_CASE("All invariants hold for a rotated, sheared and mirrored volume", "[check]") {
+TEST_CASE("All invariants hold for a rotated, sheared and mirrored volume", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = withTransform(makeSparse({-40, 0, 9}, 5, 6, 64), crookedTransform());
@@ -159,7 +159,7 @@ TEST_CASE("All invariants hold for a rotated, sheared and mirrored volume", "[ch
   for (const InvariantResult& result : results) CHECK(result.passed);
 }
 
-TEST_CASE("All invariants hold where the background is visible", "[check]") {
+TEST_CASE("All invariants hold where the background is visible", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeSphereLevelSet(12, 1, {3, 40, -5});
@@ -173,7 +173,7 @@ TEST_CASE("All invariants hold where the background is visible", "[check]") {
 
 // Slices only multiply what is on the lattice of the light, which depends on the view and not on bricks: the limits
 // have no room for light that is left out.
-TEST_CASE("All invariants hold for light by ordinates", "[check]") {
+TEST_CASE("All invariants hold for light by ordinates", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   for (const ScalarGrid& grid :
@@ -201,7 +201,7 @@ TEST_CASE("All invariants hold for light by ordinates", "[check]") {
 
 // A slab from 1 to 1 gets the mean of both sides of a step at 1, so that it can be seen, though the function
 // is 0 there.
-TEST_CASE("Culling keeps bricks whose lowest value is at a falling step", "[check]") {
+TEST_CASE("Culling keeps bricks whose lowest value is at a falling step", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeFilled(
@@ -217,7 +217,7 @@ TEST_CASE("Culling keeps bricks whose lowest value is at a falling step", "[chec
   CHECK(find(results, "culled equals not culled, emission").passed);
 }
 
-TEST_CASE("Sound bricks pass what faulty ones fail", "[check]") {
+TEST_CASE("Sound bricks pass what faulty ones fail", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto results = checkFaulty(*context, {});
@@ -225,7 +225,7 @@ TEST_CASE("Sound bricks pass what faulty ones fail", "[check]") {
   for (const InvariantResult& result : results) CHECK(result.passed);
 }
 
-TEST_CASE("One wrong apron voxel is found", "[check]") {
+TEST_CASE("One wrong apron voxel is found", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
@@ -239,7 +239,7 @@ TEST_CASE("One wrong apron voxel is found", "[check]") {
   CHECK(aprons.value == 1);
 }
 
-TEST_CASE("A layer of wrong apron voxels is found in samples and pictures", "[check]") {
+TEST_CASE("A layer of wrong apron voxels is found in samples and pictures", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
@@ -258,7 +258,7 @@ TEST_CASE("A layer of wrong apron voxels is found in samples and pictures", "[ch
   CHECK_FALSE(find(results, "bricked equals unbricked, cone").passed);
 }
 
-TEST_CASE("A brick that is missing is found, also by its shadow of ordinates", "[check]") {
+TEST_CASE("A brick that is missing is found, also by its shadow of ordinates", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({30, 30, 30}, {3, -7, 1});
@@ -280,7 +280,7 @@ TEST_CASE("A brick that is missing is found, also by its shadow of ordinates", "
   CHECK_FALSE(find(results, "V across bricks, cone").passed);
 }
 
-TEST_CASE("A brick that is missing is found", "[check]") {
+TEST_CASE("A brick that is missing is found", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
@@ -294,7 +294,7 @@ TEST_CASE("A brick that is missing is found", "[check]") {
 
 // Unlike the other laws this one allows for the errors of both techniques, so that it finds what is larger than they
 // are.
-TEST_CASE("Slices without a layer of bricks differ from techniques on the CPU", "[check]") {
+TEST_CASE("Slices without a layer of bricks differ from techniques on the CPU", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
@@ -305,7 +305,7 @@ TEST_CASE("Slices without a layer of bricks differ from techniques on the CPU", 
   CHECK_FALSE(find(results, "other techniques agree with slices, cone").passed);
 }
 
-TEST_CASE("A brick that is drawn twice is found", "[check]") {
+TEST_CASE("A brick that is drawn twice is found", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
@@ -318,7 +318,7 @@ TEST_CASE("A brick that is drawn twice is found", "[check]") {
   CHECK_FALSE(find(results, "bricked equals unbricked, emission").passed);
 }
 
-TEST_CASE("A brick that is not in its place is found", "[check]") {
+TEST_CASE("A brick that is not in its place is found", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto results = checkFaulty(
@@ -329,7 +329,7 @@ TEST_CASE("A brick that is not in its place is found", "[check]") {
 }
 
 // Where bricks overlap and do not agree, the order shows.
-TEST_CASE("Bricks whose order matters are found", "[check]") {
+TEST_CASE("Bricks whose order matters are found", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
@@ -345,7 +345,7 @@ TEST_CASE("Bricks whose order matters are found", "[check]") {
   CHECK_FALSE(find(results, "bricks drawn in reverse, cone").passed);
 }
 
-TEST_CASE("A range by which a visible brick is culled is found", "[check]") {
+TEST_CASE("A range by which a visible brick is culled is found", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto results = checkFaulty(*context, [](FaultyBricks& bricks) {
@@ -360,7 +360,7 @@ TEST_CASE("A range by which a visible brick is culled is found", "[check]") {
 }
 
 // Bricks beyond the domain hold nothing, but slabs reach into the domain from there.
-TEST_CASE("Bricks that are missing around a volume are found", "[check]") {
+TEST_CASE("Bricks that are missing around a volume are found", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const auto withoutRim = [](FaultyBricks& bricks) {
@@ -378,7 +378,7 @@ TEST_CASE("Bricks that are missing around a volume are found", "[check]") {
   CHECK_FALSE(border.passed);
 }
 
-TEST_CASE("What cannot be checked is reported with the reason", "[check]") {
+TEST_CASE("What cannot be checked is reported with the reason", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({10, 10, 10});
@@ -390,7 +390,7 @@ TEST_CASE("What cannot be checked is reported with the reason", "[check]") {
 }
 
 // Thick slabs need wide aprons, and those of a view whose slices lie on faces stay there.
-TEST_CASE("All invariants hold where the cone has thicker slabs than emission", "[check]") {
+TEST_CASE("All invariants hold where the cone has thicker slabs than emission", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({30, 26, 34}, {1, -40, -3});
@@ -405,7 +405,7 @@ TEST_CASE("All invariants hold where the cone has thicker slabs than emission", 
   checkAllHold(*context, grid, scene, options);
 }
 
-TEST_CASE("A check that is stopped tells which invariants it has measured", "[check]") {
+TEST_CASE("A check that is stopped tells which invariants it has measured", "[check][slow]") {
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = makeDense({20, 20, 20}, {3, -7, 1});
