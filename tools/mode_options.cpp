@@ -33,22 +33,28 @@ void addSurfaceOptions(CLI::App& command, SceneOptions& options) {
       ->group(group);
 }
 
+void addMeshOption(CLI::App& command, SceneOptions& options) {
+  command
+      .add_option(
+          "--mesh", options.mesh,
+          "opaque geometry in the volume: .ply, .obj or .stl, world units; hides what lies behind it, is shaded "
+          "by --shading and --shading-light, casts no shadow and gets none, and is not clipped; drawn by rays")
+      ->group("Mesh");
+}
+
 void tellUnusedByMode(const SceneOptions& options, const SceneSettings& scene, bool layers) {
   if (!traitsOf(scene.mode).medium)
     for (const char* option : {"gradient-opacity", "gradient-unit"})
       if (options.has(option))
         std::cerr << options.nameOf(option) << " has no effect on the mode " << modeName(scene.mode)
                   << ", which shows no medium\n";
-  if (scene.mode == Mode::integrate || scene.mode == Mode::hybrid) return;
+  if (!traitsOf(scene.mode).projection) return;
   const auto tell = [&](const std::string& option) {
     std::cerr << option << " has no effect on the mode " << modeName(scene.mode) << '\n';
   };
-  const bool lit = isShaded(scene) && traitsOf(scene.model).sources;
-  if (options.has("model") && !lit) tell(options.nameOf("model"));
-  for (const char* option : {"method", "theta", "directions"})
+  for (const char* option : {"model", "method", "theta", "directions", "ambient"})
     if (options.has(option)) tell(options.nameOf(option));
-  if (options.has("ambient") && traitsOf(scene.mode).projection) tell(options.nameOf("ambient"));
-  if (layers && traitsOf(scene.mode).projection)
+  if (layers)
     std::cerr << "--layers: a picture of the mode " << modeName(scene.mode)
               << " has neither V nor Z, and its layer value in any case\n";
 }

@@ -254,6 +254,9 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNam
   addFieldOptions(command, o, "Mode");
   addSurfaceOptions(command, o);
 
+  addFieldOptions(command, o, "Mesh");
+  addMeshOption(command, o);
+
   addFieldOptions(command, o, "Light");
   command
       .add_option("--quality", o.quality,

@@ -20,6 +20,8 @@ uniform vec4 clip_planes[kClipPlanes > 0 ? kClipPlanes : 1];  // the medium is w
 // xyz is the corner of the whole brick, all of which is to be walked through. Where w is 0 there is nothing to see, and x
 // is the distance to the next cell with something, in steps to any of the 26 neighbours.
 layout(binding = kSlotsUnit) uniform usampler3D slots;
+// kEnds, R32F: depth along the view axis at which the ray of a pixel ends, world units.
+layout(binding = kEndUnit) uniform sampler2D ends;
 uniform vec3 part;             // voxels of a cell
 uniform vec3 brick;            // voxels of a brick
 uniform ivec3 first_cell;      // the first cell of the table
@@ -41,9 +43,11 @@ vec2 between(Ray ray, vec3 low, vec3 high) {
   return vec2(max(max(nearer.x, nearer.y), nearer.z), min(min(farther.x, farther.y), farther.z));
 }
 
-// Cuts the ray at the eye and where clip planes end the medium.
+// Cuts the ray at the eye, where it ends and where clip planes end the medium.
 void clipRay(inout Ray ray) {
   ray.kept = vec2(-first_depth / segment_depth, 1e30);
+  if (kEnds != 0)
+    ray.kept.y = min(ray.kept.y, (texelFetch(ends, ivec2(gl_FragCoord.xy), 0).r - first_depth) / segment_depth);
   for (int i = 0; i < kClipPlanes; ++i) {
     float distance = dot(clip_planes[i].xyz, ray.at) + clip_planes[i].w, rate = dot(clip_planes[i].xyz, ray.step);
     if (rate > 0.0)

@@ -22,6 +22,7 @@ const int kMoreAtlasUnit = 10;         // of rays: the second texture of the atl
 const int kMoreLightUnit = 13;         // the same for light
 const int kBoundsUnit = 5;             // of projections: what values a cell may have
 const int kStartUnit = 2;              // of rays: the depth from which each sees the medium
+const int kEndUnit = 8;                // of rays: the depth at which each ends
 
 // Rays read up to so many textures of the atlas in one draw.
 const int kRayTextures = 4;

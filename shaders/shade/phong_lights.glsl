@@ -30,16 +30,16 @@ vec2 reflectedShares(vec3 normal, vec3 viewer, vec3 towards) {
                                                                    dot(towards, viewer), phong.w));
 }
 
-// Returns what a surface of a colour sends to the viewer.
-vec3 reflectedBy(vec3 colour, vec3 normal, vec3 viewer) {
-  vec3 sum = phong.x * colour;
+// Returns what a surface of a colour sends to the viewer. @param arriving  share of the light that reaches it
+vec3 reflectedBy(vec3 colour, vec3 normal, vec3 viewer, vec3 arriving) {
+  vec3 sum = vec3(0.0);
   if (kShadingLights == 0) {
     vec2 shares = reflectedShares(normal, viewer, viewer);
-    return sum + shares.x * colour + shares.y;
+    sum = shares.x * colour + shares.y;
   }
   for (int i = 0; i < kShadingLights; ++i) {
     vec2 shares = reflectedShares(normal, viewer, light_towards[i]);
     sum += light_radiance[i] * (shares.x * colour + shares.y);
   }
-  return sum;
+  return phong.x * colour + arriving * sum;
 }

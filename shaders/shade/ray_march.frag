@@ -1,7 +1,7 @@
 // Marches the view ray of a pixel through the bricks of one run, from segment to segment, nearest first. The ends of a
 // segment are shared with its neighbours, so that a value is read once where slices read it twice.
 // Reads   atlas, more_atlas, transfer (see medium.glsl)   slots (see brick_walk.glsl)
-//         light, more_light  kLit: share of whole_light that reaches a voxel
+//         light, more_light  kLit: see light_share.glsl
 //         start  kStarts, R32F: depth along the view axis from which the ray sees the medium, world units
 //         kShaded: the medium reflects lights by Phong's model, see shaded_voxels.glsl
 // Writes  eye    premultiplied RGBA, blended under what is nearer: (ONE_MINUS_DST_ALPHA, ONE)
@@ -12,13 +12,11 @@
 #include "optics/slab.glsl"
 #include "optics/ramp.glsl"
 #include "shade/brick_walk.glsl"
+#include "shade/light_share.glsl"
 #include "shade/medium.glsl"
 #include "shade/shaded_voxels.glsl"
 #include "shade/voxel_fetch.glsl"
-layout(binding = kLightUnit) uniform sampler3D light;
-layout(binding = kMoreLightUnit) uniform sampler3D more_light[kRayTextures - 1];
 layout(binding = kStartUnit) uniform sampler2D start;
-uniform vec3 whole_light;        // light that arrives where nothing is in the way
 uniform vec3 inverse_size;       // of the atlas's textures
 uniform float saturation;        // transmittance below which a ray ends
 layout(location = 0) out vec4 eye;
@@ -30,14 +28,6 @@ vec2 texelAt(vec3 point, int number) {
   for (int i = 1; i < kTextures; ++i)
     if (number == i) texel = textureLod(more_atlas[i - 1], point, 0.0).rg;
   return texel;
-}
-
-// Returns the light that arrives at a point as shares of whole_light, in rgb, and by power in a.
-vec4 arrivingAt(vec3 point, int number) {
-  vec4 texel = textureLod(light, point, 0.0);
-  for (int i = 1; i < kTextures; ++i)
-    if (number == i) texel = textureLod(more_light[i - 1], point, 0.0);
-  return kColoured != 0 ? vec4(texel.rgb, dot(texel.rgb, whole_light) / dot(whole_light, vec3(1.0))) : texel.rrrr;
 }
 
 // Tells whether a segment between two values may hold any medium. Most segments of most volumes hold none.
@@ -84,8 +74,10 @@ void main() {
         else
           addSegment(piece, front_end, back_end, length_of_this);
         vec4 arriving = kLit != 0 ? arrivingAt(at + middle * step, number) : vec4(1.0);
+        // What is reflected is light and all; the medium's own visibility is no part of it.
         if (kShaded != 0)
-          arriving.rgb = reflectedBetween(ray.at + middle * ray.step + to_texels - 0.5, number, -to_texels);
+          arriving = vec4(reflectedBetween(ray.at + middle * ray.step + to_texels - 0.5, number, -to_texels,
+                                           arriving.rgb), 1.0);
         float through = 1.0 - sum.a;
         sum += through * vec4(piece.eye.rgb * arriving.rgb, piece.eye.a);
         seen += through * piece.eye.a * vec2(arriving.a, first_depth + middle * segment_depth);
@@ -97,7 +89,7 @@ void main() {
       if (sum.a > full) last = until = k;
     }
   }
-  eye = kLit != 0 ? vec4(sum.rgb * whole_light, sum.a) : sum;
+  eye = kLit != 0 && kShaded == 0 ? vec4(sum.rgb * whole_light, sum.a) : sum;
   count = segments;
   if (kAux != 0) aux = vec4(seen, 0.0, sum.a);
 }

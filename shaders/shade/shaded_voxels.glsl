@@ -6,7 +6,7 @@ uniform vec3 index_to_world[3];  // world units per voxel
 uniform vec3 from_eye;           // from the eye to the first voxel that places are counted from, world units
 
 // @param place  of the voxel, voxels from there
-vec3 reflectedAtVoxel(ivec3 texel, int number, vec3 place) {
+vec3 reflectedAtVoxel(ivec3 texel, int number, vec3 place, vec3 arriving) {
   const ivec3 x = ivec3(1, 0, 0), y = ivec3(0, 1, 0), z = ivec3(0, 0, 1);
   vec3 gradient = vec3(codeAt(texel + x, number) - codeAt(texel - x, number),
                        codeAt(texel + y, number) - codeAt(texel - y, number),
@@ -15,17 +15,18 @@ vec3 reflectedAtVoxel(ivec3 texel, int number, vec3 place) {
   if (kPerspective != 0)
     viewer = -normalize(from_eye + place.x * index_to_world[0] + place.y * index_to_world[1] +
                         place.z * index_to_world[2]);
-  return reflectedBy(vec3(1.0), normalOf(gradient, viewer), viewer);
+  return reflectedBy(vec3(1.0), normalOf(gradient, viewer), viewer, arriving);
 }
 
 // @param point  in the atlas, texels, where voxels are at whole numbers; shift: from there to places
-vec3 reflectedBetween(vec3 point, int number, vec3 shift) {
+// @param arriving  share of the light that reaches the point
+vec3 reflectedBetween(vec3 point, int number, vec3 shift, vec3 arriving) {
   vec3 voxel = floor(point), share = point - voxel, sum = vec3(0.0);
   for (int corner = 0; corner < 8; ++corner) {
     ivec3 upper = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
     vec3 weights = mix(1.0 - share, share, vec3(upper));
     ivec3 texel = ivec3(voxel) + upper;
-    sum += weights.x * weights.y * weights.z * reflectedAtVoxel(texel, number, vec3(texel) + shift);
+    sum += weights.x * weights.y * weights.z * reflectedAtVoxel(texel, number, vec3(texel) + shift, arriving);
   }
   return sum;
 }

@@ -3,16 +3,18 @@
 // the spaces between voxels. A voxel is inside of a surface where its value is larger. All crossings of the cubic in a
 // cell are found, so that no feature is lost, however thin.
 // Reads   atlas, more_atlas   slots (see brick_walk.glsl)
+//         light, more_light  kLit: see light_share.glsl
 // Writes  eye      premultiplied RGBA, blended under what is nearer: (ONE_MINUS_DST_ALPHA, ONE)
 //         count    number of cells that were looked at, added
 //         depth_sum, normal, nearest  kAux, blended as eye:
-//           depth_sum  r: places along the ray, weighted by opacity
+//           depth_sum  r: places along the ray, weighted by opacity; g: shares of the light that arrive, the same
 //           normal     of the nearest surface, in the world, on the viewer's side
 //           nearest    r: its place along the ray, in segments; g: its number
 // Source of the walk: Amanatides and Woo 1987, doi:10.2312/egtp.19871000
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/brick_walk.glsl"
 #include "shade/cell_cubic.glsl"
+#include "shade/light_share.glsl"
 #include "shade/phong_lights.glsl"
 #include "shade/voxel_fetch.glsl"
 uniform vec4 surfaces[kSurfaces];       // colour and opacity
@@ -20,6 +22,9 @@ uniform vec4 surface_codes[kSurfaces];  // x: value of a surface, in codes above
 uniform float base_code;                // the least of them
 uniform float highest;                  // the largest, above base_code
 uniform vec3 ambient_light;
+uniform vec3 world_to_index[3];         // columns of the matrix that takes directions there
+uniform float light_distance;           // in front of a surface, where its light is taken: see scene/surface_light.h
+uniform vec3 inverse_size;              // of the atlas's textures
 uniform float saturation;               // transmittance below which a ray ends
 uniform float place_shift;              // from places of this run to those of the picture, segments
 layout(location = 0) out vec4 eye;
@@ -30,7 +35,7 @@ layout(location = 4) out vec4 nearest;
 
 // What is known of the ray so far.
 vec4 sum = vec4(0.0);
-float depths = 0.0;
+vec2 seen = vec2(0.0);  // places and arriving light, weighted by opacity
 vec4 first_normal = vec4(0.0), first_place = vec4(0.0);
 vec3 viewer = vec3(0.0);
 int above = 0;      // bit k: the ray is above surface k
@@ -45,18 +50,33 @@ vec3 gradientAt(ivec3 texel, int number, vec3 share) {
                     codeBetween(texel + z, number, share) - codeBetween(texel - z, number, share));
 }
 
+// Returns the share of the light that reaches a point of a surface. Beyond planes that cut the medium there is more
+// light than arrives.
+vec4 arrivingAtSurface(vec3 texel, int number, vec3 facing) {
+  vec3 way = facing.x * world_to_index[0] + facing.y * world_to_index[1] + facing.z * world_to_index[2];
+  vec3 size = abs(way);
+  way *= light_distance / max(size.x, max(size.y, size.z));
+  return min(arrivingAt((texel + way + 0.5) * inverse_size, number), 1.0);
+}
+
 // Adds a crossing. @return whether the ray goes on
 bool tell(ivec3 texel, int number, vec3 share, float place, int surface) {
-  vec3 facing = normalOf(gradientAt(texel, number, clamp(share, 0.0, 1.0)), viewer);
+  share = clamp(share, 0.0, 1.0);
+  vec3 facing = normalOf(gradientAt(texel, number, share), viewer);
   vec3 colour = surfaces[surface].rgb;
   float part_of = (1.0 - sum.a) * surfaces[surface].a;
-  if (kShaded != 0) colour = reflectedBy(colour, facing, viewer);
+  vec4 arriving = vec4(1.0);
+  if (kLit != 0) arriving = arrivingAtSurface(vec3(texel) + share, number, facing);
+  if (kShaded != 0)
+    colour = reflectedBy(colour, facing, viewer, arriving.rgb);
+  else if (kLit != 0)
+    colour *= arriving.rgb * whole_light;
   if (sum.a == 0.0 && part_of > 0.0) {
     first_normal = vec4(facing, 1.0);
     first_place = vec4(place + place_shift, float(surface), 0.0, 1.0);
   }
   sum += part_of * vec4(ambient_light * colour, 1.0);
-  depths += part_of * (place + place_shift);
+  seen += part_of * vec2(place + place_shift, arriving.a);
   return sum.a < 1.0 - saturation;
 }
 
@@ -187,7 +207,7 @@ void main() {
   eye = sum;
   count = cells;
   if (kAux != 0) {
-    depth_sum = vec4(depths, 0.0, 0.0, sum.a);
+    depth_sum = vec4(seen, 0.0, sum.a);
     normal = first_normal;
     nearest = first_place;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/draw/hybrid_picture.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -18,11 +19,11 @@ void addMediumWork(RenderStats& sum, const RenderStats& medium) {
   sum.visibleBricks += medium.visibleBricks;
   sum.brickSlots += medium.brickSlots;
   sum.bufferBytes += medium.bufferBytes;
-  sum.directions = medium.directions;
+  sum.directions = std::max(sum.directions, medium.directions);
   sum.windowBytes = medium.windowBytes;
-  sum.lightMs = medium.lightMs;
-  sum.lightSpacing = medium.lightSpacing;
-  sum.lightSpacingError = medium.lightSpacingError;
+  sum.lightMs += medium.lightMs;
+  sum.lightSpacing = std::max(sum.lightSpacing, medium.lightSpacing);
+  sum.lightSpacingError = std::max(sum.lightSpacingError, medium.lightSpacingError);
 }
 
 }  // namespace

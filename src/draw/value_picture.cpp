@@ -33,10 +33,21 @@ void checkSurfaces(const ResolvedScene& scene, const Range& values, int apron) {
                           std::to_string(apron));
 }
 
+void checkSurfaceLight(const ResolvedScene& scene, bool gradients) {
+  if (!occlusionMethod(scene)) return;
+  if (!supports(Method::lightVolume, scene.model))
+    throw InvalidArgument("model: " + modelName(scene.model) +
+                          " on surfaces is integrated by the reference alone; rays render emission, cone, ambient and "
+                          "lights");
+  if (scene.method != Method::lightVolume)
+    throw InvalidArgument("method: " + methodName(scene.method) +
+                          " is one of slices; surfaces take light from a light volume");
+  requireClassification(scene);
+  if (scene.transfer.is2d() && !gradients)
+    throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
+}
+
 void checkShading(const ResolvedScene& scene, int apron) {
-  if (traitsOf(scene.model).occlusion)
-    throw InvalidArgument("shading.kind: phong in a medium goes with the model emission, found " +
-                          modelName(scene.model));
   if (apron < kGradientApron)
     throw InvalidArgument("bricks: shading needs an apron of " + std::to_string(kGradientApron) + " voxels, found " +
                           std::to_string(apron));

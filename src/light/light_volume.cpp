@@ -57,7 +57,28 @@ SortedLight sortLight(const std::vector<LightDirection>& directions, const glm::
   return sorted;
 }
 
+// Tells whether there is a surface between voxels of these values. A voxel is inside of one where its value is larger.
+bool crosses(const std::vector<double>& surfaces, float low, float high) {
+  return std::ranges::any_of(surfaces, [&](double value) { return low <= value && high > value; });
+}
+
 }  // namespace
+
+bool showsBackground(const TransferFunction& transfer, const Bricks& volume) {
+  return !volume.domain.empty() && !transfer.isTransparent({volume.background, volume.background});
+}
+
+LightMedium lightAtSurfaces(const Bricks& volume, const ResolvedScene& scene, std::vector<LightDirection> directions) {
+  LightMedium medium{scene.transfer, std::move(directions), {}, {}, scene.occlusion.ordinates.lightSpacing};
+  for (const SceneSurface& surface : scene.surfaces) medium.surfaces.push_back(surface.value);
+  for (const Brick& brick : volume.bricks)
+    if (!scene.bricks.culling || !scene.transfer.isTransparent(brick.value, brick.gradient) ||
+        crosses(medium.surfaces, brick.value.min, brick.value.max))
+      medium.cells.push_back(brick.origin);
+  if (showsBackground(scene.transfer, volume))
+    for (const Brick& brick : backgroundBricks(volume)) medium.cells.push_back(brick.origin);
+  return medium;
+}
 
 bool cutsMedium(const glm::dvec4& plane, std::span<const glm::ivec3> cells, const glm::ivec3& interior) {
   return std::ranges::any_of(cells, [&](const glm::ivec3& cell) {
@@ -145,7 +166,7 @@ class LightVolume::Implementation {
                  const SortedLight& sorted, const std::vector<glm::ivec3>& cells, std::uint64_t mostBytes) {
     // Between other ends of the function the steps of its table are others, and all values are rounded to others.
     const std::vector<double>&from = before.transfer.values(), &to = medium.transfer.values();
-    if (from.front() != to.front() || from.back() != to.back()) return false;
+    if (from.front() != to.front() || from.back() != to.back() || before.surfaces != medium.surfaces) return false;
     const std::vector<glm::ivec3> changed = changedCells(before, medium, volume_);
     if (before.directions != medium.directions) {
       if (!changed.empty()) return false;
@@ -191,7 +212,7 @@ class LightVolume::Implementation {
     bricks.extinction = &extinction;
     bricks.planes = medium.planes;
     bricks.busy = std::make_unique<std::mutex[]>(bricks.origins.size());
-    readValues(bricks, medium.transfer, cells);
+    readValues(bricks, medium, cells);
     std::atomic<std::uint64_t> updates{0};
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, tasks.size(), 1),
@@ -206,18 +227,19 @@ class LightVolume::Implementation {
     bricks.extinction = nullptr;
   }
 
-  void readValues(SweptBricks& bricks, const TransferFunction& transfer, const std::vector<glm::ivec3>& cells) const {
+  void readValues(SweptBricks& bricks, const LightMedium& medium, const std::vector<glm::ivec3>& cells) const {
     const std::size_t voxels = volume_.layout.voxels();
     bricks.values.assign(bricks.origins.size() * voxels, 0.0f);
     bricks.lit.assign(bricks.origins.size(), LitBlocks(bricks.layout, bricks.light));
     tbb::enumerable_thread_specific<std::vector<float>> scratches;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bricks.origins.size(), 1), [&](const auto& range) {
       std::vector<float>& gradients = scratches.local();
-      if (transfer.is2d()) gradients.resize(voxels);
+      if (medium.transfer.is2d()) gradients.resize(voxels);
       for (std::size_t brick = range.begin(); brick != range.end(); ++brick) {
         if (!std::ranges::binary_search(cells, bricks.origins[brick], comesBefore)) continue;
         const std::span<float> values = std::span(bricks.values).subspan(brick * voxels, voxels);
         volume_.read(bricks.origins[brick], values, gradients);
+        if (!medium.surfaces.empty()) findSurfaces(values, medium.surfaces, bricks.lit[brick]);
         bricks.extinction->toSteps(values, gradients);
         findLit(values.data(), *bricks.extinction, bricks.lit[brick]);
       }
@@ -228,10 +250,23 @@ class LightVolume::Implementation {
   void findLit(const float* values, const ExtinctionTable& extinction, LitBlocks& lit) const {
     const auto [least, most] = std::minmax_element(values, values + volume_.layout.voxels());
     if (extinction.isOpaque(*least, *most)) return lit.markAll();
+    markCells(values, lit, [&](float low, float high) { return !extinction.isTransparent(low, high); });
+  }
+
+  // Marks those that surfaces cross.
+  void findSurfaces(std::span<const float> values, const std::vector<double>& surfaces, LitBlocks& lit) const {
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    if (crosses(surfaces, *least, *most))
+      markCells(values.data(), lit, [&](float low, float high) { return crosses(surfaces, low, high); });
+  }
+
+  // Marks the blocks with cells of eight voxels for whose least and largest value isWanted(low, high) holds.
+  template <class IsWanted>
+  void markCells(const float* values, LitBlocks& lit, const IsWanted& isWanted) const {
     const glm::ivec3 edge = volume_.layout.edge();
     const int apron = volume_.layout.apron;
     std::vector<float> low(static_cast<std::size_t>(edge.x)), high(low);
-    std::vector<char> medium(static_cast<std::size_t>(edge.x) - 1);
+    std::vector<char> wanted(static_cast<std::size_t>(edge.x) - 1);
     for (int z = 0; z + 1 < edge.z; ++z)
       for (int y = 0; y + 1 < edge.y; ++y) {
         const float* a = values + (std::ptrdiff_t(z) * edge.y + y) * edge.x;
@@ -241,8 +276,8 @@ class LightVolume::Implementation {
           high[static_cast<std::size_t>(x)] = std::max(std::max(a[x], b[x]), std::max(c[x], d[x]));
         }
         for (std::size_t x = 0; x + 1 < low.size(); ++x)
-          medium[x] = !extinction.isTransparent(std::min(low[x], low[x + 1]), std::max(high[x], high[x + 1]));
-        lit.markRow(medium.data(), y - apron, z - apron);
+          wanted[x] = isWanted(std::min(low[x], low[x + 1]), std::max(high[x], high[x + 1]));
+        lit.markRow(wanted.data(), y - apron, z - apron);
       }
   }
 

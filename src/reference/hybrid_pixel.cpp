@@ -1,32 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference/hybrid_pixel.h"
 
+#include "umbrick/scene/capabilities.h"
+
 namespace umbrick {
 
 HybridPixel::HybridPixel(const ValueSpace& surfaces, const ReferenceSpace& medium, const ReferenceOptions& options,
                          double step, double voxelEdge, const GoOn& goOn)
-    : space_(medium), surface_(surfaces, medium.places), medium_(medium, options, step, voxelEdge, goOn) {}
+    : space_(medium), surface_(surfaces, medium.places, nullptr), medium_(medium, options, step, voxelEdge, goOn) {}
 
-std::optional<HybridResult> HybridPixel::integrate(int x, int y) {
-  HybridResult result;
+std::optional<ValueResult> HybridPixel::integrate(int x, int y) {
+  const bool lit = traitsOf(space_.scene.model).occlusion;
   ValueMean mean;
   for (const glm::dvec2& place : space_.places) {
     const EyeRays::Ray ray = space_.rays.through(x, y, place);
-    ValueResult one = surface_.meet(ray);
-    double visibility = one.colour.w;
+    const std::optional<MeshEnd> end = space_.mesh ? space_.mesh->find(ray) : std::nullopt;
+    std::optional<ValueResult> met = surface_.meet(ray, endOf(end), lit ? &medium_ : nullptr);
+    if (!met) return std::nullopt;
+    ValueResult& one = *met;
     if (one.first && one.colour.w < 1) {
-      const std::optional<PixelResult> behind = medium_.integrate(ray, *one.first);
+      const std::optional<PixelResult> behind = medium_.integrate(ray, Interval{*one.first, endOf(end)});
       if (!behind) return std::nullopt;
       const double through = 1 - one.colour.w;
       one.colour += through * glm::dvec4(space_.scene.ambient * behind->light, behind->opacity);
       one.depth += through * behind->depth;
-      visibility += through * behind->visibility;
+      one.visibility += through * behind->visibility;
     }
+    if (end) layOverMesh(*end, ray, space_.scene.ambient, one);
     mean.add(one);
-    result.visibility += visibility / static_cast<double>(space_.places.size());
   }
-  result.surface = mean.result();
-  return result;
+  return mean.result();
 }
 
 RayCounts HybridPixel::counts() const {

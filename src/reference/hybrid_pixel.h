@@ -8,20 +8,14 @@
 
 namespace umbrick {
 
-/// What is found out about a pixel, the mean over its samples.
-struct HybridResult {
-  ValueResult surface;  // with the colour and the depth of both
-  double visibility = 0;
-};
-
-/// Renders pixels. Each thread has one of its own.
+/// Renders pixels, whose colour, depth and visibility are those of both. Each thread has one of its own.
 class HybridPixel {
  public:
   /// @param surfaces  of the scene; medium: of the medium behind them, whose scene has the mode integrate
   /// @param step      see QuadraturePixel
   HybridPixel(const ValueSpace& surfaces, const ReferenceSpace& medium, const ReferenceOptions& options, double step,
               double voxelEdge, const GoOn& goOn);
-  std::optional<HybridResult> integrate(int x, int y);
+  std::optional<ValueResult> integrate(int x, int y);
   RayCounts counts() const;
 
  private:

@@ -68,7 +68,7 @@ QuadraturePixel::QuadraturePixel(const ReferenceSpace& space, const ReferenceOpt
       !traitsOf(space.scene.model).occlusion ? 0.5 : std::clamp(2 * std::sqrt(options.tolerance), 1e-3, 0.1);
   if (isShaded(space.scene)) {
     shading_.emplace(space.grid, space.scene);
-    eyeOptions_.largestTau = 0.02;  // what is reflected is that of a part's centre
+    eyeOptions_.largestTau = std::min(eyeOptions_.largestTau, 0.02);  // what is reflected is that of a part's centre
   }
   eyeOptions_.darkest = std::min(1e-6, 0.01 * options.tolerance);
   aim(space.directions);
@@ -82,40 +82,71 @@ void QuadraturePixel::aim(const std::vector<LightDirection>& lights) {
   for (const auto& [direction, radiance] : lights)
     lights_.push_back(
         {space_.rays.toIndex(direction), radiance, power > 0 ? (radiance.r + radiance.g + radiance.b) / power : 0});
+  whole_ = sum;
   brightest_ = std::max({sum.r, sum.g, sum.b});
 }
 
+// Aims light that is around the ray to the eye.
+void QuadraturePixel::aimAlong(const EyeRays::Ray& ray) {
+  if (traitsOf(space_.scene.model).aroundRay)
+    aim(evenLight(coneDirections(-ray.direction, space_.scene.occlusion.aperture, options_.directions)));
+}
+
+// Returns a light as shares of the whole one; colours that this lacks have none.
+glm::dvec3 QuadraturePixel::shareOf(const glm::dvec3& light) const {
+  glm::dvec3 share(0);
+  for (int c = 0; c < 3; ++c) share[c] = whole_[c] > 0 ? light[c] / whole_[c] : 0;
+  return share;
+}
+
+std::optional<QuadraturePixel::Share> QuadraturePixel::shareAt(const EyeRays::Ray& ray, const glm::dvec3& point) {
+  aimAlong(ray);
+  const Arriving arriving = arrivingAt(point);
+  if (stopped_) return std::nullopt;
+  return Share{shareOf(arriving.light), arriving.visibility};
+}
+
 std::optional<PixelResult> QuadraturePixel::integrate(int x, int y) {
-  if (space_.places.size() == 1) return integrate(space_.rays.through(x, y, space_.places.front()), 0);
   PixelResult mean;
   for (const glm::dvec2& place : space_.places) {
-    const std::optional<PixelResult> ray = integrate(space_.rays.through(x, y, place), 0);
-    if (!ray) return std::nullopt;
-    mean.add(*ray, 1.0 / static_cast<double>(space_.places.size()));
+    const EyeRays::Ray ray = space_.rays.through(x, y, place);
+    const std::optional<MeshEnd> end = space_.mesh ? space_.mesh->find(ray) : std::nullopt;
+    std::optional<PixelResult> result = integrate(ray, {0, endOf(end)});
+    if (!result) return std::nullopt;
+    if (end) {
+      const double through = 1 - result->opacity;
+      result->light += through * end->reflected;
+      result->visibility += through;
+      result->depth += through * end->t * ray.depthPerLength;
+      result->opacity = 1;
+    }
+    if (space_.places.size() == 1) return result;
+    mean.add(*result, 1.0 / static_cast<double>(space_.places.size()));
   }
   return mean;
 }
 
-std::optional<PixelResult> QuadraturePixel::integrate(const EyeRays::Ray& ray, double begin) {
+std::optional<PixelResult> QuadraturePixel::integrate(const EyeRays::Ray& ray, const Interval& seen) {
   PixelResult result;
-  const Interval part = space_.region.clip(ray.index, begin);
+  Interval part = space_.region.clip(ray.index, seen.begin);
+  part.end = std::min(part.end, seen.end);
   if (part.empty()) return result;
   ++counts_.eyeRays;
   parts_.clear();
   result.opacity = collectScatterers(space_.field, accessor_, space_.classifier, ray.index, part, eyeOptions_, parts_,
                                      counts_.cells);
   if (parts_.empty()) return result;
+  if (shading_) shade(ray.index, result);
   if (!traitsOf(space_.scene.model).occlusion) {
     for (const Scatterer& p : parts_) {
-      result.light += shading_ ? p.light * (*shading_)(ray.index.at(p.t)) : p.light;
+      result.light += p.light;
       result.visibility += p.alpha;
       result.depth += p.alpha * p.t;
     }
     result.depth *= ray.depthPerLength;
     return result;
   }
-  if (traitsOf(space_.scene.model).aroundRay)
-    aim(evenLight(coneDirections(-ray.direction, space_.scene.occlusion.aperture, options_.directions)));
+  aimAlong(ray);
   before_.assign(1, Scatterer{});
   before_.reserve(parts_.size() + 1);
   for (const Scatterer& p : parts_) {
@@ -124,20 +155,28 @@ std::optional<PixelResult> QuadraturePixel::integrate(const EyeRays::Ray& ray, d
   }
   result.depth = before_.back().t * ray.depthPerLength;
   const Sum sum = step_ > 0 ? integrateSteps(ray.index) : integrateAdaptive(ray.index);
-  result.light = sum.light;
-  result.visibility = sum.visibility;
+  result.light += shading_ ? shareOf(sum.light) : sum.light;
+  // What is reflected is light and all; the medium's own visibility is no part of it.
+  result.visibility = shading_ ? before_.back().alpha : sum.visibility;
   if (stopped_) return std::nullopt;
   return result;
 }
 
-QuadraturePixel::Arriving QuadraturePixel::arrivingAt(const IndexRay& ray, double t) {
+// Takes what the medium sends without a light, and makes the rest of it what the parts scatter.
+void QuadraturePixel::shade(const IndexRay& ray, PixelResult& result) {
+  for (Scatterer& p : parts_) {
+    result.light += p.light * shading_->ambient();
+    p.light *= shading_->direct(ray.at(p.t));
+  }
+}
+
+QuadraturePixel::Arriving QuadraturePixel::arrivingAt(const glm::dvec3& point) {
   ++counts_.samples;
   // V takes time in proportion to its directions, so the job may be stopped here. That ends the pixel, whose result
   // does not count then.
   if (!stopped_ && !goOn_()) stopped_ = true;
   Arriving sum;
   if (stopped_) return sum;
-  const glm::dvec3 point = ray.at(t);
   for (const auto& [direction, radiance, share] : lights_) {
     ++counts_.lightRays;
     // Some rays take long by themselves, through many cells or many points of the transfer function.
@@ -164,8 +203,8 @@ QuadraturePixel::Arriving QuadraturePixel::meanArriving(const IndexRay& ray, std
   const Scatterer &first = before_[begin], &last = before_[end];
   // Sums lose digits where there is little, so the centre is kept inside.
   const double centre = (last.t - first.t) / (last.alpha - first.alpha);
-  return arrivingAt(ray,
-                    std::isfinite(centre) ? std::clamp(centre, parts_[begin].t, parts_[end - 1].t) : parts_[begin].t);
+  return arrivingAt(
+      ray.at(std::isfinite(centre) ? std::clamp(centre, parts_[begin].t, parts_[end - 1].t) : parts_[begin].t));
 }
 
 QuadraturePixel::Sum QuadraturePixel::weigh(std::size_t begin, std::size_t end, const Arriving& arriving) const {

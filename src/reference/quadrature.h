@@ -6,6 +6,7 @@
 
 #include "reference/convex_region.h"
 #include "reference/eye_ray.h"
+#include "reference/mesh_ends.h"
 #include "reference/pixel.h"
 #include "reference/shaded_voxels.h"
 #include "umbrick/optics/directions.h"
@@ -25,6 +26,7 @@ struct ReferenceSpace {
   const std::vector<LightDirection>& directions;  // of all models but emission and coneRay
   const std::vector<glm::dvec2>& places;          // in each pixel, through which rays go; at least one
   const ScalarGrid& grid;
+  const MeshEnds* mesh;  // null: there is none
 };
 
 /// Returns light that is the same from all of the solid angle for which the directions stand.
@@ -43,8 +45,19 @@ class QuadraturePixel {
 
   /// Integrates one pixel. Returns nothing when the job was stopped meanwhile.
   std::optional<PixelResult> integrate(int x, int y);
-  /// Integrates one ray. @param begin  place on it from which the medium is seen; 0: the eye
-  std::optional<PixelResult> integrate(const EyeRays::Ray& ray, double begin);
+  /// Integrates one ray. @param seen  part of it on which the medium is seen
+  std::optional<PixelResult> integrate(const EyeRays::Ray& ray, const Interval& seen);
+
+  /// The light that arrives at a point: its share by colour, and that of the power of all lights.
+  struct Share {
+    glm::dvec3 colour{1};
+    double visibility = 1;
+  };
+  /// @param ray    of the eye, through the point; point: in index coordinates
+  /// @return none when the job was stopped meanwhile
+  std::optional<Share> shareAt(const EyeRays::Ray& ray, const glm::dvec3& point);
+  /// Returns what arrives where nothing is in the way.
+  const glm::dvec3& whole() const { return whole_; }
   const RayCounts& counts() const { return counts_; }
 
  private:
@@ -68,7 +81,10 @@ class QuadraturePixel {
   };
 
   void aim(const std::vector<LightDirection>& lights);
-  Arriving arrivingAt(const IndexRay& ray, double t);
+  void aimAlong(const EyeRays::Ray& ray);
+  Arriving arrivingAt(const glm::dvec3& point);
+  void shade(const IndexRay& ray, PixelResult& result);
+  glm::dvec3 shareOf(const glm::dvec3& light) const;
   Arriving meanArriving(const IndexRay& ray, std::size_t begin, std::size_t end);
   Sum weigh(std::size_t begin, std::size_t end, const Arriving& arriving) const;
   Sum refine(const IndexRay& ray, std::size_t begin, std::size_t end, const Arriving& arriving, int depth);
@@ -85,7 +101,8 @@ class QuadraturePixel {
   Field::Accessor accessor_;
   std::vector<AimedLight> lights_;
   std::optional<ShadedVoxels> shading_;  // of a medium that reflects light
-  double brightest_ = 1;                 // largest component of the sum of their radiances
+  glm::dvec3 whole_{1};                  // sum of their radiances
+  double brightest_ = 1;                 // largest component of it
   std::vector<Scatterer> parts_;
   std::vector<Scatterer> before_;  // sums over all parts before each one; t is weighted by alpha
   RayCounts counts_;

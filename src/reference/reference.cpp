@@ -223,37 +223,13 @@ struct ValueLayers {
   Image value, position, normal;
 };
 
-void storeValue(const ValueResult& pixel, double visibility, const ResolvedScene& scene, int x, int y,
-                ReferencePicture& picture, ValueLayers& layers) {
+void storeValue(const ValueResult& pixel, const ResolvedScene& scene, int x, int y, ReferencePicture& picture,
+                ValueLayers& layers) {
   storeColour(pixel.colour, scene, picture.colour.at(x, y));
-  *picture.visibility.at(x, y) = static_cast<float>(visibility);
+  *picture.visibility.at(x, y) = static_cast<float>(traitsOf(scene.mode).surfaces ? pixel.visibility : pixel.colour.w);
   *picture.depth.at(x, y) =
       pixel.colour.w > 0 ? static_cast<float>(pixel.depth / pixel.colour.w) : std::numeric_limits<float>::infinity();
   layers.store(pixel, x, y);
-}
-
-// Renders projections of values and isosurfaces.
-ReferencePicture renderValues(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOptions& options) {
-  ReferencePicture picture = blankPicture(scene.camera);
-  const Stopwatch prepare;
-  const ValueSpace space(grid, scene, options.skipEmpty);
-  picture.stats.fieldMs = prepare.elapsedMs();
-  picture.stats.nonFiniteVoxels = space.field().nonFiniteVoxels();
-  picture.stats.blocks = space.field().blocks();
-  const std::vector<glm::dvec2> places = pixelPoints(scene.sampling.pixelSamples);
-  ValueLayers layers(scene);
-  const Stopwatch integrate;
-  const RayCounts counts = integrateAll(
-      scene, options, [&](const GoOn&) { return ValuePixel(space, places); },
-      [&](const ValueResult& pixel, int x, int y) {
-        storeValue(pixel, pixel.colour.w, scene, x, y, picture, layers);
-        return true;
-      },
-      picture);
-  picture.stats.integrateMs = integrate.elapsedMs();
-  countWork(counts, picture.stats);
-  layers.moveTo(picture);
-  return picture;
 }
 
 // Turns opacities into what gets through.
@@ -278,12 +254,108 @@ ResolvedScene mediumOf(const ResolvedScene& scene) {
 }
 
 void checkMedium(const ResolvedScene& medium, const ReferenceOptions& options) {
+  if (medium.mesh.shape && options.integrator == Integrator::monteCarlo)
+    throw InvalidArgument("mesh: a scene with one is integrated by quadrature, not by Monte Carlo");
   if (!isShaded(medium)) return;
-  if (traitsOf(medium.model).occlusion)
-    throw InvalidArgument("shading.kind: phong in a medium goes with the model emission, found " +
-                          modelName(medium.model));
   if (options.integrator == Integrator::monteCarlo)
     throw InvalidArgument("shading.kind: phong in a medium is integrated by quadrature, not by Monte Carlo");
+}
+
+// The medium of a scene, and all that its pixels share.
+class MediumSpace {
+ public:
+  /// @param scene  outlives this
+  MediumSpace(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOptions& options)
+      : lights_(lightsOf(scene, options)),
+        indexToWorld_(grid.indexToWorld()),
+        classifier_(scene.transfer),
+        field_(grid, classifier_, options.skipEmpty),
+        rays_(scene.camera, indexToWorld_),
+        region_(scene, mediumBox(scene.transfer, field_.domain()), indexToWorld_,
+                traitsOf(scene.model).behindEye || lightComesFromBehind(scene)),
+        directions_(directionsOf(scene, options, given())),
+        places_(pixelPoints(scene.sampling.pixelSamples)),
+        mesh_(meshEnds(scene, indexToWorld_)),
+        space_{field_,  classifier_, rays_,   region_, scene,
+               given(), directions_, places_, grid,    mesh_ ? &*mesh_ : nullptr} {}
+  MediumSpace(const MediumSpace&) = delete;  // its space refers to it
+  MediumSpace& operator=(const MediumSpace&) = delete;
+
+  const ReferenceSpace& space() const { return space_; }
+  double voxelEdge() const { return shortestVoxelEdge(indexToWorld_); }
+
+ private:
+  const LightSet* given() const { return lights_ ? &*lights_ : nullptr; }
+
+  std::optional<LightSet> lights_;
+  glm::dmat4 indexToWorld_;
+  Classifier classifier_;
+  Field field_;
+  EyeRays rays_;
+  ConvexRegion region_;
+  std::vector<LightDirection> directions_;
+  std::vector<glm::dvec2> places_;
+  std::optional<MeshEnds> mesh_;
+  ReferenceSpace space_;
+};
+
+void describeField(const Field& field, const Stopwatch& watch, ReferenceStats& stats) {
+  stats.fieldMs = watch.elapsedMs();
+  stats.nonFiniteVoxels = field.nonFiniteVoxels();
+  stats.blocks = field.blocks();
+}
+
+// A pixel of surfaces, and of the light around them.
+class LitPixel {
+ public:
+  LitPixel(const ValueSpace& surfaces, const MediumSpace* medium, const std::vector<glm::dvec2>& places,
+           const MeshEnds* mesh, const ReferenceOptions& options, const GoOn& goOn)
+      : pixel_(surfaces, places, mesh) {
+    if (medium) light_.emplace(medium->space(), options, options.step * medium->voxelEdge(), medium->voxelEdge(), goOn);
+  }
+  std::optional<ValueResult> integrate(int x, int y) { return pixel_.integrate(x, y, light_ ? &*light_ : nullptr); }
+  RayCounts counts() const {
+    RayCounts counts = pixel_.counts();
+    if (light_) counts.add(light_->counts());
+    return counts;
+  }
+
+ private:
+  ValuePixel pixel_;
+  std::optional<QuadraturePixel> light_;
+};
+
+// Renders projections of values and isosurfaces.
+ReferencePicture renderValues(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOptions& options) {
+  const bool lit = traitsOf(scene.mode).surfaces && traitsOf(scene.model).occlusion;
+  if (lit && options.integrator == Integrator::monteCarlo)
+    throw InvalidArgument("mode: " + modeName(scene.mode) + " with the model " + modelName(scene.model) +
+                          " is integrated by quadrature, not by Monte Carlo");
+  ReferencePicture picture = blankPicture(scene.camera);
+  const Stopwatch prepare;
+  const ValueSpace space(grid, scene, options.skipEmpty);
+  const ResolvedScene around = mediumOf(scene);
+  std::optional<MediumSpace> medium;
+  if (lit) medium.emplace(grid, around, options);
+  describeField(space.field(), prepare, picture.stats);
+  const std::vector<glm::dvec2> places = pixelPoints(scene.sampling.pixelSamples);
+  const std::optional<MeshEnds> mesh = meshEnds(scene, grid.indexToWorld());
+  ValueLayers layers(scene);
+  const Stopwatch integrate;
+  const RayCounts counts = integrateAll(
+      scene, options,
+      [&](const GoOn& goOn) {
+        return LitPixel(space, medium ? &*medium : nullptr, places, mesh ? &*mesh : nullptr, options, goOn);
+      },
+      [&](const ValueResult& pixel, int x, int y) {
+        storeValue(pixel, scene, x, y, picture, layers);
+        return true;
+      },
+      picture);
+  picture.stats.integrateMs = integrate.elapsedMs();
+  countWork(counts, picture.stats);
+  layers.moveTo(picture);
+  return picture;
 }
 
 // Renders a medium.
@@ -291,25 +363,14 @@ void checkMedium(const ResolvedScene& medium, const ReferenceOptions& options) {
 ReferencePicture renderMedium(const ScalarGrid& grid, const ResolvedScene& scene, const ReferenceOptions& options,
                               const ResolvedScene* whole = nullptr) {
   checkMedium(scene, options);
-  const std::optional<LightSet> lights = lightsOf(scene, options);
   ReferencePicture picture = blankPicture(scene.camera);
-  const glm::dmat4 indexToWorld = grid.indexToWorld();
   const Stopwatch prepare;
-  const Classifier classifier(scene.transfer);
-  const Field field(grid, classifier, options.skipEmpty);
-  picture.stats.fieldMs = prepare.elapsedMs();
-  picture.stats.nonFiniteVoxels = field.nonFiniteVoxels();
-  picture.stats.blocks = field.blocks();
-  const EyeRays rays(scene.camera, indexToWorld);
-  const bool behindEye = traitsOf(scene.model).behindEye || lightComesFromBehind(scene);
-  const ConvexRegion region(scene, mediumBox(scene.transfer, field.domain()), indexToWorld, behindEye);
-  const LightSet* const given = lights ? &*lights : nullptr;
-  const std::vector<LightDirection> directions = directionsOf(scene, options, given);
-  const std::vector<glm::dvec2> places = pixelPoints(scene.sampling.pixelSamples);
-  const ReferenceSpace space{field, classifier, rays, region, scene, given, directions, places, grid};
+  const MediumSpace medium(grid, scene, options);
+  const ReferenceSpace& space = medium.space();
+  describeField(space.field, prepare, picture.stats);
   const Stopwatch integrate;
   RayCounts counts;
-  const double edge = shortestVoxelEdge(indexToWorld);
+  const double edge = medium.voxelEdge();
   const auto keep = [&](const PixelResult& pixel, int x, int y) {
     store(pixel, scene, x, y, picture);
     return pixel.converged;
@@ -320,8 +381,8 @@ ReferencePicture renderMedium(const ScalarGrid& grid, const ResolvedScene& scene
     counts = integrateAll(
         scene, options,
         [&](const GoOn& goOn) { return HybridPixel(surfaces, space, options, options.step * edge, edge, goOn); },
-        [&](const HybridResult& pixel, int x, int y) {
-          storeValue(pixel.surface, pixel.visibility, *whole, x, y, picture, layers);
+        [&](const ValueResult& pixel, int x, int y) {
+          storeValue(pixel, *whole, x, y, picture, layers);
           return true;
         },
         picture);

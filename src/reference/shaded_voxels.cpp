@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference/shaded_voxels.h"
 
-#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -13,9 +12,8 @@ ShadedVoxels::ShadedVoxels(const ScalarGrid& grid, const ResolvedScene& scene)
       background_(std::isfinite(grid.grid->background()) ? static_cast<double>(grid.grid->background()) : 0),
       indexToWorld_(grid.indexToWorld()),
       gradientToWorld_(glm::transpose(glm::inverse(glm::dmat3(indexToWorld_)))),
-      shading_(scene.shading),
-      camera_(scene.camera),
-      lights_(shadingLights(scene)) {}
+      phong_(scene),
+      camera_(scene.camera) {}
 
 double ShadedVoxels::valueAt(openvdb::Coord at) const {
   const float value = accessor_.getValue(at);
@@ -36,19 +34,10 @@ glm::dvec3 ShadedVoxels::atVoxel(const openvdb::Coord& at) const {
   const double length = glm::length(rise);
   glm::dvec3 normal = length > 0 ? rise / length : viewer;
   if (glm::dot(normal, viewer) < 0) normal = -normal;
-  glm::dvec3 sum(shading_.ambient);
-  const auto reflect = [&](const glm::dvec3& towards, const glm::dvec3& radiance) {
-    const double facing = glm::dot(normal, towards);
-    if (!(facing > 0)) return;
-    const double mirrored = std::max(0.0, glm::dot(2 * facing * normal - towards, viewer));
-    sum += radiance * (shading_.diffuse * facing + shading_.specular * std::pow(mirrored, shading_.shininess));
-  };
-  if (lights_.empty()) reflect(viewer, glm::dvec3(1));
-  for (const ShadingLightRay& light : lights_) reflect(light.towards, light.radiance);
-  return sum;
+  return phong_.direct(glm::dvec3(1), normal, viewer);
 }
 
-glm::dvec3 ShadedVoxels::operator()(const glm::dvec3& point) const {
+glm::dvec3 ShadedVoxels::direct(const glm::dvec3& point) const {
   const glm::dvec3 below = glm::floor(point), share = point - below;
   glm::dvec3 sum(0);
   for (int corner = 0; corner < 8; ++corner) {

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/mat4x4.hpp>
-#include <vector>
 
+#include "reference/phong_model.h"
 #include "umbrick/grid/float_grid.h"
 #include "umbrick/grid/scalar_grid.h"
-#include "umbrick/scene/shading_lights.h"
 
 namespace umbrick {
 
@@ -16,8 +15,11 @@ class ShadedVoxels {
   /// @throw InvalidArgument  as shadingLights
   ShadedVoxels(const ScalarGrid& grid, const ResolvedScene& scene);
 
-  /// Returns the light that the medium sends to the eye at a point in index coordinates, for albedo 1.
-  glm::dvec3 operator()(const glm::dvec3& point) const;
+  /// Returns the light that the medium sends to the eye at a point in index coordinates, for albedo 1, besides
+  /// ambient().
+  glm::dvec3 direct(const glm::dvec3& point) const;
+  /// Returns the share that it sends without a light.
+  double ambient() const { return phong_.ambient(); }
 
  private:
   double valueAt(openvdb::Coord at) const;
@@ -27,9 +29,8 @@ class ShadedVoxels {
   double background_;
   glm::dmat4 indexToWorld_;
   glm::dmat3 gradientToWorld_;
-  ShadingOptions shading_;
+  PhongModel phong_;
   Camera camera_;
-  std::vector<ShadingLightRay> lights_;
 };
 
 }  // namespace umbrick

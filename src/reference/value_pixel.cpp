@@ -12,7 +12,7 @@
 #include "umbrick/grid/value_survey.h"
 #include "umbrick/optics/projection_colour.h"
 #include "umbrick/scene/capabilities.h"
-#include "umbrick/scene/shading_lights.h"
+#include "umbrick/scene/surface_light.h"
 
 namespace umbrick {
 namespace {
@@ -98,8 +98,7 @@ ValueSpace::ValueSpace(const ScalarGrid& grid, const ResolvedScene& scene, bool 
       field_(grid, classifier_, skipEmpty),
       rays_(scene.camera, indexToWorld_),
       region_(scene, boxOf(scene, field_.domain()), indexToWorld_, false, 1e-6) {
-  if (isShaded(scene))
-    for (const ShadingLightRay& light : shadingLights(scene)) lights_.push_back({light.towards, light.radiance});
+  if (isShaded(scene)) phong_.emplace(scene);
 }
 
 ValueSpace::~ValueSpace() = default;
@@ -137,26 +136,17 @@ glm::dvec3 ValueSpace::colourOf(std::size_t surface) const {
   return one.colour ? *one.colour : scene_.transfer(one.value, 0).albedo;
 }
 
-glm::dvec3 ValueSpace::shaded(const glm::dvec3& colour, const glm::dvec3& normal, const glm::dvec3& viewer) const {
-  if (!isShaded(scene_)) return scene_.ambient * colour;
-  const ShadingOptions& shading = scene_.shading;
-  glm::dvec3 sum = shading.ambient * colour;
-  const auto reflect = [&](const glm::dvec3& towards, const glm::dvec3& radiance) {
-    const double facing = glm::dot(normal, towards);
-    if (!(facing > 0)) return;
-    const glm::dvec3 mirrored = 2 * facing * normal - towards;
-    sum += shading.diffuse * facing * radiance * colour +
-           shading.specular * std::pow(std::max(0.0, glm::dot(mirrored, viewer)), shading.shininess) * radiance;
-  };
-  if (lights_.empty()) reflect(viewer, glm::dvec3(1));
-  for (const Light& light : lights_) reflect(light.towards, light.radiance);
-  return scene_.ambient * sum;
+glm::dvec3 ValueSpace::shaded(const glm::dvec3& colour, const glm::dvec3& normal, const glm::dvec3& viewer,
+                              const glm::dvec3& share, const glm::dvec3& whole) const {
+  if (!phong_) return scene_.ambient * colour * (share * whole);
+  return scene_.ambient * (phong_->ambient() * colour + share * phong_->direct(colour, normal, viewer));
 }
 
 void ValueMean::add(const ValueResult& sample) {
   ++samples_;
   sum_.colour += sample.colour;
   sum_.depth += sample.depth;
+  sum_.visibility += sample.visibility;
   if (std::isnan(sample.value)) return;
   ++numbers_;
   sum_.value += sample.value;
@@ -168,6 +158,7 @@ ValueResult ValueMean::result() const {
   ValueResult mean = sum_;
   mean.colour /= samples_;
   mean.depth /= samples_;
+  mean.visibility /= samples_;
   const double share = numbers_ > 0 ? 1 / numbers_ : kNone;
   mean.value *= share;
   mean.position *= share;
@@ -175,25 +166,37 @@ ValueResult ValueMean::result() const {
   return mean;
 }
 
-ValuePixel::ValuePixel(const ValueSpace& space, const std::vector<glm::dvec2>& places)
-    : space_(space), places_(places), accessor_(space.field().accessor()) {}
+void layOverMesh(const MeshEnd& end, const EyeRays::Ray& ray, const glm::dvec3& ambient, ValueResult& result) {
+  const double through = 1 - result.colour.w;
+  result.colour += through * glm::dvec4(ambient * end.reflected, 1);
+  result.visibility += through;
+  result.depth += through * end.t * ray.depthPerLength;
+}
 
-std::optional<ValueResult> ValuePixel::integrate(int x, int y) {
+ValuePixel::ValuePixel(const ValueSpace& space, const std::vector<glm::dvec2>& places, const MeshEnds* mesh)
+    : space_(space), places_(places), mesh_(mesh), accessor_(space.field().accessor()) {}
+
+std::optional<ValueResult> ValuePixel::integrate(int x, int y, QuadraturePixel* light) {
   const bool surfaces = traitsOf(space_.scene().mode).surfaces;
   ValueMean mean;
   for (const glm::dvec2& place : places_) {
     const EyeRays::Ray ray = space_.rays().through(x, y, place);
-    if (!surfaces) ++counts_.eyeRays;
-    mean.add(surfaces ? meet(ray) : project(ray));
+    const std::optional<MeshEnd> end = mesh_ ? mesh_->find(ray) : std::nullopt;
+    std::optional<ValueResult> found = surfaces ? meet(ray, endOf(end), light) : project(ray, endOf(end));
+    if (!found) return std::nullopt;
+    if (end) layOverMesh(*end, ray, space_.scene().ambient, *found);
+    mean.add(*found);
   }
   return mean.result();
 }
 
 // The extremes of a cubic are at its ends and where it turns, and its mean is exact.
-ValueResult ValuePixel::project(const EyeRays::Ray& ray) {
+ValueResult ValuePixel::project(const EyeRays::Ray& ray, double end) {
+  ++counts_.eyeRays;
   const ResolvedScene& scene = space_.scene();
   const double background = space_.background();
-  const Interval part = space_.region().clip(ray.index, 0);
+  Interval part = space_.region().clip(ray.index, 0);
+  part.end = std::min(part.end, end);
   ValueResult result;
   result.value = background;
   if (part.empty()) return result;
@@ -224,11 +227,12 @@ ValueResult ValuePixel::project(const EyeRays::Ray& ray) {
   return result;
 }
 
-ValueResult ValuePixel::meet(const EyeRays::Ray& ray) {
+std::optional<ValueResult> ValuePixel::meet(const EyeRays::Ray& ray, double end, QuadraturePixel* light) {
   ++counts_.eyeRays;
   const ResolvedScene& scene = space_.scene();
   const bool firstOnly = scene.mode == Mode::hybrid;
-  const Interval part = space_.region().clip(ray.index, 0);
+  Interval part = space_.region().clip(ray.index, 0);
+  part.end = std::min(part.end, end);
   ValueResult result;
   result.value = kNone;
   if (part.empty()) return result;
@@ -238,6 +242,7 @@ ValueResult ValuePixel::meet(const EyeRays::Ray& ray) {
   };
   std::vector<Crossing> crossings;
   std::vector<int> sides(scene.surfaces.size(), 0);  // -1 below, 1 above
+  bool stopped = false;
   const auto add = [&](const Crossing& crossing) {
     const glm::dvec3 point = ray.index.at(crossing.t);
     const glm::dvec3 gradient = space_.gradientAt(point), viewer = -ray.direction;
@@ -251,7 +256,16 @@ ValueResult ValuePixel::meet(const EyeRays::Ray& ray) {
       result.position = space_.worldOf(point);
       result.normal = normal;
     }
-    result.colour += share * glm::dvec4(space_.shaded(space_.colourOf(crossing.surface), normal, viewer), 1);
+    QuadraturePixel::Share arriving;
+    if (light) {
+      const auto lit = light->shareAt(ray, point + towardsLight(space_.toIndex(), normal));
+      stopped = stopped || !lit;
+      arriving = lit.value_or(arriving);
+    }
+    const glm::dvec3 whole = light ? light->whole() : glm::dvec3(1);
+    const glm::dvec3 colour = space_.shaded(space_.colourOf(crossing.surface), normal, viewer, arriving.colour, whole);
+    result.colour += share * glm::dvec4(colour, 1);
+    result.visibility += share * arriving.visibility;
     result.depth += share * crossing.t * ray.depthPerLength;
   };
   forEachCell(space_.field(), accessor_, ray.index, part, [&](const Cubic& value, double begin, double end) {
@@ -277,10 +291,11 @@ ValueResult ValuePixel::meet(const EyeRays::Ray& ray) {
     std::ranges::sort(crossings, {}, &Crossing::t);
     for (const Crossing& crossing : crossings) {
       add(crossing);
-      if (firstOnly || result.colour.w >= 1 - scene.sampling.saturation) return false;
+      if (stopped || firstOnly || result.colour.w >= 1 - scene.sampling.saturation) return false;
     }
     return true;
   });
+  if (stopped) return std::nullopt;
   return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "umbrick/core/error.h"
 #include "umbrick/draw/progressive.h"
+#include "umbrick/mesh/mesh_file.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/scene_fields.h"
 
@@ -189,6 +190,15 @@ void applySurfaces(const AskedScene& asked, Scene& scene) {
     scene.surfaces[i].opacity = asked.isoOpacities[asked.isoOpacities.size() == 1 ? 0 : i];
 }
 
+void applyMesh(const AskedScene& asked, Scene& scene) {
+  if (asked.mesh) {
+    scene.mesh.file = *asked.mesh;
+    scene.mesh.shape = readMesh(*asked.mesh);
+  }
+  if (asked.has("mesh-colour") && !scene.mesh.shape)
+    throw AskedSceneError(asked.nameOf("mesh-colour") + ": needs " + asked.nameOf("mesh"));
+}
+
 // What is asked for holds at all frames.
 std::vector<ReplacedKeys> dropReplacedKeys(const AskedScene& asked, Scene& scene) {
   std::vector<ReplacedKeys> replaced;
@@ -233,6 +243,7 @@ Scene askedScene(const AskedScene& asked, Scene scene, const SceneDefaults& defa
   checkMethodOptions(asked, scene.method);
   applyClipping(asked, scene);
   applySurfaces(asked, scene);
+  applyMesh(asked, scene);
   validateAsked(asked, scene);
   return scene;
 }

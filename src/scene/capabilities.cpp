@@ -94,6 +94,7 @@ const ModeTraits& traitsOf(Mode mode) {
 bool supports(Technique technique, Mode mode) { return mode == Mode::integrate || technique == Technique::rays; }
 
 bool supportsMode(const SceneSettings& scene, Technique technique) {
+  if (scene.mesh.shape && technique != Technique::rays) return false;
   return supports(technique, scene.mode) && (!isShaded(scene) || scene.mode != Mode::integrate ||
                                              (technique != Technique::slices && technique != Technique::stacks));
 }
@@ -107,7 +108,9 @@ void requireMode(const SceneSettings& scene, Technique technique) {
   for (const auto& [name, other] : kTechniques)
     if (other != Technique::automatic && supportsMode(scene, other))
       others += (others.empty() ? "" : ", ") + std::string(name);
-  const std::string what = supports(technique, scene.mode) ? "shading.kind: phong" : "mode: " + modeName(scene.mode);
+  const std::string what = !supports(technique, scene.mode)                   ? "mode: " + modeName(scene.mode)
+                           : scene.mesh.shape && technique != Technique::rays ? "mesh: a scene with one"
+                                                                              : "shading.kind: phong";
   throw InvalidArgument(what + " is not rendered by the technique " + techniqueName(technique) + " but by " + others);
 }
 
@@ -115,6 +118,8 @@ bool isShaded(const SceneSettings& scene) {
   return scene.shading.kind == Shading::automatic ? traitsOf(scene.mode).surfaces
                                                   : scene.shading.kind == Shading::phong;
 }
+
+bool isMeshShaded(const SceneSettings& scene) { return scene.shading.kind != Shading::none; }
 
 bool lightComesFromBehind(const SceneSettings& scene) {
   const ModelTraits& light = traitsOf(scene.model);

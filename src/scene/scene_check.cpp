@@ -106,6 +106,7 @@ std::optional<Complaint> findComplaint(const Scene& given) {
   checkFields(check, "", scene);
   checkGradientOpacity(check, scene);
   checkSurfaces(check, scene);
+  checkFields(check, "mesh", scene);
   checkFields(check, "shading", scene);
   checkFields(check, "sampling", scene);
   checkFields(check, "occlusion", scene);

@@ -22,7 +22,8 @@ std::string modelHelp() {
     if (!supports(Method::lightVolume, traits.model))
       others += (others.empty() ? "" : " and ") + modelName(traits.model);
   }
-  return list + "; " + others + " only in the reference";
+  return list + "; " + others +
+         " only in the reference; surfaces are occluded by the medium of the transfer function, not by one another";
 }
 
 // "integrate (a medium ...), mip (the largest value along each ray), ... or isosurface (...)"
@@ -140,6 +141,13 @@ const std::vector<SceneField>& table() {
        "of Phong's model: exponent, the larger the smaller are highlights",
        [](Scene& s) -> FieldPlace { return &s.shading.shininess; },
        {.low = 0, .lowOpen = true}},
+
+      {"mesh.colour",
+       "mesh-colour",
+       "Mesh",
+       "of the mesh: r g b, linear",
+       [](Scene& s) -> FieldPlace { return &s.mesh.colour; },
+       {.low = 0, .high = 1}},
 
       {"model", "model", "Light", models, [](Scene& s) -> FieldPlace { return Choice(s.model, kModels); }},
       {"method", "method", "Light",

@@ -12,6 +12,7 @@
 #include "scene/scene_check.h"
 #include "scene/scene_folder.h"
 #include "umbrick/core/error.h"
+#include "umbrick/mesh/mesh_file.h"
 #include "umbrick/optics/transfer_json.h"
 #include "umbrick/scene/scene_fields.h"
 
@@ -117,6 +118,17 @@ void readLight(const JsonValue& value, const SceneFolder& folder, Scene& scene) 
     for (const JsonValue& source : sources->items()) scene.lights.push_back(readLightSource(source, folder));
 }
 
+void readMeshOf(const JsonValue& value, const SceneFolder& folder, Scene& scene) {
+  readSection(value, "mesh", scene, {"file"});
+  const JsonValue file = value.at("file");
+  scene.mesh.file = folder.file(file);
+  try {
+    scene.mesh.shape = readMesh(scene.mesh.file);
+  } catch (const IoError& error) {
+    file.fail(error.what());
+  }
+}
+
 void readClip(const JsonValue& value, Scene& scene) {
   value.allowFields({"planes", "box", "keys", "curve"});
   if (const auto planes = value.find("planes")) readClipPlanes(*planes, scene);
@@ -138,7 +150,7 @@ Scene parseScene(std::string_view text, const std::string& source, const std::fi
   Scene scene;
   readSection(root, "", scene,
               {"description", "volume", "camera", "transfer", "window", "sigmaScale", "light", "sampling", "occlusion",
-               "clip", "bricks", "surfaces", "shading"});
+               "clip", "bricks", "surfaces", "mesh", "shading"});
   if (const auto description = root.find("description")) description->string();
   if (const auto volume = root.find("volume")) readVolume(*volume, folder, scene.volume);
   if (const auto camera = root.find("camera")) readCamera(*camera, scene);
@@ -156,6 +168,7 @@ Scene parseScene(std::string_view text, const std::string& source, const std::fi
   if (const auto occlusion = root.find("occlusion")) readSection(*occlusion, "occlusion", scene);
   if (const auto clip = root.find("clip")) readClip(*clip, scene);
   if (const auto surfaces = root.find("surfaces")) readSurfaces(*surfaces, scene);
+  if (const auto mesh = root.find("mesh")) readMeshOf(*mesh, folder, scene);
   if (const auto shading = root.find("shading")) readSection(*shading, "shading", scene);
   if (const auto bricks = root.find("bricks")) readSection(*bricks, "bricks", scene);
   // What has keys is shown as it is at frame 0, where a picture is of no frame.

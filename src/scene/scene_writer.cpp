@@ -4,6 +4,7 @@
 #include "scene/field_text.h"
 #include "scene/key_tracks.h"
 #include "scene/light_json.h"
+#include "umbrick/core/error.h"
 
 namespace umbrick {
 namespace {
@@ -52,6 +53,13 @@ std::string printedLight(Scene& scene) {
   return jsonObject(fields);
 }
 
+std::string printedMesh(Scene& scene) {
+  if (scene.mesh.file.empty()) throw InvalidArgument("mesh: one that comes from no file has no place in JSON");
+  JsonFields fields{{"file", jsonString(scene.mesh.file.string())}};
+  for (const auto& field : printedFields("mesh", scene)) fields.push_back(field);
+  return jsonObject(fields);
+}
+
 std::string printedClip(const Scene& scene) {
   JsonFields fields;
   if (!scene.clipPlanes.empty()) fields.emplace_back("planes", printedClipPlanes(scene));
@@ -75,6 +83,7 @@ std::string printScene(const Scene& given) {
   if (scene.transfer) fields.emplace_back("transfer", printedTransfer(scene));
   for (const auto& field : printedFields("", scene)) fields.push_back(field);
   if (!scene.surfaces.empty()) fields.emplace_back("surfaces", printedSurfaces(scene));
+  if (scene.mesh.shape) fields.emplace_back("mesh", printedMesh(scene));
   if (scene.shading != ShadingOptions{} || !printedKeys("shading", scene).empty())
     fields.emplace_back("shading", jsonObject(printedFields("shading", scene)));
   fields.emplace_back("light", printedLight(scene));

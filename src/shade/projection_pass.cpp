@@ -40,6 +40,7 @@ void ProjectionPass::begin(const ValueScene& rays, int perVoxel) {
   ShaderConstants constants{{"kPerspective", rays.view.projection == Projection::perspective},
                             {"kClipPlanes", static_cast<int>(rays.planes.size())},
                             {"kTextures", std::clamp(rays.bricks.atlas().textureCount(), 1, kRayTextures)},
+                            {"kEnds", rays.ends != nullptr},
                             {"kProjection", kindOf(mode_)},
                             {"kPerVoxel", perVoxel}};
   rays.codes.setConstants(constants);
@@ -69,6 +70,7 @@ void ProjectionPass::draw(const ValueScene& rays, const RayFrame& frame, const R
   gl.ClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, 0, &nothing.x);
   gl.BindTextureUnit(kSlotsUnit, slots_.texture());
   gl.BindTextureUnit(kBoundsUnit, slots_.bounds());
+  if (rays.ends) gl.BindTextureUnit(kEndUnit, rays.ends->name());
   bindVoxels(gl, rays.bricks.atlas(), run.cells.textures);
   program.use();
   gl.BindVertexArray(nothing_->name());

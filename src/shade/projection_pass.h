@@ -8,6 +8,7 @@
 
 #include "shade/frame.h"
 #include "shade/ray_runs.h"
+#include "shade/resident_light.h"
 #include "shade/voxel_codes.h"
 
 namespace umbrick {
@@ -22,6 +23,8 @@ struct ValueScene {
   const BrickSelection& bricks;
   const VoxelCodes& codes;
   const std::function<void(double)>& progress;
+  const ResidentLight* light = nullptr;  // of surfaces; null: all of them are lit alike
+  const GlTexture* ends = nullptr;       // as brick_walk.glsl reads it; null: rays end nowhere
 };
 
 /// Runs may come in any order: what each has found is brought to memory, where all of it is put together.

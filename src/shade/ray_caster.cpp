@@ -13,6 +13,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/draw/hybrid_picture.h"
+#include "umbrick/draw/mesh_picture.h"
 #include "umbrick/draw/value_picture.h"
 #include "umbrick/scene/capabilities.h"
 
@@ -29,6 +30,25 @@ void checkScene(const ResolvedScene& scene, const ResidentVolume& resident) {
   if (isShaded(scene)) checkShading(scene, resident.volume().layout.apron);
   checkOnGl(scene, resident);
 }
+
+// A depth of each pixel, as shaders read it.
+class DepthTexture {
+ public:
+  void take(const GlFunctions& gl, const Image& depths) {
+    const glm::ivec2 size(depths.width, depths.height);
+    if (size_ != size) {
+      texture_ = makeTexture2d(gl, GL_R32F, size.x, size.y, GL_NEAREST);
+      size_ = size;
+    }
+    gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    gl.TextureSubImage2D(texture_.name(), 0, 0, 0, size.x, size.y, GL_RED, GL_FLOAT, depths.pixels.data());
+  }
+  const GlTexture& texture() const { return texture_; }
+
+ private:
+  GlTexture texture_;
+  glm::ivec2 size_{0};
+};
 
 // What of a scene is held beyond a picture.
 struct Held {
@@ -53,6 +73,7 @@ class RayCaster::Implementation {
   /// Makes anew what another scene asks for or, when something throws, nothing.
   void update(const ResolvedScene& next) {
     requireMode(next, Technique::rays);
+    checkMesh(next);
     resetGlState(gl_);
     if (showsValues(next.mode)) {
       if (!values_) values_.emplace(resident_, options_);
@@ -107,9 +128,12 @@ class RayCaster::Implementation {
     drawn_ = false;
     resetGlState(gl_);
     surfaces_.reset();
+    mesh_.reset();
+    if (scene.mesh.shape) mesh_ = drawMesh(scene, sample);
+    if (mesh_) ends_.take(gl_, mesh_->depth);
     if (showsValues(scene.mode)) {
       values_->update(scene);  // changes something where another scene was refused for its medium alone
-      values_->draw(scene, sample);
+      values_->draw(scene, sample, mesh_ ? &ends_.texture() : nullptr);
     }
     if (scene.mode == Mode::hybrid) takeSurfaces(scene);
     if (traitsOf(scene.mode).medium) drawMedium(*medium_, sample);
@@ -119,8 +143,19 @@ class RayCaster::Implementation {
   Picture read(const ResolvedScene& scene) {
     if (!drawn_) throw InvalidArgument("render: nothing was drawn since the scene changed");
     resetGlState(gl_);
+    if (!mesh_) return readVolume(scene, medium_);
+    std::optional<ResolvedScene> medium = medium_;
+    if (medium) medium->background.reset();
+    Picture picture = readVolume(beforeMesh(scene), medium);
+    layOverMesh(scene, *mesh_, picture);
+    return picture;
+  }
+
+ private:
+  // @param medium  see mediumOf(); none in modes without one
+  Picture readVolume(const ResolvedScene& scene, const std::optional<ResolvedScene>& medium) {
     if (!traitsOf(scene.mode).medium) return values_->read(scene);
-    Picture picture = readMedium(*medium_);
+    Picture picture = readMedium(*medium);
     if (scene.mode == Mode::xray) {
       picture.visibility = picture.depth = picture.opacity = Image();
       showThrough(scene, picture);
@@ -129,17 +164,10 @@ class RayCaster::Implementation {
     return picture;
   }
 
- private:
   // Brings the surfaces to memory, and where the medium begins behind them to a texture.
   void takeSurfaces(const ResolvedScene& scene) {
-    const int width = scene.camera.width, height = scene.camera.height;
     surfaces_ = values_->readFirst(scene);
-    if (startSize_ != glm::ivec2(width, height)) {
-      start_ = makeTexture2d(gl_, GL_R32F, width, height, GL_NEAREST);
-      startSize_ = {width, height};
-    }
-    gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    gl_.TextureSubImage2D(start_.name(), 0, 0, 0, width, height, GL_RED, GL_FLOAT, surfaces_->start.pixels.data());
+    start_.take(gl_, surfaces_->start);
   }
 
   void drawMedium(const ResolvedScene& scene, const RenderSample& sample) {
@@ -166,7 +194,8 @@ class RayCaster::Implementation {
                         *held_.transfer,
                         *held_.bricks,
                         lit ? &light_ : nullptr,
-                        surfaces_ ? &start_ : nullptr,
+                        surfaces_ ? &start_.texture() : nullptr,
+                        mesh_ ? &ends_.texture() : nullptr,
                         codes_,
                         volume_,
                         *held_.targets,
@@ -248,8 +277,9 @@ class RayCaster::Implementation {
   std::optional<ResolvedScene> medium_;    // whose medium is held; none: there was no such scene yet
   std::optional<ValueCaster> values_;      // of modes that look at values; none: there was no such scene yet
   std::optional<FirstSurfaces> surfaces_;  // of the mode hybrid; none: of another one
-  GlTexture start_;                        // where the medium begins behind them
-  glm::ivec2 startSize_{0};
+  DepthTexture start_;                     // where the medium begins behind them
+  std::optional<MeshPicture> mesh_;        // none: the scene has no mesh
+  DepthTexture ends_;                      // where rays end at it
   RayPass pass_;
   bool drawn_ = false;  // nothing was thrown on the way, and the scene is the same
   bool lit_ = false;    // what was drawn reads the light

@@ -40,6 +40,7 @@ void RayPass::begin(const RayScene& rays) {
                             {"kTextures", std::clamp(rays.bricks.atlas().textureCount(), 1, kRayTextures)},
                             {"kLit", light != nullptr},
                             {"kStarts", rays.start != nullptr},
+                            {"kEnds", rays.ends != nullptr},
                             {"kColoured", light && light->coloured()},
                             {"kAux", rays.targets.picture.options.aux}};
   rays.transfer.setConstants(constants);
@@ -72,10 +73,9 @@ void RayPass::setState(const RayScene& rays, const RayRun& run) {
   gl.BindTextureUnit(kTransferUnit, rays.transfer.texture());
   gl.BindTextureUnit(kSlotsUnit, slots_.texture());
   if (rays.start) gl.BindTextureUnit(kStartUnit, rays.start->name());
+  if (rays.ends) gl.BindTextureUnit(kEndUnit, rays.ends->name());
   bindVoxels(gl, rays.bricks.atlas(), run.cells.textures);
-  for (std::size_t i = 0; rays.light && i < run.cells.textures.size(); ++i)
-    gl.BindTextureUnit(i == 0 ? kLightUnit : kMoreLightUnit + static_cast<GLuint>(i) - 1,
-                       rays.light->texture(run.cells.textures[i]));
+  if (rays.light) bindLight(gl, *rays.light, run.cells.textures);
   program_.current().use();
   gl.BindVertexArray(nothing_->name());
 }

@@ -41,6 +41,7 @@ struct RayScene {
   const BrickSelection& bricks;
   const ResidentLight* light;  // null: all is lit alike
   const GlTexture* start;      // as ray_march.frag reads it; null: rays begin at the eye
+  const GlTexture* ends;       // as brick_walk.glsl reads it; null: rays end nowhere
   const VoxelCodes& codes;
   const Bricks& volume;
   const RayTargets& targets;

@@ -4,21 +4,23 @@
 #include <algorithm>
 #include <utility>
 
+#include "shade/constants.h"
 #include "shade/view_planes.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/scene/lights.h"
 
 namespace umbrick {
 
-void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sample, const IndexView& view,
-                           std::span<const glm::dvec4> planes, const TransferLookup& transfer, BrickSelection& bricks) {
-  const Stopwatch watch;
-  LightMedium medium{
-      scene.transfer,
-      sample.lights.empty() ? lightDirections(scene, scene.occlusion.ordinates.directions) : sample.lights,
-      {},
-      {bricks.origins().begin(), bricks.origins().end()},
-      scene.occlusion.ordinates.lightSpacing};
+namespace {
+
+std::vector<LightDirection> directionsOf(const ResolvedScene& scene, const RenderSample& sample) {
+  return sample.lights.empty() ? lightDirections(scene, scene.occlusion.ordinates.directions) : sample.lights;
+}
+
+}  // namespace
+
+// Begins with a medium: adds the planes that cut it, and takes what is known of its light.
+void ResidentLight::take(LightMedium& medium, const IndexView& view, std::span<const glm::dvec4> planes) {
   for (const glm::dvec4& plane : planes) {
     const glm::dvec4 inIndex = planeInIndex(plane, view);
     if (cutsMedium(inIndex, medium.cells, resident_.volume().layout.interior)) medium.planes.push_back(inIndex);
@@ -27,19 +29,43 @@ void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sampl
   coloured_ = isColoured(medium.directions);
   directions_ = medium.directions.size();
   note_.clear();
-  bool computed = false;
-  const bool onGl = sweep_ == LightSweep::gl || (sweep_ == LightSweep::automatic && !resident_.context().software());
-  if (onGl) note_ = GlLightSweep::refusal(resident_, bricks, medium);
-  if (onGl && note_.empty()) {
-    computed = sweepOnGl(medium, transfer, bricks);
-  } else {
-    const std::uint64_t most = std::max<std::uint64_t>(scene.bricks.budgetMiB << 20, std::uint64_t{2} << 30);
-    computed = light_.update(medium, most);
-    // The textures may hold light of OpenGL.
-    if (computed || swept_) ++version_;
-    swept_.reset();
-  }
+}
+
+bool ResidentLight::wantsGl() const {
+  return sweep_ == LightSweep::gl || (sweep_ == LightSweep::automatic && !resident_.context().software());
+}
+
+void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sample, const IndexView& view,
+                           std::span<const glm::dvec4> planes, const TransferLookup& transfer, BrickSelection& bricks) {
+  const Stopwatch watch;
+  LightMedium medium{scene.transfer,
+                     directionsOf(scene, sample),
+                     {},
+                     {bricks.origins().begin(), bricks.origins().end()},
+                     scene.occlusion.ordinates.lightSpacing};
+  take(medium, view, planes);
+  if (wantsGl()) note_ = GlLightSweep::refusal(resident_, bricks, medium);
+  const bool computed = wantsGl() && note_.empty() ? sweepOnGl(medium, transfer, bricks) : sweepOnCpu(medium, scene);
   ms_ += computed ? watch.elapsedMs() : 0;
+}
+
+void ResidentLight::updateSurfaces(const ResolvedScene& scene, const RenderSample& sample, const IndexView& view,
+                                   std::span<const glm::dvec4> planes) {
+  const Stopwatch watch;
+  LightMedium medium = lightAtSurfaces(resident_.volume(), scene, directionsOf(scene, sample));
+  take(medium, view, planes);
+  if (wantsGl()) note_ = "the light of surfaces is computed on the CPU";
+  ms_ += sweepOnCpu(medium, scene) ? watch.elapsedMs() : 0;
+}
+
+// @return whether light was computed
+bool ResidentLight::sweepOnCpu(const LightMedium& medium, const ResolvedScene& scene) {
+  const std::uint64_t most = std::max<std::uint64_t>(scene.bricks.budgetMiB << 20, std::uint64_t{2} << 30);
+  const bool computed = light_.update(medium, most);
+  // The textures may hold light of OpenGL.
+  if (computed || swept_) ++version_;
+  swept_.reset();
+  return computed;
 }
 
 // Computes light on OpenGL, unless the textures have it. @return whether it was computed
@@ -70,6 +96,11 @@ void ResidentLight::addTo(RenderStats& stats) const {
   stats.textureBytes += textures_.bytes();
   stats.bufferBytes += glSweep_.bytes();
   stats.lightMs = ms_;
+}
+
+void bindLight(const GlFunctions& gl, const ResidentLight& light, std::span<const int> textures) {
+  for (std::size_t i = 0; i < textures.size(); ++i)
+    gl.BindTextureUnit(i == 0 ? kLightUnit : kMoreLightUnit + static_cast<GLuint>(i) - 1, light.texture(textures[i]));
 }
 
 }  // namespace umbrick

@@ -28,6 +28,11 @@ class ResidentLight {
   /// @throw InvalidArgument  as LightVolume::update
   void update(const ResolvedScene& scene, const RenderSample& sample, const IndexView& view,
               std::span<const glm::dvec4> planes, const TransferLookup& transfer, BrickSelection& bricks);
+  /// Computes the light of the surfaces of a picture, where it is not there yet. Bricks around the surfaces may have no
+  /// medium, and those with medium may not be resident, so that the CPU sweeps it.
+  /// @param planes  of the medium, view coordinates
+  void updateSurfaces(const ResolvedScene& scene, const RenderSample& sample, const IndexView& view,
+                      std::span<const glm::dvec4> planes);
   /// Is called before the first update() of a picture: a picture of several stacks has as many.
   void beginPicture() { ms_ = 0; }
   /// Brings the light of bricks to their textures. @param positions  in the selection; they are resident
@@ -50,7 +55,10 @@ class ResidentLight {
     std::vector<std::int32_t> slots;
     bool operator==(const Swept&) const = default;
   };
+  void take(LightMedium& medium, const IndexView& view, std::span<const glm::dvec4> planes);
+  bool sweepOnCpu(const LightMedium& medium, const ResolvedScene& scene);
   bool sweepOnGl(const LightMedium& medium, const TransferLookup& transfer, BrickSelection& bricks);
+  bool wantsGl() const;
   ResidentVolume& resident_;
   const LightSweep sweep_;
   LightVolume light_;  // computed by the CPU
@@ -64,5 +72,9 @@ class ResidentLight {
   std::uint64_t version_ = 0;  // of the CPU's light
   double ms_ = 0;              // to compute it for the last picture
 };
+
+/// Binds the light beside textures of the atlas, as shaders/shade/light_share.glsl reads it.
+/// @param textures  of the atlas
+void bindLight(const GlFunctions& gl, const ResidentLight& light, std::span<const int> textures);
 
 }  // namespace umbrick

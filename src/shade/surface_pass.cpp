@@ -2,6 +2,8 @@
 #include "shade/surface_pass.h"
 
 #include <algorithm>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <limits>
 
 #include "shade/constants.h"
@@ -9,6 +11,7 @@
 #include "umbrick/core/memory.h"
 #include "umbrick/draw/hybrid_picture.h"
 #include "umbrick/draw/value_picture.h"
+#include "umbrick/scene/surface_light.h"
 
 namespace umbrick {
 namespace {
@@ -40,6 +43,14 @@ void setSurfaces(GlProgram& program, const ValueScene& rays) {
   program.set("surface_codes", codes);
   program.set("base_code", static_cast<float>(base));
   program.set("highest", highest);
+}
+
+void setLight(GlProgram& program, const ValueScene& rays) {
+  program.set("whole_light", glm::vec3(rays.light->whole()));
+  const glm::mat3 toIndex(glm::inverse(glm::dmat3(rays.volume.indexToWorld)));
+  program.set("world_to_index", std::vector<glm::vec3>{toIndex[0], toIndex[1], toIndex[2]});
+  program.set("light_distance", static_cast<float>(kSurfaceLightDistance));
+  program.set("inverse_size", glm::vec3(1.0 / glm::dvec3(rays.bricks.atlas().textureSize())));
 }
 
 }  // namespace
@@ -78,6 +89,9 @@ void SurfacePass::begin(const ValueScene& rays, bool layers) {
                             {"kClipPlanes", static_cast<int>(rays.planes.size())},
                             {"kTextures", std::clamp(rays.bricks.atlas().textureCount(), 1, kRayTextures)},
                             {"kSurfaces", static_cast<int>(rays.scene.surfaces.size())},
+                            {"kEnds", rays.ends != nullptr},
+                            {"kLit", rays.light != nullptr},
+                            {"kColoured", rays.light && rays.light->coloured()},
                             {"kAux", layers_}};
   rays.codes.setConstants(constants);
   setPhongConstants(constants, rays.scene);
@@ -86,6 +100,7 @@ void SurfacePass::begin(const ValueScene& rays, bool layers) {
   setPhongUniforms(program, rays.scene, rays.volume.indexToWorld);
   setSurfaces(program, rays);
   program.set("ambient_light", glm::vec3(rays.scene.ambient));
+  if (rays.light) setLight(program, rays);
   program.set("saturation", static_cast<float>(rays.scene.sampling.saturation));
   program.set("depth", -0.6f);
 }
@@ -111,6 +126,8 @@ void SurfacePass::draw(const ValueScene& rays, const RayFrame& frame, const RayR
   }
   gl.BindTextureUnit(kSlotsUnit, slots_.texture());
   bindVoxels(gl, rays.bricks.atlas(), run.cells.textures);
+  if (rays.light) bindLight(gl, *rays.light, run.cells.textures);
+  if (rays.ends) gl.BindTextureUnit(kEndUnit, rays.ends->name());
   program.use();
   gl.BindVertexArray(nothing_->name());
   const Stopwatch sweep;
@@ -151,8 +168,7 @@ void SurfacePass::showLayers(const GlFunctions& gl, const ResolvedScene& scene, 
   const CameraFrame camera = cameraFrame(scene.camera);
   const double first = firstDepth_.value_or(0);
   SurfaceLayers layers(width, height);
-  picture.opacity = Image(width, height, 1);
-  picture.depth = Image(width, height, 1);
+  for (Image* image : {&picture.opacity, &picture.visibility, &picture.depth}) *image = Image(width, height, 1);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const float *const sum = sums.at(x, y), *const normal = normals.at(x, y), *const hit = nearest.at(x, y);
@@ -160,6 +176,8 @@ void SurfacePass::showLayers(const GlFunctions& gl, const ResolvedScene& scene, 
           drawsFirst(scene) ? static_cast<float>(opacityOf(scene, hit)) : std::min(sum[3], 1.0f);
       *picture.depth.at(x, y) = sum[3] > 0 ? static_cast<float>(first + depth_ * static_cast<double>(sum[0] / sum[3]))
                                            : std::numeric_limits<float>::infinity();
+      // The first surface of hybrid was drawn as if it were opaque.
+      *picture.visibility.at(x, y) = sum[3] > 0 ? *picture.opacity.at(x, y) * std::min(sum[1] / sum[3], 1.0f) : 0.0f;
       if (!(hit[3] > 0)) continue;
       const glm::dvec2 screen =
           view.centre + view.halfExtent * (2.0 * (glm::dvec2(x, y) + 0.5) / glm::dvec2(view.size) - 1.0);
@@ -168,7 +186,6 @@ void SurfacePass::showLayers(const GlFunctions& gl, const ResolvedScene& scene, 
                   ray.from + (first + depth_ * static_cast<double>(hit[0])) * ray.along,
                   {normal[0], normal[1], normal[2]});
     }
-  picture.visibility = picture.opacity;
   layers.moveTo(picture);
 }
 

@@ -33,7 +33,7 @@ int slicesPerVoxel(const ResolvedScene& scene, const Bricks& volume) {
 }
 
 ValueCaster::ValueCaster(ResidentVolume& resident, const RenderOptions& options)
-    : resident_(resident), options_(options), codes_(resident), runs_(resident) {}
+    : resident_(resident), options_(options), codes_(resident), light_(resident, options.lightSweep), runs_(resident) {}
 
 bool ValueCaster::isWanted(const Wanted& wanted, float background, const Range& range) {
   if (!wanted.culling) return true;
@@ -43,10 +43,12 @@ bool ValueCaster::isWanted(const Wanted& wanted, float background, const Range& 
 
 void ValueCaster::update(const ResolvedScene& next) {
   checkSize(next, resident_.context());
-  Wanted wanted{traitsOf(next.mode).surfaces, next.bricks.culling, {}};
+  Wanted wanted{traitsOf(next.mode).surfaces, next.bricks.culling};
   if (wanted.surfaces) {
     checkSurfaces(next, resident_.volume().value, resident_.volume().layout.apron);
     if (isShaded(next)) shadingLights(next);  // says whether there is light
+    checkSurfaceLight(next, resident_.volume().hasGradients);
+    wanted.lit = occlusionMethod(next).has_value();
     for (const SceneSurface& surface : next.surfaces) wanted.values.push_back(surface.value);
   }
   if (wanted_ == wanted) return;
@@ -54,14 +56,15 @@ void ValueCaster::update(const ResolvedScene& next) {
   std::vector<std::int32_t> numbers;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (isWanted(wanted, resident_.volume().background, all[i].value)) numbers.push_back(static_cast<std::int32_t>(i));
-  BrickSelection selection(resident_.atlas(), std::move(numbers));
+  BrickSelection selection(resident_.atlas(), std::move(numbers),
+                           wanted.lit ? SlotSharing::apart : SlotSharing::shared);
   fits_ = selection.reserve();
   bricks_ = std::move(selection);
   wanted_ = std::move(wanted);
   ++version_;
 }
 
-void ValueCaster::draw(const ResolvedScene& scene, const RenderSample& sample) {
+void ValueCaster::draw(const ResolvedScene& scene, const RenderSample& sample, const GlTexture* ends) {
   stats_ = {};
   const Bricks& volume = resident_.volume();
   const GlFunctions& gl = resident_.context().gl();
@@ -71,7 +74,9 @@ void ValueCaster::draw(const ResolvedScene& scene, const RenderSample& sample) {
   const std::vector<glm::dvec4> planes = viewPlanes(scene, volume, false);
   checkPlanes(gl, planes.size());
   stats_.geometryMs = geometry.elapsedMs();
-  const ValueScene rays{gl, scene, view_, planes, volume, *bricks_, codes_, options_.progress};
+  if (wanted_->lit) light(scene, sample);
+  const ValueScene rays{
+      gl, scene, view_, planes, volume, *bricks_, codes_, options_.progress, wanted_->lit ? &light_ : nullptr, ends};
   const bool surfaces = wanted_->surfaces;
   if (surfaces)
     surfaces_.begin(rays, options_.visibilityAndDepth || scene.mode == Mode::hybrid);
@@ -89,6 +94,12 @@ void ValueCaster::draw(const ResolvedScene& scene, const RenderSample& sample) {
   stats_.uploadedBricks = resident_.atlas().uploadedBricks() - uploadedBefore;
 }
 
+void ValueCaster::light(const ResolvedScene& scene, const RenderSample& sample) {
+  const Bricks& volume = resident_.volume();
+  light_.beginPicture();
+  light_.updateSurfaces(scene, sample, view_, viewPlanes(scene, volume, showsBackground(scene.transfer, volume)));
+}
+
 RayRunPlan ValueCaster::planOf(const ResolvedScene& scene) {
   const Bricks& volume = resident_.volume();
   RayRunPlan plan{view_, *bricks_};
@@ -103,6 +114,10 @@ RayRunPlan ValueCaster::planOf(const ResolvedScene& scene) {
   plan.isShown = [this](const Range& value, const Range&) {
     return isWanted(*wanted_, resident_.volume().background, value);
   };
+  if (wanted_->lit)
+    plan.require = [this](std::span<const std::int32_t> positions) {
+      light_.require(resident_.context().gl(), *bricks_, positions);
+    };
   if (!wanted_->surfaces)
     plan.bound = [this, smallest](const Range& value) {
       const double code = codes_.toCode(smallest ? value.min : value.max);
@@ -125,6 +140,7 @@ Picture ValueCaster::read(const ResolvedScene& scene) {
   picture.stats.brickSlots = bricks_->slots();
   if (!options_.countFragments) picture.stats.fragments = 0;
   addTextures(resident_.atlas(), picture.stats);
+  if (wanted_->lit) light_.addTo(picture.stats);
   picture.stats.bufferBytes = wanted_->surfaces ? surfaces_.bytes() : projection_.bytes();
   return picture;
 }

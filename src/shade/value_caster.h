@@ -21,7 +21,8 @@ class ValueCaster {
   /// Takes another scene, or changes nothing where this throws.
   /// @throw InvalidArgument  surfaces of values that the volume does not have; no light to reflect
   void update(const ResolvedScene& next);
-  void draw(const ResolvedScene& scene, const RenderSample& sample);
+  /// @param ends  as brick_walk.glsl reads it; null: rays end nowhere
+  void draw(const ResolvedScene& scene, const RenderSample& sample, const GlTexture* ends);
   Picture read(const ResolvedScene& scene);
   /// Reads the first surface of each ray, of a scene of the mode hybrid. @pre draw()
   FirstSurfaces readFirst(const ResolvedScene& scene);
@@ -30,15 +31,18 @@ class ValueCaster {
   // What bricks are selected for.
   struct Wanted {
     bool surfaces = false, culling = true;
+    bool lit = false;            // the light that reaches surfaces lies beside the slots of bricks
     std::vector<double> values;  // of the surfaces
     bool operator==(const Wanted&) const = default;
   };
   RayRunPlan planOf(const ResolvedScene& scene);
+  void light(const ResolvedScene& scene, const RenderSample& sample);
   static bool isWanted(const Wanted& wanted, float background, const Range& values);
 
   ResidentVolume& resident_;
   RenderOptions options_;
   VoxelCodes codes_;
+  ResidentLight light_;
   RayRuns runs_;
   std::optional<Wanted> wanted_;
   std::optional<BrickSelection> bricks_;

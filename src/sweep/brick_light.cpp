@@ -46,11 +46,9 @@ void spread(std::vector<float>& light, const glm::ivec3& edge) {
 
 }  // namespace
 
-void BrickLight::update(std::span<const Brick> visible, const BrickLayout& layout, const ResolvedScene& scene,
-                        const std::vector<LightDirection>& directions, std::span<const glm::dvec4> planes) {
+void BrickLight::update(LightMedium medium, const ResolvedScene& scene, std::span<const glm::dvec4> planes,
+                        const BrickLayout& layout) {
   const Stopwatch watch;
-  LightMedium medium{scene.transfer, directions, {}, {}, scene.occlusion.ordinates.lightSpacing};
-  for (const Brick& brick : visible) medium.cells.push_back(brick.origin);
   for (const glm::dvec4& plane : planes)
     if (cutsMedium(plane, medium.cells, layout.interior)) medium.planes.push_back(plane);
   const std::uint64_t most = std::max<std::uint64_t>(scene.bricks.budgetMiB << 20, std::uint64_t{2} << 30);
@@ -58,6 +56,15 @@ void BrickLight::update(std::span<const Brick> visible, const BrickLayout& layou
   const std::uint64_t stored = std::exchange(generation_, kNoGeneration);
   if (!light_.update(medium, most)) generation_ = stored;
   ms_ = watch.elapsedMs();
+}
+
+void BrickLight::addTo(RenderStats& stats) const {
+  const LightStats& light = light_.stats();
+  stats.lightMs = ms_;
+  stats.directions = light.directions;
+  stats.windowUpdates = light.updates;
+  stats.lightSpacing = light.spacing;
+  stats.lightSpacingError = light.spacingError;
 }
 
 void BrickLight::store(BrickVoxels& voxels) {

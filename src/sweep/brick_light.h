@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "sweep/brick_voxels.h"
+#include "umbrick/draw/renderer.h"
 #include "umbrick/light/light_volume.h"
+#include "umbrick/scene/lights.h"
 #include "umbrick/scene/resolve.h"
 
 namespace umbrick {
@@ -18,12 +20,11 @@ class BrickLight {
  public:
   explicit BrickLight(const Bricks& volume) : light_(volume) {}
 
-  /// Computes the light of visible bricks, whether they are held or not.
-  /// @param directions  the light
-  /// @param planes      that cut the medium, index coordinates
+  /// Computes the light of a medium, whether its bricks are held or not.
+  /// @param planes  the medium's or not, index coordinates: those that cut it become its own
   /// @throw InvalidArgument  more memory would be needed than the scene's budget and 2 GiB
-  void update(std::span<const Brick> visible, const BrickLayout& layout, const ResolvedScene& scene,
-              const std::vector<LightDirection>& directions, std::span<const glm::dvec4> planes);
+  void update(LightMedium medium, const ResolvedScene& scene, std::span<const glm::dvec4> planes,
+              const BrickLayout& layout);
   /// Stores it with the bricks that are held, where they do not have it.
   void store(BrickVoxels& voxels);
 
@@ -34,7 +35,8 @@ class BrickLight {
   glm::dvec3 whole() const { return light_.whole(); }
   float unit() const { return unit_; }  // share of whole() that a code of 1 stands for
   double ms() const { return ms_; }     // of the last update, and of what was stored since
-  const LightStats& stats() const { return light_.stats(); }
+  /// Fills in what the statistics of a picture say of light.
+  void addTo(RenderStats& stats) const;
 
  private:
   LightVolume light_;
@@ -43,5 +45,10 @@ class BrickLight {
   static constexpr std::uint64_t kNoGeneration = ~std::uint64_t{0};
   std::uint64_t generation_ = kNoGeneration;  // of the bricks that have light
 };
+
+/// Returns the directions of a sample, or else those of its scene.
+inline std::vector<LightDirection> lightsOf(const ResolvedScene& scene, const RenderSample& sample) {
+  return sample.lights.empty() ? lightDirections(scene, scene.occlusion.ordinates.directions) : sample.lights;
+}
 
 }  // namespace umbrick

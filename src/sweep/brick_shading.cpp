@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 #include "umbrick/optics/phong.h"
 
@@ -56,29 +57,38 @@ bool isGrey(const glm::dvec3& colour) { return colour.r == colour.g && colour.g 
 
 }  // namespace
 
-void BrickShading::update(BrickVoxels& voxels, const ResolvedScene& scene) {
-  const Bricks& volume = voxels.volume();
+int BrickShading::begin(const ResolvedScene& scene, const BrickLight* light) {
+  shading_ = scene.shading;
+  camera_ = scene.camera;
+  light_ = light;
   lights_ = shadingLights(scene);
-  channels_ = std::ranges::all_of(lights_, [](const ShadingLightRay& light) { return isGrey(light.radiance); }) ? 1 : 3;
+  const bool grey = std::ranges::all_of(lights_, [](const ShadingLightRay& one) { return isGrey(one.radiance); });
+  channels_ = grey && (!light || light->channels() == 1) ? 1 : 3;
+  return channels_;
+}
+
+void BrickShading::update(BrickVoxels& voxels) {
+  const Bricks& volume = voxels.volume();
   glm::dvec3 sum(lights_.empty() ? 1.0 : 0.0);
   for (const ShadingLightRay& light : lights_) sum += light.radiance;
-  const ShadingOptions& shading = scene.shading;
-  const double most = shading.ambient + std::max({sum.r, sum.g, sum.b}) * (shading.diffuse + shading.specular);
+  // Beyond planes that cut the medium there is more light than arrives.
+  const double brightest = light_ ? 65535.0 * static_cast<double>(light_->unit()) : 1;
+  const double most =
+      shading_.ambient + brightest * std::max({sum.r, sum.g, sum.b}) * (shading_.diffuse + shading_.specular);
   unit_ = static_cast<float>(std::max(most, 1e-9) / 65535);
-  const CameraFrame frame = cameraFrame(scene.camera);
+  const CameraFrame frame = cameraFrame(camera_);
   View view;
   view.gradientToWorld = glm::mat3(glm::transpose(glm::inverse(glm::dmat3(volume.indexToWorld))));
   view.indexToWorld = volume.indexToWorld;
-  view.eye = scene.camera.eye;
-  view.perspective = scene.camera.projection == Projection::perspective;
+  view.eye = camera_.eye;
+  view.perspective = camera_.projection == Projection::perspective;
   view.towardsEye = -glm::vec3(frame.forward);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, voxels.bricks().size(), 1), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) shade(voxels.brick(i), voxels, shading, view);
+    for (std::size_t i = range.begin(); i != range.end(); ++i) shade(voxels.brick(i), voxels, view);
   });
 }
 
-void BrickShading::shade(VoxelBrick& brick, const BrickVoxels& voxels, const ShadingOptions& shading,
-                         const View& view) const {
+void BrickShading::shade(VoxelBrick& brick, const BrickVoxels& voxels, const View& view) const {
   constexpr int kGroup = BrickVoxels::kGroup;
   const BrickLayout& layout = voxels.volume().layout;
   const glm::ivec3 edge = layout.edge(), groups = voxels.groups();
@@ -86,7 +96,10 @@ void BrickShading::shade(VoxelBrick& brick, const BrickVoxels& voxels, const Sha
   const std::ptrdiff_t strideY = edge.x, strideZ = strideY * edge.y;
   const std::vector<float> values = valuesOf(voxels, brick);
   const std::vector<std::uint8_t> read = readGroups(brick, groups);
-  brick.light = std::make_unique<std::uint16_t[]>(static_cast<std::size_t>(channels_) * count + BrickVoxels::kPadding);
+  const auto before = std::exchange(
+      brick.light,
+      std::make_unique<std::uint16_t[]>(static_cast<std::size_t>(channels_) * count + BrickVoxels::kPadding));
+  const std::size_t stored = light_ && light_->channels() == 3 ? count : 0;  // from one channel of light to the next
   const glm::dvec3 first(view.indexToWorld * glm::dvec4(glm::dvec3(brick.origin - layout.apron), 1));
   const glm::vec3 fromEye(first - view.eye), alongX(view.indexToWorld[0]), alongY(view.indexToWorld[1]),
       alongZ(view.indexToWorld[2]);
@@ -111,24 +124,27 @@ void BrickShading::shade(VoxelBrick& brick, const BrickVoxels& voxels, const Sha
           const float square = glm::dot(gradient, gradient);
           if (square > 0) normal = gradient * ((glm::dot(gradient, viewer) < 0 ? -1.0f : 1.0f) / std::sqrt(square));
         }
-        const glm::vec3 light = reflected(normal, viewer, shading) / unit_;
-        for (int c = 0; c < channels_; ++c)
-          brick.light[static_cast<std::size_t>(c) * count + static_cast<std::size_t>(at)] =
-              static_cast<std::uint16_t>(std::min(light[c] + 0.5f, 65535.0f));
+        const glm::vec3 direct = reflected(normal, viewer);
+        for (int c = 0; c < channels_; ++c) {
+          const auto channel = static_cast<std::size_t>(c), voxel = static_cast<std::size_t>(at);
+          const float arriving = light_ ? light_->unit() * before[channel * stored + voxel] : 1;
+          const float share = (static_cast<float>(shading_.ambient) + arriving * direct[c]) / unit_;
+          brick.light[channel * count + voxel] = static_cast<std::uint16_t>(std::min(share + 0.5f, 65535.0f));
+        }
       }
 }
 
-glm::vec3 BrickShading::reflected(const glm::vec3& normal, const glm::vec3& viewer,
-                                  const ShadingOptions& shading) const {
+// Returns what comes from the lights, without the ambient share.
+glm::vec3 BrickShading::reflected(const glm::vec3& normal, const glm::vec3& viewer) const {
   const auto shareOf = [&](const glm::vec3& towards) {
     const float normalLight = glm::dot(normal, towards);
-    return static_cast<float>(shading.diffuse) * phongDiffuse(normalLight) +
-           static_cast<float>(shading.specular) * phongSpecular(normalLight, glm::dot(normal, viewer),
-                                                                glm::dot(towards, viewer),
-                                                                static_cast<float>(shading.shininess));
+    return static_cast<float>(shading_.diffuse) * phongDiffuse(normalLight) +
+           static_cast<float>(shading_.specular) * phongSpecular(normalLight, glm::dot(normal, viewer),
+                                                                 glm::dot(towards, viewer),
+                                                                 static_cast<float>(shading_.shininess));
   };
-  glm::vec3 sum(static_cast<float>(shading.ambient));
-  if (lights_.empty()) return sum + shareOf(viewer);
+  glm::vec3 sum(0);
+  if (lights_.empty()) return glm::vec3(shareOf(viewer));
   for (const ShadingLightRay& light : lights_) sum += glm::vec3(light.radiance) * shareOf(glm::vec3(light.towards));
   return sum;
 }

@@ -21,10 +21,10 @@ std::int64_t wholeBelow(double at) { return static_cast<std::int64_t>(std::floor
 PacketMarch::PacketMarch(const PacketFrame& frame) : frame_(frame) {}
 
 std::uint64_t PacketMarch::march(const std::array<glm::dvec2, kRayGroup>& screen, PacketPixels& pixels,
-                                 const std::array<double, kRayGroup>* starts) {
+                                 const PacketDepths* depths) {
   samples_ = 0;
   if (aim(screen)) {
-    marchTogether(pixels, starts);
+    marchTogether(pixels, depths);
     return samples_;
   }
   // Rays that are far apart, in small pictures of wide views, go one by one.
@@ -33,21 +33,24 @@ std::uint64_t PacketMarch::march(const std::array<glm::dvec2, kRayGroup>& screen
     single.fill(screen[i]);
     aim(single);
     PacketPixels own;
-    std::array<double, kRayGroup> start;
-    if (starts) start.fill((*starts)[i]);
-    marchTogether(own, starts ? &start : nullptr);
+    PacketDepths depth;
+    if (depths) {
+      depth.start.fill(depths->start[i]);
+      depth.end.fill(depths->end[i]);
+    }
+    marchTogether(own, depths ? &depth : nullptr);
     pixels.colour[i] = own.colour.front();
     pixels.aux[i] = own.aux.front();
   }
   return samples_;
 }
 
-void PacketMarch::marchTogether(PacketPixels& pixels, const std::array<double, kRayGroup>* starts) {
+void PacketMarch::marchTogether(PacketPixels& pixels, const PacketDepths* depths) {
   full_ = 0;
   isSampled_ = {};
   for (Lanes* lanes : {&red_, &green_, &blue_, &opacity_, &seen_, &depth_}) lanes->fill(0);
   if (enterBox()) {
-    clip(starts);
+    clip(depths);
     if (first_ != last_) marchLayers();
   }
   for (std::size_t i = 0; i < kRayGroup; ++i) {
@@ -156,8 +159,8 @@ bool PacketMarch::enterBox() {
   return true;
 }
 
-void PacketMarch::clip(const std::array<double, kRayGroup>* starts) {
-  clipped_ = starts || !axes_->planes.empty();
+void PacketMarch::clip(const PacketDepths* depths) {
+  clipped_ = depths || !axes_->planes.empty();
   firstEnter_ = lastEnter_ = 0;
   firstLeave_ = lastLeave_ = std::numeric_limits<float>::max();
   if (!clipped_) return;
@@ -169,10 +172,13 @@ void PacketMarch::clip(const std::array<double, kRayGroup>* starts) {
     const KeptWay kept = keptWay(axes_->planes, at, first_, slope, sign_, way + 1);
     enter_[i] = kept.enter;
     leave_[i] = kept.leave;
-    if (!starts) continue;
-    const double start = ((placesByDepth_[i].x + placesByDepth_[i].y * (*starts)[i]) - first_) * sign_;
+    if (!depths) continue;
+    const auto wayTo = [&](double depth) {
+      return ((placesByDepth_[i].x + placesByDepth_[i].y * depth) - first_) * sign_;
+    };
     // Behind its end a ray has nothing to begin with.
-    enter_[i] = std::max(enter_[i], static_cast<float>(std::min(start, way + 1)));
+    enter_[i] = std::max(enter_[i], static_cast<float>(std::min(wayTo(depths->start[i]), way + 1)));
+    leave_[i] = std::min(leave_[i], static_cast<float>(std::min(wayTo(depths->end[i]), way + 1)));
     leave_[i] = std::max(leave_[i], enter_[i]);
   }
   firstEnter_ = *std::ranges::min_element(enter_);

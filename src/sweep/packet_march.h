@@ -43,19 +43,24 @@ struct PacketPixels {
   std::array<glm::vec2, kRayGroup> aux;
 };
 
+/// Where rays begin and end, depths along the view axis, world units.
+struct PacketDepths {
+  std::array<double, kRayGroup> start{}, end{};
+};
+
 /// Takes packets through the slices, one after another. Each thread has one.
 class PacketMarch {
  public:
   explicit PacketMarch(const PacketFrame& frame);
 
   /// @param screen  the points of the screen that the rays are seen through
-  /// @param starts  depths along the view axis before which rays see nothing, world units; null: they begin at the eye
+  /// @param depths  between which rays see something; null: from the eye on
   /// @return the number of samples that were integrated
   std::uint64_t march(const std::array<glm::dvec2, kRayGroup>& screen, PacketPixels& pixels,
-                      const std::array<double, kRayGroup>* starts = nullptr);
+                      const PacketDepths* depths = nullptr);
 
  private:
-  void marchTogether(PacketPixels& pixels, const std::array<double, kRayGroup>* starts);
+  void marchTogether(PacketPixels& pixels, const PacketDepths* depths);
   using Lanes = std::array<float, kRayGroup>;
   // The bricks of a part of a layer, as they were listed last: those that are not held first.
   struct Listed {
@@ -68,7 +73,7 @@ class PacketMarch {
   };
   bool aim(const std::array<glm::dvec2, kRayGroup>& screen);
   bool enterBox();
-  void clip(const std::array<double, kRayGroup>* starts);
+  void clip(const PacketDepths* depths);
   void marchLayers();
   bool isActive(double from, double to, std::int64_t layer);
   bool hasBricks(double from, double to, std::int64_t cellN);

@@ -19,6 +19,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/draw/hybrid_picture.h"
+#include "umbrick/draw/mesh_picture.h"
 #include "umbrick/draw/value_picture.h"
 #include "umbrick/scene/capabilities.h"
 
@@ -74,8 +75,7 @@ RowSpan rowsOf(const Brick& brick, const IndexView& view, const glm::ivec3& inte
 }  // namespace
 
 bool raysSupport(const SceneSettings& scene) {
-  return supportsMode(scene, Technique::rays) &&
-         (!traitsOf(scene.mode).medium || scene.mode == Mode::xray || sweptSupports(scene));
+  return supportsMode(scene, Technique::rays) && (traitsOf(scene.mode).projection || sweptSupports(scene));
 }
 
 int raySamplesPerVoxel(const ResolvedScene& scene, const Bricks& volume) {
@@ -89,6 +89,7 @@ class RayRenderer::Implementation {
 
   void update(const ResolvedScene& next) {
     requireMode(next, Technique::rays);
+    checkMesh(next);
     if (showsValues(next.mode)) {
       if (!values_) values_.emplace(scene_.volume(), options_);
       values_->update(next);
@@ -108,17 +109,32 @@ class RayRenderer::Implementation {
 
   void draw(const ResolvedScene& scene, const RenderSample& sample) {
     picture_.reset();
-    if (!traitsOf(scene.mode).medium) {
-      picture_ = values_->draw(scene, sample, perVoxel_.value_or(raySamplesPerVoxel(scene, scene_.volume())));
+    if (!scene.mesh.shape) {
+      picture_ = drawVolume(scene, medium_, sample, nullptr);
       return;
     }
+    const MeshPicture mesh = drawMesh(scene, sample);
+    std::optional<ResolvedScene> medium = medium_;
+    if (medium) medium->background.reset();
+    Picture picture = drawVolume(beforeMesh(scene), medium, sample, &mesh.depth);
+    layOverMesh(scene, mesh, picture);
+    picture.stats.bufferBytes += (mesh.colour.pixels.size() + mesh.depth.pixels.size()) * sizeof(float);
+    picture_ = std::move(picture);
+  }
+
+  // @param shown  see mediumOf(); none in modes without a medium
+  // @param ends   depths at which rays end; null: nowhere
+  Picture drawVolume(const ResolvedScene& scene, const std::optional<ResolvedScene>& shown, const RenderSample& sample,
+                     const Image* ends) {
+    if (!traitsOf(scene.mode).medium)
+      return values_->draw(scene, sample, perVoxel_.value_or(raySamplesPerVoxel(scene, scene_.volume())), ends);
+    const ResolvedScene& medium = *shown;
     const bool through = scene.mode == Mode::xray;
     Picture picture = emptyPicture(scene, options_.visibilityAndDepth && !through);
-    const ResolvedScene& medium = *medium_;
     std::optional<FirstSurfaces> surfaces;
     if (scene.mode == Mode::hybrid) {
       values_->update(scene);  // changes something where another scene was refused for its medium alone
-      surfaces = values_->drawFirst(scene, sample);
+      surfaces = values_->drawFirst(scene, sample, ends);
     }
     const Image* const starts = surfaces ? &surfaces->start : nullptr;
     scene_.prepare(medium, sample, picture.stats);
@@ -126,12 +142,11 @@ class RayRenderer::Implementation {
     scene_.drawInBands(
         medium, medium.camera.height, kPacketEdge,
         [&](const Brick& brick) { return rowsOf(brick, scene_.view(), scene_.volume().layout.interior); },
-        [&](int begin, int end) { march(medium, frameOf(medium), starts, begin, end, picture); }, picture.stats);
+        [&](int begin, int end) { march(medium, frameOf(medium), starts, ends, begin, end, picture); }, picture.stats);
     if (through) showThrough(scene, picture);
     picture.stats.sweepMs = sweep.elapsedMs();
     picture.stats.bufferBytes = picture.colour.pixels.size() * sizeof(float);
-    if (surfaces) picture = composite(scene, std::move(*surfaces), picture);
-    picture_ = std::move(picture);
+    return surfaces ? composite(scene, std::move(*surfaces), picture) : picture;
   }
 
   Picture read() const {
@@ -157,8 +172,9 @@ class RayRenderer::Implementation {
 
   // Fills the rows of pixels begin <= y < end.
   // @param starts  depths from which rays see the medium; null: from the eye
-  void march(const ResolvedScene& scene, const PacketFrame& frame, const Image* starts, int begin, int end,
-             Picture& picture) const {
+  // @param ends    up to which they see it; null: all of it
+  void march(const ResolvedScene& scene, const PacketFrame& frame, const Image* starts, const Image* ends, int begin,
+             int end, Picture& picture) const {
     const int width = scene.camera.width, height = scene.camera.height;
     const int columns = (width + kPacketEdge - 1) / kPacketEdge, rows = (height + kPacketEdge - 1) / kPacketEdge;
     const IndexView& view = scene_.view();
@@ -175,7 +191,8 @@ class RayRenderer::Implementation {
           for (int row = range.begin(); row != range.end(); ++row)
             for (int column = 0; column < columns; ++column) {
               std::array<glm::dvec2, kRayGroup> screen;
-              std::array<double, kRayGroup> start{};
+              PacketDepths depths;
+              depths.end.fill(std::numeric_limits<double>::infinity());
               for (int i = 0; i < kRayGroup; ++i) {
                 // What would lie outside of the picture goes with its last pixels.
                 const int x = std::min(column * kPacketEdge + i % kPacketEdge, width - 1),
@@ -183,10 +200,11 @@ class RayRenderer::Implementation {
                 const glm::dvec2 pixel(x + 0.5, y + 0.5);
                 screen[static_cast<std::size_t>(i)] =
                     view.centre + view.halfExtent * (2.0 * pixel / glm::dvec2(width, height) - 1.0);
-                if (starts) start[static_cast<std::size_t>(i)] = static_cast<double>(*starts->at(x, y));
+                if (starts) depths.start[static_cast<std::size_t>(i)] = static_cast<double>(*starts->at(x, y));
+                if (ends) depths.end[static_cast<std::size_t>(i)] = static_cast<double>(*ends->at(x, y));
               }
               PacketPixels pixels{};
-              if (!nothing) taken += march.march(screen, pixels, starts ? &start : nullptr);
+              if (!nothing) taken += march.march(screen, pixels, starts || ends ? &depths : nullptr);
               for (int i = 0; i < kRayGroup; ++i) {
                 const int x = column * kPacketEdge + i % kPacketEdge, y = row * kPacketEdge + i / kPacketEdge;
                 if (x >= width || y >= height) continue;

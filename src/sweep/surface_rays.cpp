@@ -171,7 +171,8 @@ bool SurfaceRays::walkCell(const PlacedBrick& entry, const glm::ivec3& cell, dou
 
 bool SurfaceRays::tell(const Place& place, double t, std::size_t surface) {
   const glm::dvec3 local = ray_.at(t) - glm::dvec3(place.entry->origin + place.cell);
-  return (*visit_)({t, surface, gradientAt(place, glm::clamp(local, 0.0, 1.0))});
+  const glm::dvec3 inCell = glm::clamp(local, 0.0, 1.0);
+  return (*visit_)({t, surface, gradientAt(place, inCell), place.entry->brick, glm::dvec3(place.cell) + inCell});
 }
 
 // The difference of the values a voxel away on both sides. Values between voxels are sums of those at voxels, so that

@@ -20,6 +20,8 @@ struct SurfaceHit {
   double t = 0;             // along the ray
   std::size_t surface = 0;  // its number
   glm::dvec3 gradient{0};   // of the value, per voxel: central differences, interpolated as values are
+  const VoxelBrick* brick = nullptr;
+  glm::dvec3 at{0};  // in the brick, voxels from its first owned one
 };
 
 /// Takes rays through bricks, groups of cells and cells, and through no cell whose voxels do not lie on both sides of

@@ -101,23 +101,20 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
   lights_ = 0;
   whole_ = glm::vec3(1);
   if (occlusionMethod(scene) == Method::lightVolume) {
-    light_.update(visible_, volume().layout, scene,
-                  sample.lights.empty() ? lightDirections(scene, scene.occlusion.ordinates.directions) : sample.lights,
-                  planes_);
+    LightMedium medium{scene.transfer, lightsOf(scene, sample), {}, {}, scene.occlusion.ordinates.lightSpacing};
+    for (const Brick& brick : visible_) medium.cells.push_back(brick.origin);
+    light_.update(std::move(medium), scene, planes_, volume().layout);
     if (!inBands_) light_.store(voxels_);
-    stats.lightMs = light_.ms();
-    stats.directions = light_.stats().directions;
-    stats.windowUpdates = light_.stats().updates;
-    stats.lightSpacing = light_.stats().spacing;
-    stats.lightSpacingError = light_.stats().spacingError;
+    light_.addTo(stats);
     lights_ = light_.channels();
     whole_ = glm::vec3(light_.whole());
-  } else if (isShaded(scene)) {
+  }
+  if (isShaded(scene)) {
     const Stopwatch shading;
-    light_.forget();
-    shading_.update(voxels_, scene);
-    lights_ = shading_.channels();
-    stats.lightMs = shading.elapsedMs();
+    lights_ = shading_.begin(scene, occlusionMethod(scene) ? &light_ : nullptr);
+    if (!inBands_) shade();
+    whole_ = glm::vec3(1);  // what is reflected is light and all
+    stats.lightMs += shading.elapsedMs();
   }
   if (scene.camera.projection == Projection::orthographic) planes_.push_back(frontPlane(scene, volume()));
   stats.geometryMs = watch.elapsedMs() - stats.lightMs;
@@ -144,15 +141,19 @@ void SweptScene::drawInBands(const ResolvedScene& scene, int rows, int multiple,
       if (spans[i].meets(band.begin, band.end)) needed.push_back(visible_[i]);
     voxels_.hold(needed, *table_, scene.bricks.culling, true);
     if (classified) classify(voxels_, scene.transfer, largestExtinction());
-    if (isShaded(scene))
-      shading_.update(voxels_, scene);
-    else if (lights_ > 0)
-      light_.store(voxels_);
+    if (occlusionMethod(scene)) light_.store(voxels_);
+    if (isShaded(scene)) shade();
     stats.uploadMs += watch.elapsedMs();
     stats.uploadedBricks += voxels_.loaded();
     stats.textureBytes = std::max(stats.textureBytes, voxels_.bytes());
     draw(band.begin, band.end);
   }
+}
+
+// Puts what voxels reflect in the place of their light.
+void SweptScene::shade() {
+  shading_.update(voxels_);
+  light_.forget();
 }
 
 SweptFrame SweptScene::frame(const ResolvedScene& scene, bool aux) const {

@@ -63,6 +63,7 @@ class SweptScene {
 
  private:
   double largestExtinction() const;
+  void shade();
   std::uint64_t mediaBytes(bool classified) const;
 
   std::string technique_;

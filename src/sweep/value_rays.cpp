@@ -59,6 +59,7 @@ void ValueRays::update(const ResolvedScene& next) {
   if (surfaces) {
     checkSurfaces(next, voxels_.volume().value, voxels_.volume().layout.apron);
     SurfaceShader(next, voxels_.volume().indexToWorld);  // says whether there is light
+    checkSurfaceLight(next, voxels_.volume().hasGradients);
   }
   const std::vector<double> values = surfaces ? valuesOf(next) : std::vector<double>();
   if (selected_ && all_ == !surfaces && values_ == values && budgetMiB_ == next.bricks.budgetMiB &&
@@ -96,26 +97,30 @@ Picture ValueRays::begin(const ResolvedScene& scene, const RenderSample& sample)
   view_.seeThrough(sample.pixel);
   planes_ = indexPlanes(scene, voxels_.volume(), false);
   stats.bufferBytes = picture.colour.pixels.size() * sizeof(float);
+  if (surfaces && occlusionMethod(scene)) {
+    if (!light_) light_.emplace(voxels_.volume());
+    light_->update(scene, sample, voxels_, stats);
+  }
   return picture;
 }
 
-Picture ValueRays::draw(const ResolvedScene& scene, const RenderSample& sample, int perVoxel) {
+Picture ValueRays::draw(const ResolvedScene& scene, const RenderSample& sample, int perVoxel, const Image* ends) {
   Picture picture = begin(scene, sample);
   const Stopwatch sweep;
   if (traitsOf(scene.mode).surfaces)
-    drawSurfaces(scene, picture, nullptr);
+    drawSurfaces(scene, ends, picture, nullptr);
   else
-    drawProjection(scene, perVoxel, picture);
+    drawProjection(scene, perVoxel, ends, picture);
   picture.stats.sweepMs = sweep.elapsedMs();
   return picture;
 }
 
-FirstSurfaces ValueRays::drawFirst(const ResolvedScene& scene, const RenderSample& sample) {
+FirstSurfaces ValueRays::drawFirst(const ResolvedScene& scene, const RenderSample& sample, const Image* ends) {
   ResolvedScene surfaces = scene;
   surfaces.background.reset();
   FirstSurfaces first{begin(surfaces, sample), Image(scene.camera.width, scene.camera.height, 1)};
   const Stopwatch sweep;
-  drawSurfaces(surfaces, first.picture, &first.start);
+  drawSurfaces(surfaces, ends, first.picture, &first.start);
   first.picture.stats.sweepMs = sweep.elapsedMs();
   first.picture.stats.bufferBytes += first.start.pixels.size() * sizeof(float);
   return first;
@@ -133,7 +138,7 @@ void ValueRays::eachRow(int rows, const std::function<void(int)>& draw) const {
   });
 }
 
-void ValueRays::drawProjection(const ResolvedScene& scene, int perVoxel, Picture& picture) {
+void ValueRays::drawProjection(const ResolvedScene& scene, int perVoxel, const Image* ends, Picture& picture) {
   const Bricks& volume = voxels_.volume();
   const int width = scene.camera.width, height = scene.camera.height;
   Image values(width, height, 1);
@@ -155,6 +160,7 @@ void ValueRays::drawProjection(const ResolvedScene& scene, int perVoxel, Picture
           ray.leave = -1;
         else
           ray.clip(planes);
+        if (ends) ray.leave = std::min(ray.leave, static_cast<double>(*ends->at(x, y)));
       }
       ProjectionMarch::Values projected;
       march.march(rays, projected);
@@ -171,12 +177,15 @@ void ValueRays::drawProjection(const ResolvedScene& scene, int perVoxel, Picture
   picture.layers.push_back({"value", std::move(values), true});
 }
 
-void ValueRays::drawSurfaces(const ResolvedScene& scene, Picture& picture, Image* start) {
+void ValueRays::drawSurfaces(const ResolvedScene& scene, const Image* ends, Picture& picture, Image* start) {
   const Bricks& volume = voxels_.volume();
   const int width = scene.camera.width, height = scene.camera.height;
   std::optional<SurfaceLayers> layers;
   if (options_.visibilityAndDepth) layers.emplace(width, height);
-  const SurfaceShader shader(scene, volume.indexToWorld);
+  const SurfaceLight* const light = occlusionMethod(scene) ? &*light_ : nullptr;
+  const glm::dvec3 whole = light ? light->whole() : glm::dvec3(1);
+  const double power = whole.r + whole.g + whole.b;
+  const SurfaceShader shader(scene, volume.indexToWorld, whole);
   const CameraFrame camera = cameraFrame(scene.camera);
   const std::vector<glm::dvec4> planes = within(volume.domain, 0, planes_);
   const double full = 1 - scene.sampling.saturation;
@@ -188,15 +197,18 @@ void ValueRays::drawSurfaces(const ResolvedScene& scene, Picture& picture, Image
       const glm::dvec2 screen = screenOf(view_, x, y);
       ValueRay ray = valueRay(view_, screen);
       ray.clip(planes);
+      if (ends) ray.leave = std::min(ray.leave, static_cast<double>(*ends->at(x, y)));
       const WorldRay world = worldRay(scene.camera, camera, screen);
       glm::dvec4 pixel(0);
-      double depth = 0, behind = std::numeric_limits<double>::infinity();
+      double depth = 0, visibility = 0, behind = std::numeric_limits<double>::infinity();
       const auto visit = [&](const SurfaceHit& hit) {
-        const ShadedSurface shaded = shader.shade(hit.surface, hit.gradient, world.viewer);
+        const glm::dvec3 normal = shader.normalOf(hit.gradient, world.viewer);
+        const glm::dvec3 arriving = light ? light->shareAt(*hit.brick, hit.at, normal) : glm::dvec3(1);
         const double share = (1 - pixel.w) * scene.surfaces[hit.surface].opacity;
         if (layers && pixel.w == 0 && (share > 0 || start))
-          layers->keep(x, y, scene.surfaces[hit.surface].value, world.from + hit.t * world.along, shaded.normal);
-        pixel += share * glm::dvec4(shaded.colour, 1);
+          layers->keep(x, y, scene.surfaces[hit.surface].value, world.from + hit.t * world.along, normal);
+        pixel += share * glm::dvec4(shader.shade(hit.surface, normal, world.viewer, arriving), 1);
+        visibility += share * (light && power > 0 ? glm::dot(arriving, whole) / power : 1);
         depth += share * hit.t;
         behind = startBehind(scene, hit.t, pixel.w);
         return !start && pixel.w < full;
@@ -206,7 +218,8 @@ void ValueRays::drawSurfaces(const ResolvedScene& scene, Picture& picture, Image
       if (start) *start->at(x, y) = static_cast<float>(behind);
       if (!layers) continue;
       const auto opacity = static_cast<float>(pixel.w);
-      *picture.opacity.at(x, y) = *picture.visibility.at(x, y) = opacity;
+      *picture.opacity.at(x, y) = opacity;
+      *picture.visibility.at(x, y) = static_cast<float>(visibility);
       *picture.depth.at(x, y) =
           opacity > 0 ? static_cast<float>(depth / pixel.w) : std::numeric_limits<float>::infinity();
     }

@@ -10,6 +10,7 @@
 #include "sweep/brick_table.h"
 #include "sweep/brick_voxels.h"
 #include "sweep/projection_march.h"
+#include "sweep/surface_light.h"
 #include "umbrick/draw/hybrid_picture.h"
 
 namespace umbrick {
@@ -26,20 +27,22 @@ class ValueRays {
   ///   than the scene's memory budget
   void update(const ResolvedScene& next);
   /// @param perVoxel  slices of a projection between two slices of voxels
-  Picture draw(const ResolvedScene& scene, const RenderSample& sample, int perVoxel);
+  /// @param ends      depths at which rays end, world units; null: nowhere
+  Picture draw(const ResolvedScene& scene, const RenderSample& sample, int perVoxel, const Image* ends);
   /// Draws the first surface of each ray, of a scene of the mode hybrid.
-  FirstSurfaces drawFirst(const ResolvedScene& scene, const RenderSample& sample);
+  FirstSurfaces drawFirst(const ResolvedScene& scene, const RenderSample& sample, const Image* ends);
 
  private:
-  void drawProjection(const ResolvedScene& scene, int perVoxel, Picture& picture);
+  void drawProjection(const ResolvedScene& scene, int perVoxel, const Image* ends, Picture& picture);
   Picture begin(const ResolvedScene& scene, const RenderSample& sample);
   /// @param start  null: all surfaces of a ray are drawn; else the first one, with where the medium behind it begins
-  void drawSurfaces(const ResolvedScene& scene, Picture& picture, Image* start);
+  void drawSurfaces(const ResolvedScene& scene, const Image* ends, Picture& picture, Image* start);
   void eachRow(int rows, const std::function<void(int)>& draw) const;
 
   RenderOptions options_;
   BrickVoxels voxels_;
   std::optional<BrickTable> table_;
+  std::optional<SurfaceLight> light_;  // of surfaces; none: there was no such scene yet
   // What the bricks that are held were selected for.
   bool selected_ = false, all_ = false;
   std::vector<double> values_;

@@ -101,6 +101,7 @@ TEST_CASE("Every shader that is not an include compiles by itself, or says where
                                           {"kColoured", perspective},
                                           {"kShaded", perspective},
                                           {"kStarts", perspective},
+                                          {"kEnds", perspective},
                                           {"kShadingLights", planes > 0 ? 2 : 0},
                                           {"kProjection", quadrature},
                                           {"kPerVoxel", 1 + perspective},

@@ -137,8 +137,7 @@ TEST_CASE("Surfaces on OpenGL are those of rays on the CPU and of the reference"
       SECTION("clipped") { scene.clipPlanes = {{0, 0, 1, -grid.worldBounds().centre().z}}; }
       SECTION("flat") { scene.shading.kind = Shading::none; }
       SECTION("under lights of the world and of the view") {
-        scene.model = Model::lights;
-        scene.method = Method::lightVolume;
+        scene.shading.light = ShadingLight::sources;
         scene.lights = {{LightFrame::world, ConeLight{{1, 2, 3}, 0, {1, 0.7, 0.2}}},
                         {LightFrame::view, ConeLight{{-1, 0.5, 1}, 0, {0, 0.2, 0.5}}}};
       }

@@ -182,7 +182,7 @@ TEST_CASE("Surfaces are those of the reference", "[sweep][cpu][modes]") {
       SECTION("clipped") { scene.clipPlanes = {{0, 0, 1, -grid.worldBounds().centre().z}}; }
       SECTION("flat") { scene.shading.kind = Shading::none; }
       SECTION("under lights of the world and of the view") {
-        scene.model = Model::lights;
+        scene.shading.light = ShadingLight::sources;
         scene.lights = {{LightFrame::world, ConeLight{{1, 2, 3}, 0, {1, 0.7, 0.2}}},
                         {LightFrame::view, ConeLight{{-1, 0.5, 1}, 0, {0, 0.2, 0.5}}}};
       }
@@ -253,7 +253,7 @@ TEST_CASE("Phong's highlight lies where the light is mirrored", "[sweep][cpu][mo
   // A headlight is mirrored in the middle, where all of it comes back.
   CHECK(at(valuePicture(grid, scene).colour, 40, 40) == Approx(0.5 * (0.1 + 0.6) + 0.3).epsilon(1e-3));
   // A light from 60 degrees to the right is mirrored where the surface faces 30 degrees: at 17 sin 30, 17.2 pixels.
-  scene.model = Model::lights;
+  scene.shading.light = ShadingLight::sources;
   scene.lights = {{LightFrame::view, ConeLight{{std::sqrt(3.0), 0, 1}, 0, glm::dvec3(1)}}};
   const Image lit = valuePicture(grid, scene).colour;
   const double cos30 = std::sqrt(0.75);

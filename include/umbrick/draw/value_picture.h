@@ -22,8 +22,13 @@ inline constexpr int kGradientApron = 2;
 /// @throw InvalidArgument  there is no surface, or one of a value that the volume does not have; the apron is too small
 void checkSurfaces(const ResolvedScene& scene, const Range& values, int apron);
 
+/// Checks whether the light that reaches surfaces can be computed, see umbrick/scene/surface_light.h.
+/// @param gradients  whether bricks have them
+/// @throw InvalidArgument  it cannot: the model or the method is none of light volumes
+void checkSurfaceLight(const ResolvedScene& scene, bool gradients);
+
 /// Checks what a medium that reflects light asks for. @param apron  of bricks
-/// @throw InvalidArgument  as shadingLights; the medium is lit in another way, too; the apron is too small
+/// @throw InvalidArgument  as shadingLights; the apron is too small
 void checkShading(const ResolvedScene& scene, int apron);
 
 /// Returns the scene whose medium a mode sees. To an X-ray all else than the light that gets through does not matter,

@@ -34,6 +34,7 @@
 #include "umbrick/brick/bricks.h"
 #include "umbrick/optics/transfer_function.h"
 #include "umbrick/scene/lights.h"
+#include "umbrick/scene/resolve.h"
 
 namespace umbrick {
 
@@ -49,8 +50,18 @@ struct LightMedium {
   /// Light is held at every voxel (1) or at every second one along each axis (2), which takes a sixth of the memory and
   /// half the time. 0: at every voxel, unless there is no memory for that.
   int spacing = 0;
+  /// Values on whose surfaces light is asked for, too: it is held around them as it is around the medium, for a voxel
+  /// more than the cells that they cross. They keep no light away.
+  std::vector<double> surfaces = {};
   bool operator==(const LightMedium&) const = default;
 };
+
+/// Returns what the light at a scene's surfaces depends on, but for the planes that cut the medium: the bricks that the
+/// transfer function shows, and those that a surface crosses.
+/// @throw InvalidArgument  as backgroundBricks
+LightMedium lightAtSurfaces(const Bricks& volume, const ResolvedScene& scene, std::vector<LightDirection> directions);
+/// Tells whether a function shows the background of a volume, whose medium ends at the faces of mediumBox() then.
+bool showsBackground(const TransferFunction& transfer, const Bricks& volume);
 
 /// Tells whether a plane leaves anything out of bricks that are grown by a voxel, so that it is one of a medium's.
 /// @param cells  first owned voxels; interior: owned voxels along each axis

@@ -38,6 +38,7 @@ struct AskedScene {
   std::optional<double> sigmaScale;
   std::vector<double> isoValues, isoOpacities;  // of isosurfaces, one after another
   std::vector<std::vector<double>> isoColours;
+  std::optional<std::string> mesh;  // its file
   bool orthographic = false;
   /// Sets the field of each option of the table of scene fields that was given, by the name of the option.
   std::map<std::string, std::function<void(Scene&)>, std::less<>> fields;

@@ -58,13 +58,15 @@ const ModeTraits& traitsOf(Mode mode);
 
 /// Tells whether a technique renders pictures of a mode anywhere. @pre not Technique::automatic
 bool supports(Technique technique, Mode mode);
-/// Tells whether a technique renders the scene's mode with its shading.
+/// Tells whether a technique renders the scene's mode with its shading, and its mesh where it has one.
 bool supportsMode(const SceneSettings& scene, Technique technique);
 /// @throw InvalidArgument  the technique does not render the scene's mode, and which do; or the mode cannot be shaded
 void requireMode(const SceneSettings& scene, Technique technique);
 
 /// Tells whether a picture of the scene reflects light.
 bool isShaded(const SceneSettings& scene);
+/// Tells whether the scene's mesh does.
+bool isMeshShaded(const SceneSettings& scene);
 
 /// Tells whether light may come from behind what the viewer sees. Then what lies behind the eye occludes, too, and
 /// environments light as a whole; else lights have to be in front of the viewer, and the front half of environments

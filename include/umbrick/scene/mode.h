@@ -45,7 +45,8 @@ enum class ShadingLight { automatic, headlight, sources };
 inline constexpr Name<ShadingLight> kShadingLights[]{
     {"auto", ShadingLight::automatic}, {"headlight", ShadingLight::headlight}, {"sources", ShadingLight::sources}};
 
-/// Phong's model: colour (ambient + diffuse N.L radiance) + specular (R.V)^shininess radiance, summed over the lights.
+/// Phong's model: colour (ambient + diffuse N.L radiance) + specular (R.V)^shininess radiance, summed over the lights;
+/// what of them arrives under models with occlusion is in umbrick/scene/surface_light.h.
 /// Source: Phong 1975, doi:10.1145/360825.360839
 struct ShadingOptions {
   Shading kind = Shading::automatic;

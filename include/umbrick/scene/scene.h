@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +21,8 @@
 #include "umbrick/scene/scene_keys.h"
 
 namespace umbrick {
+
+class Mesh;
 
 /// Which light is scattered at a point. `emission` scatters all of the ambient radiance. The others scatter the
 /// share V of it that the medium lets in, as the mean over directions: of a cone around the slice normal (`cone`) or
@@ -197,6 +200,18 @@ struct Orbit {
   bool operator==(const Orbit&) const = default;
 };
 
+/// An opaque mesh in the volume, such as an implant or an instrument. Each ray ends where it meets the mesh first, so
+/// that what a mode shows of the volume is what lies in front of it. Clipping does not cut the mesh. It is shaded by
+/// Phong's model unless there is no shading, by the lights that shadingLights() returns; no medium keeps light from it,
+/// and it casts no shadow.
+struct SceneMesh {
+  std::filesystem::path file;         // name of the file in a scene file
+  std::shared_ptr<const Mesh> shape;  // in the world, world units; none: there is no mesh
+  glm::dvec3 colour{0.8};             // linear RGB in [0, 1]
+  /// Compares names, colours and triangles.
+  bool operator==(const SceneMesh& other) const;
+};
+
 /// What a scene has whether or not its volume is known. scene_fields.h has the unit, range and help of each field.
 struct SceneSettings {
   VolumeReference volume;
@@ -206,6 +221,7 @@ struct SceneSettings {
   Technique technique = Technique::automatic;
   Mode mode = Mode::integrate;
   std::vector<SceneSurface> surfaces;  // of isosurface and hybrid; none of a level set: where it is 0
+  SceneMesh mesh;
   ShadingOptions shading;
   /// Gradient magnitudes from which and up to which a medium appears: sigma_t is scaled from 0 at the first one to 1 at
   /// the second one. Of a Scene in its gradientUnit, else grid units per world unit. Both 0: the medium stays as it is.
@@ -249,6 +265,7 @@ struct Scene : SceneSettings {
 ///   gradientOpacity [low, high], gradientUnit ("grid", "percent")    applied to the transfer function
 ///   mode       "integrate", "mip", "minip", "average", "xray", "isosurface", "hybrid"
 ///   surfaces   [{value, colour [r, g, b], opacity}, ...]
+///   mesh       file (PLY, OBJ, STL), colour [r, g, b]
 ///   shading    kind ("auto", "none", "phong"), light ("auto", "headlight", "sources"), ambient, diffuse, specular,
 ///              shininess
 ///   light      ambient [r, g, b], background [r, g, b], sources [{type, frame ("view", "world"), ...}, ...]; by type,
