@@ -24,27 +24,28 @@ std::optional<FrameRange> askedRange(const FrameOptions& options) {
 }
 
 // Whether the volume is one file of several.
-bool holdsFrames(const RenderCommand& command, const VolumeReference& volume) try {
-  if (command.scene->volume.frame || (!volume.raw && holdsGrids(volume.file))) return false;
+bool holdsFrames(const VolumeReference& volume) try {
+  if (!volume.raw && holdsGrids(volume.file)) return false;
   return describeVolume(volume.file, openOptions(volume)).frames > 1;
 } catch (const InvalidArgument&) {
   return false;  // what is wrong is told where it is opened
 }
 
 // The frames that follow from files.
-FrameJob jobOf(const FrameSequence& sequence, const VolumeReference& volume, const RenderCommand& command) {
+FrameJob jobOf(const FrameSequence& sequence, const VolumeReference& volume, const FrameOptions& options) {
+  FrameJob job;
   if (const std::string gaps = missingText(sequence.missing); !gaps.empty()) {
-    if (!command.frames.skipMissing)
+    if (!options.skipMissing)
       throw Error(volume.file.string() + ": " + gaps + "; --skip-missing goes on without them, --frames picks others");
-    tellMissing(volume.file, sequence.missing);
+    job.notes.push_back(volume.file.string() + ": " + gaps);
   }
   for (const fs::path& file : sequence.leftOut)
-    std::cerr << printable(file.string()) << ": left out: another file has its number, or the number is too large\n";
+    job.notes.push_back(file.string() + ": left out: another file has its number, or the number is too large");
   const FrameRange range =
-      askedRange(command.frames).value_or(FrameRange{sequence.frames.front().number, sequence.frames.back().number});
+      askedRange(options).value_or(FrameRange{sequence.frames.front().number, sequence.frames.back().number});
   const auto count = static_cast<double>((range.last - range.first) / range.step + 1);
-  FrameJob job;
   job.step = range.step;
+  job.skipMissing = options.skipMissing;
   for (const FrameFiles& files : sequence.frames) {
     FrameJob::Frame frame{.number = files.number, .volume = volume};
     frame.volume.file = files.input;
@@ -77,12 +78,10 @@ std::optional<FrameJob> framesOf(const RenderCommand& command, const VolumeRefer
   if (!several && options.shutter > 0)
     throw UsageError("--shutter: expected several pictures, by --count or of a sequence");
   if (!several) return {};
-  ConvertOptions open;
-  open.source.open = openOptions(volume);
-  if (isFramePattern(volume.file))
-    return jobOf(findFrames(volume.file, {}, askedRange(options), open), volume, command);
-  if (holdsFrames(command, volume))
-    return jobOf(findFramesInside(volume.file, {}, askedRange(options), open), volume, command);
+  if (std::optional<FrameJob> job = findSequence(volume, command.scene->volume.frame.has_value(), options)) {
+    for (const std::string& note : job->notes) std::cerr << printable(note) << '\n';
+    return job;
+  }
   if (!options.range.empty())
     throw UsageError("--frames: is for sequences, as 'smoke_%04d.vdb' or a file of several volumes, found " +
                      volume.file.string() +
@@ -152,6 +151,16 @@ void tellFinished(const FrameJob& job) {
 }
 
 }  // namespace
+
+std::optional<FrameJob> findSequence(const VolumeReference& volume, bool one, const FrameOptions& options) {
+  ConvertOptions open;
+  open.source.open = openOptions(volume);
+  if (isFramePattern(volume.file))
+    return jobOf(findFrames(volume.file, {}, askedRange(options), open), volume, options);
+  if (!one && holdsFrames(volume))
+    return jobOf(findFramesInside(volume.file, {}, askedRange(options), open), volume, options);
+  return {};
+}
 
 std::optional<FrameJob> findFrameJob(const RenderCommand& command, const Scene& scene) {
   refuseSeveralNumbers(scene.volume.file);

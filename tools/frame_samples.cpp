@@ -15,8 +15,7 @@ namespace {
 using Progress = std::function<void(double)>;
 
 // Returns the volume of a frame; null where it holds nothing, or where it cannot be read and is to be skipped.
-std::shared_ptr<const Volume> loadSample(const RenderCommand& command, const FrameJob::Frame& frame,
-                                         const Progress& progress) {
+std::shared_ptr<const Volume> loadSample(const FrameJob& job, const FrameJob::Frame& frame, const Progress& progress) {
   try {
     return openVolumeOf(frame.volume, progress);
   } catch (const EmptyVolume&) {
@@ -24,7 +23,7 @@ std::shared_ptr<const Volume> loadSample(const RenderCommand& command, const Fra
   } catch (const Interrupted&) {
     throw;
   } catch (const Error&) {
-    if (!command.frames.skipMissing) throw;
+    if (!job.skipMissing) throw;
     return nullptr;  // is told when its turn comes
   }
 }
@@ -32,7 +31,7 @@ std::shared_ptr<const Volume> loadSample(const RenderCommand& command, const Fra
 // What the samples show together.
 class SampleView {
  public:
-  SampleView(const RenderCommand& command, const Scene& scene) : command_(command), scene_(scene) {}
+  SampleView(const SceneOptions& options, const Scene& scene) : options_(options), scene_(scene) {}
 
   void add(std::int64_t number, const Volume& volume) {
     Scene shown = scene_;
@@ -47,7 +46,7 @@ class SampleView {
         hints_.transfer = suggested;
       }
       shown.transfer = suggested.transfer;
-      applyWindow(*command_.scene, shown);
+      applyWindow(options_, shown);
     }
     numbers_.push_back(number);
     if (!scene_.orbit) return;
@@ -68,7 +67,7 @@ class SampleView {
   }
 
  private:
-  const RenderCommand& command_;
+  const SceneOptions& options_;
   const Scene& scene_;
   SceneHints hints_;
   double reach_ = 0;
@@ -78,29 +77,31 @@ class SampleView {
 
 }  // namespace
 
-OpenedScene openFrames(const RenderCommand& command, const FrameJob& job, const Scene& scene,
-                       const Progress& progress) {
+OpenedScene openFrames(const SceneOptions& options, const FrameJob& job, const Scene& scene, const Progress& progress) {
   if (job.oneVolume) {
-    OpenedScene opened = openScene(*command.scene, scene, progress);
+    OpenedScene opened = openScene(options, scene, progress);
     // An orbit looks at one box in all frames.
     if (scene.orbit && !scene.tracks.empty()) opened.seen = visibleAtAnyKey(*opened.volume, opened.scene);
     return opened;
   }
   const std::size_t count = job.frames.size();
-  SampleView view(command, scene);
+  SampleView view(options, scene);
   std::shared_ptr<const Volume> first;
   std::size_t next = 0;
   for (; next < count && !first; ++next) {
-    first = loadSample(command, job.frames[next], progress);
+    first = loadSample(job, job.frames[next], progress);
     if (first) view.add(job.frames[next].number, *first);
   }
   if (!first) throw InvalidArgument(scene.volume.file.string() + ": none of its frames holds anything to show");
+  const std::size_t shown = next - 1;
   const bool open = !scene.transfer || scene.orbit;
   for (const std::size_t sample : std::set<std::size_t>{count / 2, count - 1})
     if (open && sample >= next)
-      if (const auto volume = loadSample(command, job.frames[sample], progress))
+      if (const auto volume = loadSample(job, job.frames[sample], progress))
         view.add(job.frames[sample].number, *volume);
-  return completeScene(*command.scene, scene, first, view.hints());
+  OpenedScene opened = completeScene(options, scene, first, view.hints());
+  opened.frame = shown;
+  return opened;
 }
 
 Box visibleAtAnyKey(const Volume& volume, const Scene& scene) {

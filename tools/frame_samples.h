@@ -17,7 +17,7 @@ namespace umbrick::tools {
 /// @param progress  of the volumes that are loaded, see Volume
 /// @return the volume is that of the first frame that holds something
 /// @throw UsageError, IoError, InvalidArgument  as openScene, and where no frame holds anything
-OpenedScene openFrames(const RenderCommand& command, const FrameJob& job, const Scene& scene,
+OpenedScene openFrames(const SceneOptions& options, const FrameJob& job, const Scene& scene,
                        const std::function<void(double)>& progress);
 
 /// Returns the box around what is visible of a volume with any of the scene's transfer functions.

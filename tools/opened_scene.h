@@ -1,6 +1,7 @@
 // A scene from the command line together with its volume, and what is chosen where neither says anything.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -20,6 +21,7 @@ struct OpenedScene {
   std::string chosen = {};
   /// Of a sequence: the box that the camera looks at, see SceneHints.
   std::optional<Box> seen = {};
+  std::size_t frame = 0;  // of a sequence: which one the volume is, counted from 0
 };
 
 /// Loads the volume of a scene that makeScene() made and completes the scene.

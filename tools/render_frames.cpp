@@ -4,7 +4,6 @@
 #include <atomic>
 #include <chrono>
 #include <iostream>
-#include <limits>
 #include <set>
 #include <string>
 #include <thread>
@@ -24,7 +23,7 @@
 #include "umbrick/core/printable.h"
 #include "umbrick/core/short_number.h"
 #include "umbrick/core/stopwatch.h"
-#include "umbrick/draw/value_picture.h"
+#include "umbrick/draw/blank_picture.h"
 #include "umbrick/image/exr.h"
 #include "umbrick/render/volume_frames.h"
 #include "umbrick/shade/prepare.h"
@@ -44,19 +43,6 @@ class StopWatcher {
  private:
   std::jthread thread_;
 };
-
-// The picture of a volume that holds nothing.
-Picture blankPicture(const ResolvedScene& scene, bool layers) {
-  const int width = scene.camera.width, height = scene.camera.height;
-  Picture picture;
-  picture.colour = Image(width, height, 4);
-  for (std::size_t i = 0; i < picture.colour.pixels.size(); i += 4)
-    storeOver(scene, glm::dvec4(0), &picture.colour.pixels[i]);
-  if (!layers) return picture;
-  picture.visibility = picture.opacity = picture.depth = Image(width, height, 1);
-  std::fill(picture.depth.pixels.begin(), picture.depth.pixels.end(), std::numeric_limits<float>::infinity());
-  return picture;
-}
 
 // Draws the frames of a job, writes them and says what has become of each.
 class FrameRun {
@@ -111,7 +97,7 @@ FrameRun::FrameRun(const RenderCommand& command, FrameJob job, const Scene& scen
 
 void FrameRun::open(const Scene& scene) {
   bar_.begin("loading " + scene.volume.file.filename().string());
-  opened_ = openFrames(command_, job_, scene, showShare(bar_, stop_, "interrupted; nothing was written"));
+  opened_ = openFrames(*command_.scene, job_, scene, showShare(bar_, stop_, "interrupted; nothing was written"));
   engine_ = chooseEngine(opened_.scene, parseName(kEngineKinds, command_.backend, "--backend"));
   context_.reset(engine_.context.release());
   bar_.clear();

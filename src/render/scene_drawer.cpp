@@ -22,6 +22,11 @@ struct MadeFor {
   bool byAll;  // techniques can render the mode and its shading; else another one may have to be chosen
   BrickSettings bricks;
   bool operator==(const MadeFor&) const = default;
+  // Whether the same engine draws both.
+  bool sameEngine(MadeFor other) const {
+    other.bricks = bricks;
+    return *this == other;
+  }
 };
 MadeFor madeFor(const ResolvedScene& scene) {
   return {scene.technique,
@@ -40,7 +45,14 @@ struct SceneDrawer::Parts {
   Engine engine;
   std::unique_ptr<Bricks> bricks;
   std::unique_ptr<ResidentVolume> resident;  // none on the CPU
-  std::unique_ptr<Renderer> renderer;
+  std::unique_ptr<Renderer> renderer;        // null: no volume is cut
+
+  // A renderer points to the bricks, and these to their volume.
+  void release() {
+    renderer.reset();
+    resident.reset();
+    bricks.reset();
+  }
 };
 
 SceneDrawer::SceneDrawer(std::shared_ptr<const Volume> volume, EngineKind kind, RenderOptions options, bool refined,
@@ -53,26 +65,35 @@ SceneDrawer::SceneDrawer(std::shared_ptr<const Volume> volume, EngineKind kind, 
 
 SceneDrawer::~SceneDrawer() = default;
 
+void SceneDrawer::open(std::shared_ptr<const Volume> volume) {
+  if (parts_) parts_->release();
+  volume_ = std::move(volume);
+}
+
+// Cuts the volume and makes the renderer, with the engine that there is if it fits.
 void SceneDrawer::make(const ResolvedScene& scene) {
-  parts_.reset();
-  auto made = std::make_unique<Parts>(Parts{madeFor(scene), chooseEngine(scene, kind_), {}, {}, {}});
+  const MadeFor key = madeFor(scene);
+  if (parts_ && !parts_->key.sameEngine(key)) parts_.reset();
+  const bool other = !parts_;
+  if (other) parts_ = std::make_unique<Parts>(Parts{key, chooseEngine(scene, kind_), {}, {}, {}});
+  parts_->release();
+  parts_->key = key;
   ResolvedScene decided = scene;
-  decided.technique = made->engine.technique;
-  if (made->engine.context) {
-    made->bricks = refined_ ? volume_->cutForRefinement(decided) : volume_->cut(decided);
-    made->resident =
-        std::make_unique<ResidentVolume>(*made->engine.context, *made->bricks, atlasOptions(decided, *made->bricks));
-    made->renderer = makeRenderer(*made->resident, decided, options_);
+  decided.technique = parts_->engine.technique;
+  if (parts_->engine.context) {
+    parts_->bricks = refined_ ? volume_->cutForRefinement(decided) : volume_->cut(decided);
+    parts_->resident = std::make_unique<ResidentVolume>(*parts_->engine.context, *parts_->bricks,
+                                                        atlasOptions(decided, *parts_->bricks));
+    parts_->renderer = makeRenderer(*parts_->resident, decided, options_);
   } else {
-    made->bricks = volume_->cutForCpu(decided);
-    made->renderer = makeRenderer(*made->bricks, decided, options_);
+    parts_->bricks = volume_->cutForCpu(decided);
+    parts_->renderer = makeRenderer(*parts_->bricks, decided, options_);
   }
-  parts_ = std::move(made);
-  if (chosen_) chosen_(parts_->engine);
+  if (other && chosen_) chosen_(parts_->engine);
 }
 
 Renderer& SceneDrawer::rendererFor(const ResolvedScene& scene) {
-  if (!parts_ || parts_->key != madeFor(scene)) {
+  if (!parts_ || !parts_->renderer || parts_->key != madeFor(scene)) {
     make(scene);
     return *parts_->renderer;
   }

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 if(UMBRICK_TOOLS)
-  umbrick_tests(view comparison_test.cpp file_opening_test.cpp message_fuzz_test.cpp open_folder_test.cpp server_test.cpp surface_value_test.cpp view_state_test.cpp viewer_test.cpp
+  umbrick_tests(view comparison_test.cpp file_opening_test.cpp message_fuzz_test.cpp open_folder_test.cpp sequence_test.cpp server_test.cpp surface_value_test.cpp view_state_test.cpp viewer_test.cpp
                 ../fuzz/message_target.cpp)
-  target_link_libraries(umbrick_view_tests PRIVATE umbrick_view Boost::headers)
+  target_link_libraries(umbrick_view_tests PRIVATE umbrick_view Boost::headers ZLIB::ZLIB)
   # Headers of the viewer use private ones of core.
   target_include_directories(umbrick_view_tests PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_compile_definitions(umbrick_view_tests PRIVATE UMBRICK_FUZZ_CORPUS="${PROJECT_SOURCE_DIR}/tests/fuzz/corpus")

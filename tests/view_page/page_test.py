@@ -374,7 +374,8 @@ def open_files(page, folder):
     page.wait("a listing", lambda: [each for each in page.driver.find_elements(*entries) if each.text == "below/"])
     page.shot("files")
     page.press("below/")
-    page.wait("what is below", lambda: [each.text for each in page.driver.find_elements(*entries)] == ["ball.mha"])
+    page.wait("what is below", lambda: [each.text for each in page.driver.find_elements(*entries)]
+              == ["ball.mha", "beat.nrrd"])
     page.press("ball.mha")
     page.wait("the other volume", lambda: "ball.mha" in page.driver.title)
     page.picture_at_rest()
@@ -387,6 +388,41 @@ def open_files(page, folder):
     before = page.pixels()
     page.keys("5")
     page.change("a key", before)
+
+
+def sequence(page, folder):
+    """A file of several volumes has a bar: the slider and keys choose a frame, and play runs through all and begins anew."""
+    bar = page.find("#sequence")
+    assert not bar.is_displayed(), "a single volume has a bar of frames"
+    if not folder or not os.path.isfile(os.path.join(folder, "below", "beat.nrrd")):
+        return
+    page.find("#open").click()
+    page.wait("the listing", lambda: page.find(".files").is_displayed())
+    page.press("beat.nrrd")
+    page.wait("the bar", lambda: bar.is_displayed() and bar.get_attribute("data-number") == "0")
+    first = page.picture_at_rest()
+    slider = page.find('#sequence input[type="range"]')
+    page.driver.execute_script(TYPE, slider, "4")
+    page.wait("frame 4", lambda: page.find("#picture").get_attribute("data-number") == "4")
+    larger = page.change("the slider", first)
+    assert page.labelled("frame").get_attribute("value") == "4"
+    page.shot("sequence")
+    page.keys(",")
+    page.wait("the frame before", lambda: page.find("#picture").get_attribute("data-number") == "3")
+    page.change("the frame before", larger)
+    seen = set()
+
+    def all_seen():
+        seen.add(page.find("#picture").get_attribute("data-number"))
+        return len(seen) == 6 and page.find("#picture").get_attribute("data-number") == "1"
+    page.driver.execute_script(TYPE, page.labelled("frames a second, at most"), "4")
+    page.keys("p")
+    page.wait("all frames, and those at the beginning again", all_seen)
+    assert bar.get_attribute("data-playing") == "true" and not page.at_rest(), "what is played is no draft"
+    page.press("Stop")
+    page.wait("it stops", lambda: bar.get_attribute("data-playing") == "false")
+    page.picture_at_rest()
+    assert page.find("#picture").get_attribute("data-number") == bar.get_attribute("data-number")
 
 
 def light(page):
@@ -488,7 +524,8 @@ def main():
         return SKIPPED
     steps = [open_page, drag_point, add_and_remove_point, move_camera, zoom, clip, clip_by_handle, shapes, surfaces,
              light, probe, pause, compare, functools.partial(save, folder=arguments.folder), refuse, help_list,
-             functools.partial(open_files, folder=arguments.folder), narrow, no_console_errors]
+             functools.partial(open_files, folder=arguments.folder),
+             functools.partial(sequence, folder=arguments.folder), narrow, no_console_errors]
     if arguments.only:
         steps = [step for step in steps if name_of(step) in ["open_page", *arguments.only]]
     try:

@@ -64,6 +64,13 @@ void FileOpening::open(const std::string& path) {
 void FileOpening::open(std::shared_ptr<UploadedFile> file) {
   start(file->name(), [this, file](const std::function<void(double)>& progress) {
     OpenedVolume opened = open_(file->path(), progress);
+    if (opened.sequence) {
+      // Its other frames are read from the file later.
+      auto sequence = std::make_shared<ViewSequence>(*opened.sequence);
+      sequence->whole.file = file->name();
+      sequence->keeps = file;
+      opened.sequence = std::move(sequence);
+    }
     // The file goes away. A scene that is saved names it without its folder: it is to lie beside the scene.
     opened.scene.volume.file = file->name();
     return opened;

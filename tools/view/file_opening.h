@@ -13,6 +13,7 @@
 #include "view/latest_job.h"
 #include "view/open_folder.h"
 #include "view/uploaded_file.h"
+#include "view/view_sequence.h"
 
 namespace umbrick::view {
 
@@ -20,7 +21,8 @@ namespace umbrick::view {
 struct OpenedVolume {
   Scene scene;  // with a transfer function
   std::shared_ptr<const Volume> volume;
-  std::string chosen;  // a line on what was chosen for it, or nothing
+  std::string chosen;                                 // a line on what was chosen for it, or nothing
+  std::shared_ptr<const ViewSequence> sequence = {};  // of which it is a frame; null: it is alone
 };
 
 /// Opens a volume or a scene. It reads no file outside of the folder of that one.

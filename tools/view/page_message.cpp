@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/page_message.h"
 
-#include <string>
-
-#include "umbrick/core/error.h"
+#include "umbrick/core/short_number.h"
 
 namespace umbrick::view {
 
@@ -25,6 +23,22 @@ Json parseMessage(std::string_view text) {
   if (!message.is_object() || !message.contains("type") || !message["type"].is_string())
     throw InvalidArgument("message: has no type");
   return message;
+}
+
+FrameRequest parseFrameRequest(const Json& message) {
+  const bool moving = message.contains("moving") && messageField<bool>(message, "moving");
+  return {messageField<std::int64_t>(message, "number"), moving};
+}
+
+PlayRequest parsePlayRequest(const Json& message) {
+  PlayRequest request;
+  if (message.contains("on")) request.on = messageField<bool>(message, "on");
+  if (message.contains("loop")) request.loop = messageField<bool>(message, "loop");
+  if (message.contains("fps")) request.fps = messageField<double>(message, "fps");
+  if (request.fps && !(*request.fps >= kLeastPlayRate && *request.fps <= kMostPlayRate))
+    throw InvalidArgument("play: fps is " + shortNumber(*request.fps, 6) + ", expected " +
+                          shortNumber(kLeastPlayRate, 6) + " to " + shortNumber(kMostPlayRate, 6));
+  return request;
 }
 
 }  // namespace umbrick::view

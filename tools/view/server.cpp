@@ -176,10 +176,10 @@ class Page final : public ViewClient, public std::enable_shared_from_this<Page> 
   }
 
   std::string headOf(const ViewFrame& frame) {
-    const std::string json =
-        nlohmann::ordered_json{{"frame", ++frames_}, {"width", frame.width}, {"height", frame.height},
-                               {"mime", frame.mime}, {"draft", frame.draft}, {"samples", frame.samples}}
-            .dump();
+    nlohmann::ordered_json about{{"frame", ++frames_}, {"width", frame.width}, {"height", frame.height},
+                                 {"mime", frame.mime}, {"draft", frame.draft}, {"samples", frame.samples}};
+    if (frame.number) about["number"] = *frame.number;
+    const std::string json = about.dump();
     std::string head;
     for (int byte = 0; byte < 4; ++byte) head += static_cast<char>((json.size() >> (8 * byte)) & 0xff);
     return head + json;

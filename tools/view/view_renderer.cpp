@@ -9,6 +9,7 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/short_number.h"
 #include "umbrick/core/stopwatch.h"
+#include "umbrick/draw/blank_picture.h"
 #include "view/frame_encoder.h"
 
 namespace umbrick::view {
@@ -30,8 +31,13 @@ ResolvedScene draftOf(const ResolvedScene& scene, double scale, int directions) 
 }  // namespace
 
 ViewRenderer::ViewRenderer(std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals,
-                           ViewSink sink)
-    : volume_(std::move(volume)), engine_(engine), goals_(goals), sink_(std::move(sink)), thread_([this] { run(); }) {}
+                           ViewSink sink, std::optional<std::int64_t> number)
+    : volume_(std::move(volume)),
+      number_(number),
+      engine_(engine),
+      goals_(goals),
+      sink_(std::move(sink)),
+      thread_([this] { run(); }) {}
 
 ViewRenderer::~ViewRenderer() {
   {
@@ -50,20 +56,38 @@ void ViewRenderer::show(const ResolvedScene& scene, bool moving) {
   changed_.notify_all();
 }
 
-void ViewRenderer::open(std::shared_ptr<const Volume> volume, const ResolvedScene& scene) {
+void ViewRenderer::open(std::shared_ptr<const Volume> volume, const ResolvedScene& scene,
+                        std::optional<std::int64_t> number) {
   const std::lock_guard lock(mutex_);
   scene_ = scene;
   moving_ = false;
   ++wanted_;
-  tasks_.emplace_back([this, volume = std::move(volume)] {
+  tasks_.emplace_back([this, volume = std::move(volume), number] {
     drawer_.reset();  // looks at the volume before
     volume_ = volume;
+    number_ = number;
     last_ = {};
     lastScene_.reset();
     lastFrame_.reset();
     lastStatus_ = {};
     draftScale_ = 1;
     draftDirections_ = 0;
+  });
+  changed_.notify_all();
+}
+
+void ViewRenderer::showVolume(std::shared_ptr<const Volume> volume, const ResolvedScene& scene, std::int64_t number,
+                              bool moving) {
+  const std::lock_guard lock(mutex_);
+  scene_ = scene;
+  moving_ = moving;
+  ++wanted_;
+  tasks_.emplace_back([this, volume = std::move(volume), number] {
+    if (drawer_) drawer_->open(volume);
+    volume_ = volume;
+    number_ = number;
+    begun_ = std::chrono::steady_clock::now();
+    if (sink_.taken) sink_.taken();
   });
   changed_.notify_all();
 }
@@ -108,8 +132,8 @@ void ViewRenderer::drawWhole(const ResolvedScene& scene, std::function<void(cons
       interrupt_ = [this] {
         if (stop_) throw Obsolete{};
       };
-      Picture picture = rendererFor(scene).render();
-      done(picture, drawer_->engine().description);
+      const Picture picture = volume_ ? rendererFor(scene).render() : blankPicture(scene, true);
+      done(picture, drawer_ ? drawer_->engine().description : std::string());
     } catch (const Error& error) {
       failed(error.what());
     }
@@ -167,7 +191,22 @@ Renderer& ViewRenderer::rendererFor(const ResolvedScene& scene) {
   return drawer_->rendererFor(scene);
 }
 
+}
+
+void ViewRenderer::drawBlank(const ResolvedScene& scene, bool draft) {
+  last_ = blankPicture(scene, true);
+  lastScene_ = scene;
+  ViewStatus status;
+  status.draft = draft;
+  status.done = !draft;
+  status.samples = draft ? 0 : scene.sampling.pixelSamples;
+  status.text = draft ? "draft" : "done: this frame holds nothing";
+  send(last_, draft, draft ? 0 : 1);
+  tell(status);
+}
+
 void ViewRenderer::draft(const ResolvedScene& scene) {
+  if (!volume_) return drawBlank(scene, true);
   const std::uint64_t version = drawn_;
   const Stopwatch watch;
   // A draft that takes far too long gives way to the next one.
@@ -203,6 +242,10 @@ void ViewRenderer::draft(const ResolvedScene& scene) {
 }
 
 void ViewRenderer::refine(const ResolvedScene& scene, std::uint64_t version) {
+  if (!volume_) {
+    done_ = version;
+    return drawBlank(scene, false);
+  }
   interrupt_ = [this, version] {
     if (obsolete(version)) throw Obsolete{};
   };
@@ -263,6 +306,7 @@ void ViewRenderer::send(const Picture& picture, bool draft, int samples) {
   frame->height = picture.colour.height;
   frame->draft = draft;
   frame->samples = samples;
+  frame->number = number_;
   frame->mime = draft ? "image/jpeg" : "image/png";
   frame->bytes = draft ? encodeJpeg(picture.colour, kDraftQuality) : encodePng(picture.colour);
   lastFrame_ = frame;

@@ -26,6 +26,7 @@ struct ViewFrame {
   int width = 0, height = 0;
   bool draft = false;
   int samples = 0;
+  std::optional<std::int64_t> number = {};  // of the frame of a sequence that is seen
   std::string mime, bytes;
 };
 
@@ -51,6 +52,7 @@ struct ViewSink {
   std::function<void(const ViewStatus&)> status;
   std::function<void(const std::string&)> error;   // a line on what cannot be drawn
   std::function<void(const std::string&)> engine;  // what draws now
+  std::function<void()> taken = {};                // the volume of showVolume() is looked at
 };
 
 /// What lies under a pixel.
@@ -62,7 +64,9 @@ struct ViewProbe {
 
 class ViewRenderer {
  public:
-  ViewRenderer(std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals, ViewSink sink);
+  /// @param number  see open()
+  ViewRenderer(std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals, ViewSink sink,
+               std::optional<std::int64_t> number = {});
   /// Ends what is drawn and waits for it.
   ~ViewRenderer();
   ViewRenderer(const ViewRenderer&) = delete;
@@ -71,7 +75,11 @@ class ViewRenderer {
   /// Draws another scene; what is drawn of one before is given up. @param moving  more changes follow soon
   void show(const ResolvedScene& scene, bool moving);
   /// Looks at another volume from now on; what is drawn of the one before is given up.
-  void open(std::shared_ptr<const Volume> volume, const ResolvedScene& scene);
+  /// @param number  of the frame that it is, where it is one
+  void open(std::shared_ptr<const Volume> volume, const ResolvedScene& scene, std::optional<std::int64_t> number = {});
+  /// Looks at another frame of a sequence, by what draws the one before, and as quickly. ViewSink::taken follows.
+  /// @param volume  null: the frame holds nothing
+  void showVolume(std::shared_ptr<const Volume> volume, const ResolvedScene& scene, std::int64_t number, bool moving);
   /// Nothing moves any more.
   void rest();
   /// Stops at the picture that there is, or goes on.
@@ -90,6 +98,7 @@ class ViewRenderer {
   struct Obsolete {};
   void run();
   void draft(const ResolvedScene& scene);
+  void drawBlank(const ResolvedScene& scene, bool draft);
   void refine(const ResolvedScene& scene, std::uint64_t version);
   bool obsolete(std::uint64_t version) const { return wanted_ != version || stop_; }
   void send(const Picture& picture, bool draft, int samples);
@@ -97,7 +106,8 @@ class ViewRenderer {
   Renderer& rendererFor(const ResolvedScene& scene);
   void answer(int x, int y, const std::function<void(const ViewProbe&)>& done);
 
-  std::shared_ptr<const Volume> volume_;
+  std::shared_ptr<const Volume> volume_;  // null: a frame that holds nothing
+  std::optional<std::int64_t> number_;    // of the frame
   EngineKind engine_;
   ViewGoals goals_;
   ViewSink sink_;

@@ -34,15 +34,17 @@ void refuseFiles(const Json& patch) {
 
 }  // namespace
 
-ViewState::ViewState(Scene scene, std::shared_ptr<const Volume> volume)
-    : volume_(std::move(volume)), seen_(volume_->visibleBounds(*scene.transfer)), scene_(std::move(scene)) {
+ViewState::ViewState(Scene scene, std::shared_ptr<const Volume> volume, const std::optional<Box>& seen)
+    : volume_(std::move(volume)),
+      seen_(seen ? *seen : volume_->visibleBounds(*scene.transfer)),
+      scene_(std::move(scene)) {
   if (scene_.orbit) scene_.orbit = settledOrbit(*scene_.orbit, volume_->orientation());
   first_ = scene_;
   resolved_ = resolve(scene_);
 }
 
-std::unique_ptr<ResolvedScene> ViewState::resolve(const Scene& scene) const {
-  return std::make_unique<ResolvedScene>(volume_->resolve(scene, seen_));
+std::unique_ptr<ResolvedScene> ViewState::resolve(const Scene& scene, const Volume& volume) const {
+  return std::make_unique<ResolvedScene>(volume.resolve(scene, seen_));
 }
 
 Scene ViewState::placed() const {
@@ -123,6 +125,25 @@ void ViewState::redo() {
 
 void ViewState::reset() {
   if (scene_ != first_) take(first_, {});
+}
+
+void ViewState::show(const std::shared_ptr<const Volume>& volume, const VolumeReference& source) {
+  Scene scene = scene_;
+  scene.volume = source;
+  auto resolved = resolve(scene, volume ? *volume : *volume_);
+  resolved_ = std::move(resolved);
+  if (volume) volume_ = volume;
+  for (Scene* each : {&scene_, &first_}) each->volume = source;
+  for (Scene& each : undo_) each.volume = source;
+  for (Scene& each : redo_) each.volume = source;
+}
+
+Scene ViewState::placedIn(const VolumeReference& sequence) const {
+  Scene scene = placed();
+  scene.volume = sequence;
+  scene.gradientOpacity = resolved_->gradientOpacity;
+  scene.gradientUnit = GradientUnit::grid;
+  return scene;
 }
 
 }  // namespace umbrick::view

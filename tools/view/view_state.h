@@ -25,8 +25,9 @@ class ViewState {
  public:
   /// @param scene  with a transfer function, as openScene() completes it. An orbit is one around what that function
   ///   shows from now on, so that the camera stays where pages edit the function
+  /// @param seen  what orbits turn around instead, world units: of a volume that is a frame of a sequence
   /// @throw InvalidArgument  it fits the volume not
-  ViewState(Scene scene, std::shared_ptr<const Volume> volume);
+  ViewState(Scene scene, std::shared_ptr<const Volume> volume, const std::optional<Box>& seen = {});
 
   const Scene& scene() const { return scene_; }
   const ResolvedScene& resolved() const { return *resolved_; }
@@ -49,8 +50,17 @@ class ViewState {
   /// Goes back to the scene that it began with, which can be undone.
   void reset();
 
+  /// Looks at another frame of a sequence: the scene and all that can be undone stay, but for the volume's name.
+  /// @param volume  null: the frame holds nothing, and scenes are those of the volume before
+  /// @param source  what the scene names from now on
+  /// @throw InvalidArgument  the scene does not fit the volume; the frame before stays
+  void show(const std::shared_ptr<const Volume>& volume, const VolumeReference& source);
+  /// The scene of all frames of a sequence: placed(), with what was in units of this frame's own in those of the grid.
+  Scene placedIn(const VolumeReference& sequence) const;
+
  private:
-  std::unique_ptr<ResolvedScene> resolve(const Scene& scene) const;
+  std::unique_ptr<ResolvedScene> resolve(const Scene& scene) const { return resolve(scene, *volume_); }
+  std::unique_ptr<ResolvedScene> resolve(const Scene& scene, const Volume& volume) const;
   Scene patched(const nlohmann::ordered_json& patch) const;
   void take(Scene scene, const std::string& step);
 

@@ -26,14 +26,33 @@ Json vectorOf(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 Json numberOrNull(double number) { return std::isfinite(number) ? Json(number) : Json(); }
 
+// The numbers of frames as ranges, of which each is [first, last], and what is between numbers.
+Json numbersOf(const ViewSequence& sequence) {
+  Json ranges = Json::array();
+  for (const ViewSequence::Frame& frame : sequence.frames)
+    if (!ranges.empty() && ranges.back()[1].get<std::int64_t>() + sequence.step == frame.number)
+      ranges.back()[1] = frame.number;
+    else
+      ranges.push_back({frame.number, frame.number});
+  return {{"ranges", ranges}, {"step", sequence.step}};
+}
+
 // A line on what went wrong, for one page.
 std::string errorText(const std::string& message) { return Json{{"type", "error"}, {"message", message}}.dump(); }
 
-Json aboutVolume(const Volume& volume) {
+std::optional<Box> seenIn(const ViewSequence* sequence) { return sequence ? sequence->seen : std::nullopt; }
+
+// What hello says of a volume. Of a sequence it is the frame that was opened, in a box that all are seen in.
+Json aboutVolume(const Volume& volume, const ViewSequence* sequence) {
   const ValueSurvey survey = surveyValues(volume.grid());
   const IndexBox box = volume.grid().activeBox();
-  const Box bounds = volume.worldBounds();
-  return {{"file", asUtf8(volume.source().file.filename().string())},
+  Box bounds = volume.worldBounds();
+  if (const std::optional<Box> seen = seenIn(sequence)) {
+    bounds.include(seen->min);
+    bounds.include(seen->max);
+  }
+  const fs::path& file = sequence ? sequence->whole.file : volume.source().file;
+  return {{"file", asUtf8(file.filename().string())},
           {"grid", asUtf8(volume.source().grid)},
           {"unit", asUtf8(volume.valueUnit())},
           {"dims", {box.max.x - box.min.x + 1, box.max.y - box.min.y + 1, box.max.z - box.min.z + 1}},
@@ -56,21 +75,18 @@ Json probed(const ViewProbe& probe, const Volume& volume) {
           {"depth", probe.world ? Json(probe.depth) : Json()}};
 }
 
-template <class Value>
-Value field(const Json& message, const char* name) {
-  try {
-    return message.at(name).get<Value>();
-  } catch (const nlohmann::json::exception&) {
-    throw InvalidArgument(std::string("message: ") + name + " is missing or of another kind");
-  }
-}
-
 }  // namespace
 
 Viewer::Viewer(Scene scene, std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals,
-               fs::path folder, OpenVolume open)
-    : state_(std::move(scene), volume), folder_(std::move(folder)), about_(aboutVolume(*volume)) {
-  renderer_ = std::make_unique<ViewRenderer>(std::move(volume), engine, goals, sink());
+               fs::path folder, OpenVolume open, std::shared_ptr<const ViewSequence> sequence)
+    : state_(std::move(scene), volume, seenIn(sequence.get())),
+      folder_(std::move(folder)),
+      about_(aboutVolume(*volume, sequence.get())),
+      sequence_(std::move(sequence)),
+      frame_(sequence_ ? sequence_->first : 0),
+      player_(std::make_unique<SequencePlayer>(playerSink())) {
+  renderer_ = std::make_unique<ViewRenderer>(std::move(volume), engine, goals, sink(), frameNumber());
+  player_->open(sequence_);
   comparison_ = std::make_unique<ReferenceComparison>([this](std::uint64_t number, const Json& news) {
     const std::lock_guard lock(mutex_);
     if (!comparison_->isCurrent(number)) return;  // was dropped meanwhile
@@ -81,8 +97,8 @@ Viewer::Viewer(Scene scene, std::shared_ptr<const Volume> volume, EngineKind eng
   if (open) startOpening(std::move(open));
 }
 
-// The jobs end first: they use what is declared before them.
-Viewer::~Viewer() = default;
+// The jobs end first: they use what is declared before them. What reads frames and what draws them use each other.
+Viewer::~Viewer() { player_->end(); }
 
 ViewSink Viewer::sink() {
   const auto each = [this](const auto& call) {
@@ -94,8 +110,9 @@ ViewSink Viewer::sink() {
     for (const auto& client : clients) call(*client);
   };
   ViewSink sink;
-  sink.frame = [each](const std::shared_ptr<const ViewFrame>& frame) {
+  sink.frame = [this, each](const std::shared_ptr<const ViewFrame>& frame) {
     each([&](ViewClient& client) { client.frame(frame); });
+    player_->drawn();
   };
   sink.status = [each](const ViewStatus& status) {
     const bool known = status.error.has_value();
@@ -113,10 +130,12 @@ ViewSink Viewer::sink() {
         {"text", status.text}}.dump();
     each([&](ViewClient& client) { client.text(text); });
   };
-  sink.error = [each](const std::string& line) {
+  sink.error = [this, each](const std::string& line) {
     const std::string text = errorText(asUtf8(line));
     each([&](ViewClient& client) { client.text(text); });
+    player_->drawn();  // the next frame may do better
   };
+  sink.taken = [this] { player_->taken(); };
   sink.engine = [this, each](const std::string& engine) {
     {
       const std::lock_guard lock(mutex_);
@@ -135,20 +154,26 @@ Json Viewer::hello() const {
           {"volume", about_},
           {"presets", transferPresets()},
           {"fields", fieldList()},
+          {"sequence", sequence_ ? numbersOf(*sequence_) : Json()},
           {"folder", opening_ ? Json(asUtf8(opening_->folder().string())) : Json()},
           {"mostUpload", kMostUploadBytes}};
 }
 
-// A scene of the state, and how to make its picture without this program's window.
+// A scene of the state, and how to make its picture, and those of all frames, without this program's window.
 Json Viewer::sceneMessage() const {
   const Camera& camera = state_.resolved().camera;
-  const std::string command =
-      "cat > scene.json <<'END'\n" + printScene(state_.placed()) + "\nEND\numbrick render scene.json -o picture.png";
+  const auto command = [](const Scene& scene, const std::string& options) {
+    return "cat > scene.json <<'END'\n" + printScene(scene) + "\nEND\numbrick render scene.json " + options;
+  };
+  Json all;
+  if (sequence_) all = command(state_.placedIn(sequence_->whole), frameOptions(*sequence_) + " -o 'frame_%04d.png'");
   return {{"type", "scene"},
           {"scene", state_.json()},
           {"canUndo", state_.canUndo()},
           {"canRedo", state_.canRedo()},
-          {"command", command},
+          {"command", command(state_.placed(), "-o picture.png")},
+          {"commandOfAll", all},
+          {"number", frameNumber() ? Json(*frameNumber()) : Json()},
           {"camera",
            {{"eye", vectorOf(camera.eye)},
             {"lookAt", vectorOf(camera.lookAt)},
@@ -167,6 +192,7 @@ void Viewer::join(const std::shared_ptr<ViewClient>& client) {
   clients_.push_back(client);
   client->text(hello().dump());
   client->text(sceneMessage().dump());
+  if (sequence_) client->text(sequenceMessage().dump());
   if (first) {
     renderer_->pause(false);
     renderer_->show(state_.resolved(), false);
@@ -180,13 +206,19 @@ void Viewer::leave(const ViewClient& client) {
   std::erase_if(clients_, [&](const auto& one) { return one.get() == &client; });
   // Nobody looks: what is drawn now would be for nothing.
   renderer_->pause(clients_.empty());
-  if (clients_.empty()) dropComparison({});
+  if (clients_.empty()) {
+    dropComparison({});
+    player_->play(false);
+  }
+  // The page may have gone in the middle of a drag.
+  player_->rest();
+  if (!player_->state().moves()) renderer_->rest();
 }
 
 void Viewer::show(bool moving) {
   dropComparison("the scene has changed");
   toAll(sceneMessage());
-  renderer_->show(state_.resolved(), moving);
+  renderer_->show(state_.resolved(), moving || player_->state().moves());
 }
 
 void Viewer::message(std::string_view text, const std::shared_ptr<ViewClient>& from) {
@@ -195,9 +227,9 @@ void Viewer::message(std::string_view text, const std::shared_ptr<ViewClient>& f
     const auto type = message["type"].get<std::string>();
     const std::lock_guard lock(mutex_);
     if (type == "edit") {
-      const auto step = message.contains("step") ? field<std::string>(message, "step") : std::string();
-      const bool moving = message.contains("moving") && field<bool>(message, "moving");
-      state_.edit(field<Json>(message, "patch"), step);
+      const auto step = message.contains("step") ? messageField<std::string>(message, "step") : std::string();
+      const bool moving = message.contains("moving") && messageField<bool>(message, "moving");
+      state_.edit(messageField<Json>(message, "patch"), step);
       show(moving);
     } else if (type == "undo") {
       state_.undo();
@@ -209,7 +241,11 @@ void Viewer::message(std::string_view text, const std::shared_ptr<ViewClient>& f
       state_.reset();
       show(false);
     } else if (type == "rest") {
-      renderer_->rest();
+      if (!player_->state().moves()) renderer_->rest();
+    } else if (type == "sequence") {
+      askFrame(parseFrameRequest(message));
+    } else if (type == "play") {
+      play(parsePlayRequest(message));
     } else if (type == "pause" || type == "resume") {
       renderer_->pause(type == "pause");
     } else if (type == "probe") {
@@ -223,11 +259,11 @@ void Viewer::message(std::string_view text, const std::shared_ptr<ViewClient>& f
     } else if (type == "stopCompare") {
       dropComparison("stopped");
     } else if (type == "files") {
-      Json listing = opening().list(field<std::string>(message, "path"));
+      Json listing = opening().list(messageField<std::string>(message, "path"));
       listing["type"] = "files";
       from->text(listing.dump());
     } else if (type == "open") {
-      opening().open(field<std::string>(message, "path"));
+      opening().open(messageField<std::string>(message, "path"));
     } else {
       throw InvalidArgument("message: no type '" + printable(type.substr(0, 40)) + "'");
     }
@@ -237,6 +273,7 @@ void Viewer::message(std::string_view text, const std::shared_ptr<ViewClient>& f
 }
 
 void Viewer::compare() {
+  if (blank_) throw InvalidArgument("compare: this frame holds nothing");
   comparison_->start(state_.share(), state_.resolved(), *renderer_);
   const Camera& camera = comparedScene(state_.resolved()).camera;
   compared_ = {{"type", "comparison"}, {"state", "running"}, {"share", 0}, {"size", {camera.width, camera.height}}};
@@ -252,7 +289,7 @@ void Viewer::dropComparison(const std::string& why) {
 
 void Viewer::probe(const Json& message, const std::shared_ptr<ViewClient>& from) {
   const std::weak_ptr<ViewClient> waiting = from;
-  const int x = field<int>(message, "x"), y = field<int>(message, "y");
+  const int x = messageField<int>(message, "x"), y = messageField<int>(message, "y");
   renderer_->probe(x, y, [volume = state_.share(), waiting](const ViewProbe& probe) {
     if (const auto client = waiting.lock()) client->text(probed(probe, *volume).dump());
   });
@@ -269,6 +306,91 @@ void Viewer::sendGradients(const std::shared_ptr<ViewClient>& from) {
                   {"high", found.high},  {"most", found.most},     {"counts", found.counts}};
     toAll(gradients_);
   });
+}
+
+// --- frames of a sequence ---
+
+const ViewSequence& Viewer::sequence() const {
+  if (!sequence_) throw InvalidArgument("sequence: the volume is no frame of a sequence");
+  return *sequence_;
+}
+
+std::optional<std::int64_t> Viewer::frameNumber() const {
+  return sequence_ ? std::optional(sequence_->frames[frame_].number) : std::nullopt;
+}
+
+Json Viewer::sequenceMessage() const {
+  const PlayState state = player_->state();
+  return {{"type", "sequence"},
+          {"number", sequence_->frames[frame_].number},
+          {"asked", state.asked ? Json(sequence_->frames[*state.asked].number) : Json()},
+          {"empty", blank_},
+          {"playing", state.playing},
+          {"loop", state.loop},
+          {"fps", state.fps}};
+}
+
+void Viewer::askFrame(const FrameRequest& request) {
+  const std::optional<std::size_t> index = frameOf(sequence(), request.number);
+  if (!index) throw InvalidArgument("sequence: there is no frame " + std::to_string(request.number));
+  player_->ask(*index, request.moving);
+  toAll(sequenceMessage());
+  if (*index == frame_ && !request.moving) settle();
+}
+
+void Viewer::play(const PlayRequest& request) {
+  sequence();
+  if (request.loop) player_->setLoop(*request.loop);
+  if (request.fps) player_->setRate(*request.fps);
+  if (request.on) player_->play(*request.on);
+  toAll(sequenceMessage());
+  if (request.on == false) settle();
+}
+
+// Nothing moves any more: the frame at hand gets its picture, and pages its commands.
+void Viewer::settle() {
+  if (player_->state().moves()) return;
+  renderer_->rest();
+  toAll(sceneMessage());
+}
+
+SequencePlayer::Sink Viewer::playerSink() {
+  SequencePlayer::Sink sink;
+  sink.show = [this](std::uint64_t number, const ReadFrame& frame) { showFrame(number, frame); };
+  sink.failed = [this](std::uint64_t number, const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    if (!player_->isCurrent(number)) return;
+    toAll({{"type", "error"}, {"message", asUtf8(line)}});
+    toAll(sequenceMessage());
+  };
+  sink.ended = [this](std::uint64_t number) {
+    const std::lock_guard lock(mutex_);
+    if (!player_->isCurrent(number)) return;
+    toAll(sequenceMessage());
+    settle();
+  };
+  return sink;
+}
+
+void Viewer::showFrame(std::uint64_t number, const ReadFrame& frame) {
+  const std::lock_guard lock(mutex_);
+  if (!player_->isCurrent(number)) return;
+  try {
+    state_.show(frame.volume, sourceOf(*sequence_, frame.index, frame.volume.get()));
+  } catch (const Error& error) {
+    toAll({{"type", "error"}, {"message", asUtf8(error.what())}});
+    player_->taken();
+    player_->drawn();
+    return;
+  }
+  dropComparison("another frame is shown");
+  frame_ = frame.index;
+  blank_ = !frame.volume;
+  const bool moves = player_->state().moves();
+  renderer_->showVolume(frame.volume, state_.resolved(), sequence_->frames[frame_].number, moves);
+  toAll(sequenceMessage());
+  // While frames follow one another the scene is the one that pages have.
+  if (!moves) toAll(sceneMessage());
 }
 
 // --- other volumes ---
@@ -296,8 +418,8 @@ void Viewer::startOpening(OpenVolume open) {
 
 void Viewer::take(std::uint64_t number, OpenedVolume opened, const std::string& name) {
   // What looks at all voxels is done while pages still look at the volume before.
-  ViewState state(std::move(opened.scene), opened.volume);
-  Json about = aboutVolume(*opened.volume);
+  ViewState state(std::move(opened.scene), opened.volume, seenIn(opened.sequence.get()));
+  Json about = aboutVolume(*opened.volume, opened.sequence.get());
   about["file"] = asUtf8(name);
   const std::lock_guard lock(mutex_);
   if (!opening_ || !opening_->isCurrent(number)) return;
@@ -306,9 +428,14 @@ void Viewer::take(std::uint64_t number, OpenedVolume opened, const std::string& 
   about_ = std::move(about);
   surveying_->drop();
   gradients_ = Json();
-  renderer_->open(opened.volume, state_.resolved());
+  sequence_ = std::move(opened.sequence);
+  frame_ = sequence_ ? sequence_->first : 0;
+  blank_ = false;
+  player_->open(sequence_);
+  renderer_->open(opened.volume, state_.resolved(), frameNumber());
   toAll(hello());
   toAll(sceneMessage());
+  if (sequence_) toAll(sequenceMessage());
   toAll({{"type", "opening"}, {"state", "done"}, {"name", asUtf8(name)}, {"text", asUtf8(opened.chosen)}});
 }
 
@@ -332,17 +459,18 @@ fs::path Viewer::place(const std::string& name, const std::vector<std::string>& 
 }
 
 void Viewer::save(const Json& message, const std::shared_ptr<ViewClient>& from) {
-  const auto what = field<std::string>(message, "what"), name = field<std::string>(message, "name");
+  const auto what = messageField<std::string>(message, "what"), name = messageField<std::string>(message, "name");
   const auto saved = [](const fs::path& path) {
     return Json{{"type", "saved"}, {"path", asUtf8(path.string())}}.dump();
   };
-  if (what == "scene") {
+  if (what == "scene" || what == "sequence") {
     const fs::path path = place(name, {".json"});
-    writeTextFile(path, printScene(state_.placed()) + "\n");
+    const Scene scene = what == "scene" ? state_.placed() : state_.placedIn(sequence().whole);
+    writeTextFile(path, printScene(scene) + "\n");
     from->text(saved(path));
     return;
   }
-  if (what != "picture") throw InvalidArgument("save: what is a picture or a scene");
+  if (what != "picture") throw InvalidArgument("save: what is a picture or a scene, or a scene of a sequence");
   const fs::path path = place(name, {".png", ".exr"});
   Json patch = Json::object();
   if (message.contains("size")) patch["camera"]["size"] = message["size"];

@@ -9,16 +9,22 @@
 //   {"type": "gradients"}                        asks for the histogram of value and gradient magnitude
 //   {"type": "compare"}  {"type": "stopCompare"}  with the reference, see ReferenceComparison
 //   {"type": "files", "path": "..."}  {"type": "open", "path": "..."}   of the folder of the server, see OpenFolder
-//   {"type": "save", "what": "picture" | "scene", "name": "...", "size": [w, h], "samples": n}
-// To pages: hello, scene, status, probe, comparison, gradients, files, opening, saved, note, error; and frames, which
-// are binary: four bytes with the length of a JSON text, little-endian, that text, and the bytes of an image.
+//   {"type": "save", "what": "picture" | "scene" | "sequence", "name": "...", "size": [w, h], "samples": n}
+//   {"type": "sequence", "number": n, "moving": bool}   shows a frame of a sequence; moving: others follow soon
+//   {"type": "play", "on": bool, "loop": bool, "fps": x}   what is not named stays
+// To pages: hello, scene, status, probe, comparison, gradients, files, opening, sequence, saved, note, error; and
+// frames, which are binary: four bytes with the length of a JSON text, little-endian, that text, and the bytes of an
+// image. A frame is a picture here; a frame of a sequence has a number.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,7 +33,9 @@
 #include "view/latest_job.h"
 #include "view/page_message.h"
 #include "view/reference_comparison.h"
+#include "view/sequence_player.h"
 #include "view/view_renderer.h"
+#include "view/view_sequence.h"
 #include "view/view_state.h"
 
 namespace umbrick::view {
@@ -46,8 +54,9 @@ class Viewer {
   /// @param scene   with a transfer function, as openScene() completes it
   /// @param folder  where pictures and scenes are saved, and from which files are opened
   /// @param open    opens other volumes; none: there is this one alone
+  /// @param sequence  of which the volume is the first frame; null: it is alone
   Viewer(Scene scene, std::shared_ptr<const Volume> volume, EngineKind engine, const ViewGoals& goals,
-         std::filesystem::path folder, OpenVolume open = {});
+         std::filesystem::path folder, OpenVolume open = {}, std::shared_ptr<const ViewSequence> sequence = {});
   ~Viewer();
 
   void join(const std::shared_ptr<ViewClient>& client);
@@ -69,6 +78,14 @@ class Viewer {
   void compare();
   void sendGradients(const std::shared_ptr<ViewClient>& from);
   void dropComparison(const std::string& why);
+  const ViewSequence& sequence() const;
+  Json sequenceMessage() const;
+  std::optional<std::int64_t> frameNumber() const;
+  void askFrame(const FrameRequest& request);
+  void play(const PlayRequest& request);
+  void settle();
+  SequencePlayer::Sink playerSink();
+  void showFrame(std::uint64_t number, const ReadFrame& frame);
   void startOpening(OpenVolume open);
   void take(std::uint64_t number, OpenedVolume opened, const std::string& name);
   FileOpening& opening() const;
@@ -83,6 +100,10 @@ class Viewer {
   Json about_;      // what hello says of the volume
   Json gradients_;  // the histogram of value and gradient magnitude; null: nobody has asked for it
   Json compared_;   // the last message on the comparison; null: there is none
+  std::shared_ptr<const ViewSequence> sequence_;  // null: the volume is alone
+  std::size_t frame_ = 0;                         // of the sequence: which one the state shows
+  bool blank_ = false;                            // it holds nothing
+  std::unique_ptr<SequencePlayer> player_;        // before what draws, which tells it when it has drawn
   std::unique_ptr<ViewRenderer> renderer_;
   std::unique_ptr<ReferenceComparison> comparison_;
   std::unique_ptr<FileOpening> opening_;

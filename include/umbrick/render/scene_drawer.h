@@ -26,7 +26,11 @@ class SceneDrawer {
   /// @pre   on the thread that made the renderer before, if one draws by OpenGL
   Renderer& rendererFor(const ResolvedScene& scene);
 
-  /// @pre rendererFor()
+  /// Draws another volume from now on, with the same engine as long as that fits the scene.
+  /// @param volume  null: rendererFor() may not be called
+  void open(std::shared_ptr<const Volume> volume);
+
+  /// @pre rendererFor() once
   const Engine& engine() const;
   const Bricks& bricks() const;
 

@@ -39,6 +39,14 @@ export const kKeyList = [
     ]
   ],
   [
+    "Sequence",
+    [
+      ["P", "play, stop"],
+      [",  .", "frame before, after"],
+      ["L", "loop"],
+    ]
+  ],
+  [
     "Everywhere",
     [
       ["Ctrl Z, Ctrl Y", "undo, redo"],
@@ -82,7 +90,7 @@ const isText = (target) =>
     target.closest?.("input:not([type=range]):not([type=checkbox]), textarea, select, dialog") !== null;
 
 export class Keys {
-  /// @param actions  undo(), redo(), pause(), help()
+  /// @param actions  undo(), redo(), pause(), help(), and play(), loop(), before(), after() of a sequence
   constructor(session, actions) {
     Object.assign(this, { session_: session, actions_: actions, held_: new Set(), turning: false });
     addEventListener("keydown", (event) => this.down_(event));
@@ -134,6 +142,18 @@ export class Keys {
         return this.move_(widenBy(view.camera, 1 / kWiden));
       case "t":
         this.turn(!this.turning);
+        return true;
+      case "p":
+        this.actions_.play();
+        return true;
+      case "l":
+        this.actions_.loop();
+        return true;
+      case ",":
+        this.actions_.before();
+        return true;
+      case ".":
+        this.actions_.after();
         return true;
       default:
         return false;

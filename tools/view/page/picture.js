@@ -60,6 +60,7 @@ export class Picture {
     context.drawImage(image, (width - drawnWidth) / 2, (height - drawnHeight) / 2, drawnWidth, drawnHeight);
     this.shownFrame_ = header.frame;
     Object.assign(canvas.dataset, { frame: header.frame, draft: header.draft, samples: header.samples });
+    if (header.number !== undefined) canvas.dataset.number = header.number;  // of the frame of a sequence
   }
 
   // Makes the picture as large as fits into its place, at the scene's proportions.

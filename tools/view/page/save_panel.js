@@ -52,6 +52,21 @@ export function savePanel(session, note) {
     if (saved === name) file.update((name = nextName(name)));
     if (saved === sceneName) sceneFile.update((sceneName = nextName(sceneName)));
   });
+  const copyOne =
+      button("Copy command", () => copy(session.served.command, "command", note), "that makes this picture");
+  const copyAll = button(
+      "Copy command for all frames", () => copy(session.served.commandOfAll, "command", note),
+      "that makes the pictures of the whole sequence, or a film with -o film.mp4");
+  const saveAll = button(
+      "Save scene of all frames", () => save({ what: "sequence", name: sceneName }),
+      "whose volume is the whole sequence, for umbrick render with --frames");
+  // The scene that makes the picture is known at rest.
+  const showWhich = () => {
+    saveAll.hidden = copyAll.hidden = !session.hello.sequence;
+    copyOne.disabled = session.sequence?.playing ?? false;
+  };
+  session.on("sequence", showWhich);
+  showWhich();
   return {
     node: section(
         "Save and share", false, file.node, row("size", "of the saved picture, pixels", sizeId, sizeInput.node),
@@ -66,7 +81,9 @@ export function savePanel(session, note) {
             "div", { className: "buttons" },
             button(
                 "Save scene", () => save({ what: "scene", name: sceneName, size: session.scene.camera.size, samples })),
-            button("Copy command", () => copy(session.served.command, "command", note), "that makes this picture"),
+            saveAll),
+        element(
+            "div", { className: "buttons" }, copyOne, copyAll,
             button("Copy link", () => copy(location.href, "link", note), "to this page, while the server runs"))),
     update: () => sizeInput.update(size ?? session.scene.camera.size),
   };

@@ -15,6 +15,7 @@ export class Session {
     this.scene = null;       // with all edits of this page
     this.firstScene = null;  // as it was when the page was opened
     this.served = null;      // the server's last message of it
+    this.sequence = null;    // which frame of a sequence is shown, and whether it plays: the server's last message
     this.moving_ = false;
     this.doubtful_ = false;
   }
@@ -40,7 +41,7 @@ export class Session {
   /// Forgets the scene: the server shows another volume.
   forget() {
     this.pacer_.reset();
-    Object.assign(this, { scene: null, firstScene: null, served: null, orbitFrame_: null });
+    Object.assign(this, { scene: null, firstScene: null, served: null, sequence: null, orbitFrame_: null });
     Object.assign(this, { moving_: false, doubtful_: false });
   }
 
@@ -48,6 +49,7 @@ export class Session {
   receive(message) {
     if (message.type === "hello") this.hello = message;
     if (message.type === "scene") this.receiveScene_(message);
+    if (message.type === "sequence") this.sequence = message;
     if (message.type === "error") {
       // The edit was refused: what the page shows is not what the server has.
       this.doubtful_ = true;
@@ -116,6 +118,9 @@ export class Session {
     this.moving_ = false;
     this.send_(message);
   }
+
+  /// Asks for a frame of the sequence, or plays it: the scene, and what is being dragged of it, stays.
+  sequenceCommand(message) { this.send_(message); }
 
   /// Asks for the histogram of value and gradient magnitude.
   askGradients() { this.send_({ type: "gradients" }); }

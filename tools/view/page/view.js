@@ -11,6 +11,7 @@ import {drawScaleBar, drawTriad} from "./overlay.js";
 import {buildPanels} from "./panels.js";
 import {Picture} from "./picture.js";
 import {PictureInput} from "./picture_input.js";
+import {sequenceBar} from "./sequence_bar.js";
 import {Session} from "./session.js";
 import {probeWords, statusWords} from "./words.js";
 
@@ -41,19 +42,19 @@ const actions = {
   help: () => (help.open ? help.close() : help.showModal()),
   open: () => files.show(),
 };
-const keys = new Keys(session, actions);
+const keys = new Keys(session, {...actions, ...sequenceBar(at("sequence"), session) });
 for (const [name, action] of Object.entries(actions)) at(name).addEventListener("click", action);
 at("turntable").addEventListener("click", () => keys.turn(!keys.turning));
 session.on("turntable", (on) => at("turntable").setAttribute("aria-pressed", on));
 
 let greeting = "", shownVolume = "";
 session.on("hello", (hello) => {
-  const { volume, version } = hello;
+  const { volume, version, sequence } = hello;
   // After a lost connection the same server greets in the same words. Another program needs another page.
-  const words = JSON.stringify({...hello, engine: "", volume: null });
+  const words = JSON.stringify({...hello, engine: "", volume: null, sequence: null });
   if (greeting && words !== greeting) location.reload();
   greeting = words;
-  const about = JSON.stringify(volume);
+  const about = JSON.stringify([volume, sequence]);
   if (shownVolume && about !== shownVolume) {
     // Another volume keeps the page: its scene follows, and the panels are made for it.
     closePanels?.();
