@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "check_kit.h"
@@ -141,8 +142,9 @@ std::vector<KitCase> casesFor(const CheckCommand& command) {
   const OpenedScene opened =
       openScene(given, makeSceneOf(Model::emission, given), showShare(bar, stop, "interrupted; nothing was written"));
   bar.clear();
+  KitCase made = kitCaseOf(given.input.stem().string(), opened.volume->grid(), opened.volume->resolve(opened.scene));
   std::cerr << opened.chosen;
-  return {kitCaseOf(given.input.stem().string(), opened.volume->grid(), opened.volume->resolve(opened.scene))};
+  return {std::move(made)};
 }
 
 int workOnKit(const CLI::App& options, CheckCommand command) {

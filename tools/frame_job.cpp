@@ -157,7 +157,8 @@ std::optional<FrameJob> findSequence(const VolumeReference& volume, bool one, co
   open.source.open = openOptions(volume);
   if (isFramePattern(volume.file))
     return jobOf(findFrames(volume.file, {}, askedRange(options), open), volume, options);
-  if (!one && holdsFrames(volume))
+  // A scene of one frame names it as "[3]".
+  if (!one && !volume.grid.starts_with('[') && holdsFrames(volume))
     return jobOf(findFramesInside(volume.file, {}, askedRange(options), open), volume, options);
   return {};
 }

@@ -25,6 +25,7 @@
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/draw/blank_picture.h"
 #include "umbrick/image/exr.h"
+#include "umbrick/render/picture_notes.h"
 #include "umbrick/render/volume_frames.h"
 #include "umbrick/shade/prepare.h"
 #include "validators.h"

@@ -196,6 +196,11 @@ std::vector<std::string> spellOutBackground(std::vector<std::string> arguments) 
   return arguments;
 }
 
+void SceneOptions::take(const std::filesystem::path& file) {
+  input = file;
+  whole = file.extension() == ".json";
+}
+
 std::string SceneOptions::nameOf(std::string_view option) const {
   const auto other = renamed.find(option);
   return "--" + (other == renamed.end() ? std::string(option) : other->second);
@@ -207,11 +212,7 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNam
   o.renamed = renamed;
   command
       .add_option_function<std::filesystem::path>(
-          "input",
-          [&o](const std::filesystem::path& input) {
-            o.input = input;
-            o.whole = input.extension() == ".json";
-          },
+          "input", [&o](const std::filesystem::path& input) { o.take(input); },
           "a volume of any format that convert reads, a .vdb or .nvdb, numbered files (frame_%04d.nrrd: the "
           "first), or a .json scene")
       ->required();

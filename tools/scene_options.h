@@ -32,6 +32,8 @@ struct SceneOptions : AskedScene {
   /// addSceneOptions.
   OptionNames renamed;
 
+  /// Takes the input: a volume, or a scene, which is whole.
+  void take(const std::filesystem::path& file);
   /// Returns the option on the command line for an option of the table: "--theta" for "theta".
   std::string nameOf(std::string_view option) const override;
 };

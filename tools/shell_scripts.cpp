@@ -7,7 +7,7 @@ namespace umbrick::tools {
 namespace {
 
 // Text between single quotes, of bash and zsh and, with the quote itself behind a backslash, of fish.
-std::string quoted(const std::string& text) {
+std::string shellQuoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
@@ -57,10 +57,10 @@ _umbrick() {
   if [ "$cur" = '=' ]; then cur=''; fi
   COMPREPLY=()
   # The command is the words in front that are no options.
-  local command=''
+  local command='' stray=''
   for word in "${words[@]}"; do
     _umbrick_commands "$command"
-    [[ -n $word && " $REPLY " == *" $word "* ]] || break
+    if [[ -z $word || " $REPLY " != *" $word "* ]]; then stray=$word; break; fi
     command+=${command:+ }$word
   done
   # The value of an option: the nearest one to the left, if it takes so many.
@@ -92,7 +92,8 @@ _umbrick() {
   fi
   _umbrick_commands "$command"
   if [ -n "$REPLY" ]; then
-    mapfile -t COMPREPLY < <(compgen -W "$REPLY" -- "$cur")
+    # No command follows a word that is none.
+    if [[ -z $stray || $stray == -* ]]; then mapfile -t COMPREPLY < <(compgen -W "$REPLY" -- "$cur"); fi
     return 0
   fi
   _umbrick_value "$command" argument
@@ -106,7 +107,7 @@ std::string bashFunction(const std::string& name, const std::string& key, const 
   return "\n" + name + "() {\n  case " + key + " in\n" + cases + "    *) REPLY='' ;;\n  esac\n}\n";
 }
 std::string bashCase(const std::string& key, const std::string& answer) {
-  return "    " + quoted(key) + ") REPLY=" + quoted(answer) + " ;;\n";
+  return "    " + shellQuoted(key) + ") REPLY=" + shellQuoted(answer) + " ;;\n";
 }
 
 // --- zsh ---
@@ -143,13 +144,13 @@ std::string zshValue(const OptionNode& option) {
 std::string zshOption(const OptionNode& option) {
   if (option.isArgument()) {
     const std::string value = zshValue(option);
-    return quoted((option.most == kAnyNumber ? "*" : option.required ? "" : ":") + value);
+    return shellQuoted((option.most == kAnyNumber ? "*" : option.required ? "" : ":") + value);
   }
   std::string spec;
   if (option.repeats)
     spec = "'*'";
   else if (option.names.size() > 1)
-    spec = quoted('(' + joinedBy(option.names) + ')');
+    spec = shellQuoted('(' + joinedBy(option.names) + ')');
   std::vector<std::string> names;
   for (const std::string& name : option.names)
     names.push_back(option.isFlag() ? name : name + (name.starts_with("--") ? "=" : "+"));
@@ -159,7 +160,7 @@ std::string zshOption(const OptionNode& option) {
     rest += zshValue(option);
   else
     for (int i = 0; i < option.most; ++i) rest += (i < option.least ? "" : ":") + zshValue(option);
-  return spec + quoted(rest);
+  return spec + shellQuoted(rest);
 }
 
 std::string zshFunction(const CommandNode& node) { return '_' + node.name("_"); }
@@ -173,7 +174,7 @@ std::string zshCommand(const CommandNode& node) {
   if (node.commands.empty()) return text + "\n}\n";
   text += " \\\n    ': :->command' \\\n    '*:: :->rest'\n  case $state in\n    command)\n      local -a commands=(\n";
   for (const CommandNode& command : node.commands)
-    text += "        " + quoted(command.path.back() + ':' + zshText(briefHelp(command.about))) + "\n";
+    text += "        " + shellQuoted(command.path.back() + ':' + zshText(briefHelp(command.about))) + "\n";
   text += "      )\n      _describe -t commands command commands ;;\n    rest)\n      case $words[1] in\n";
   for (const CommandNode& command : node.commands)
     text += "        " + command.path.back() + ") " + zshFunction(command) + " ;;\n";

@@ -90,8 +90,7 @@ view::OpenedVolume openAll(const SceneOptions& options, const FrameOptions& fram
 // stranger cannot bring in files from elsewhere.
 view::OpenedVolume openForPage(const std::filesystem::path& file, const std::function<void(double)>& progress) {
   SceneOptions options;
-  options.input = file;
-  options.whole = file.extension() == ".json";
+  options.take(file);
   options.volume.besideOnly = true;
   FrameOptions frames;
   frames.skipMissing = true;

@@ -71,39 +71,43 @@ void offerTurned(const Image& truth, BestGuess& best) {
   if (w == h) best.offer(transposed(truth), when + "transposed: x is fastest in a row");
 }
 
-// Returns what is seen at places between pixels, by a cubic through four of them. @param half  steps of half a pixel
-Image movedAlong(const Image& image, int half, bool vertical) {
-  if (half == 0) return image;
+// Returns what is seen so many pixels further, between pixels by the cubic of Catmull and Rom through four of them.
+Image movedAlong(const Image& image, double pixels, bool vertical) {
+  if (pixels == 0) return image;
   Image result(image.width, image.height, image.channels);
-  const auto tap = [&](int x, int y, int offset, int c) {
-    const int sx = vertical ? x : std::clamp(x + offset, 0, image.width - 1);
-    const int sy = vertical ? std::clamp(y + offset, 0, image.height - 1) : y;
-    return image.at(sx, sy)[c];
-  };
+  const int whole = static_cast<int>(std::floor(pixels));
+  const double t = pixels - whole;
+  const std::array<double, 4> weights{0.5 * t * (-1 + t * (2 - t)), 0.5 * (2 + t * t * (-5 + 3 * t)),
+                                      0.5 * t * (1 + t * (4 - 3 * t)), 0.5 * t * t * (-1 + t)};
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
-      for (int c = 0; c < image.channels; ++c) {
-        const int low = half > 0 ? 0 : -1;
-        result.at(x, y)[c] = half % 2 == 0 ? tap(x, y, half / 2, c)
-                                           : 0.5625f * (tap(x, y, low, c) + tap(x, y, low + 1, c)) -
-                                                 0.0625f * (tap(x, y, low - 1, c) + tap(x, y, low + 2, c));
+      for (int tap = 0; tap < 4; ++tap) {
+        const int further = whole - 1 + tap;
+        const int sx = vertical ? x : std::clamp(x + further, 0, image.width - 1);
+        const int sy = vertical ? std::clamp(y + further, 0, image.height - 1) : y;
+        for (int c = 0; c < image.channels; ++c)
+          result.at(x, y)[c] += static_cast<float>(weights[static_cast<std::size_t>(tap)]) * image.at(sx, sy)[c];
       }
   return result;
 }
 
+// Quarters of pixels, up to a whole one in each direction.
 void offerMoved(const Image& truth, BestGuess& best) {
-  const auto words = [](int half, const char* forward, const char* backward) {
-    return shortNumber(0.5 * std::abs(half), 2) + (half > 0 ? forward : backward);
+  constexpr int kSteps = 4;
+  const auto words = [](int steps, const char* forward, const char* backward) {
+    return shortNumber(std::abs(steps) / double(kSteps), 3) + (steps > 0 ? forward : backward);
   };
-  for (int dy = -2; dy <= 2; ++dy)
-    for (int dx = -2; dx <= 2; ++dx) {
+  for (int dx = -kSteps; dx <= kSteps; ++dx) {
+    const Image aside = movedAlong(truth, dx / double(kSteps), false);
+    for (int dy = -kSteps; dy <= kSteps; ++dy) {
       if (dx == 0 && dy == 0) continue;
       std::string way = dx != 0 ? words(dx, " to the right", " to the left") : "";
       if (dy != 0) way += (dx != 0 ? " and " : "") + words(dy, " up", " down");
-      best.offer(movedAlong(movedAlong(truth, dx, false), dy, true),
+      best.offer(movedAlong(aside, dy / double(kSteps), true),
                  "the picture agrees when it is moved by pixels, " + way +
                      ": rays go through the centres of pixels, at halves");
     }
+  }
 }
 
 // --- mistakes about colour ---

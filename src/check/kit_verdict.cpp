@@ -74,7 +74,9 @@ class CaseJudge {
         folder_(files.answers(asked_.name)),
         tolerance_(tolerance),
         judgement_(judgement),
-        known_(known) {}
+        known_(known),
+        voxel_(voxelsOf(asked_.grid)),
+        background_(voxel_(glm::i64vec3(asked_.box.min))) {}
 
   void judgeSamples() {
     const auto bricked = sampleAnswer("samples"), unbricked = sampleAnswer(std::string("samples") + kUnbricked);
@@ -283,16 +285,26 @@ class CaseJudge {
     return words;
   }
 
-  // Tells whether what a pixel sees lies within 3/4 of a voxel of a brick's face that is not seen from the front.
-  bool seesBorder(const AskedPicture& picture, const glm::dvec3& index, const glm::dvec3& forwardIndex) const {
-    constexpr double kNear = 0.75, kAlong = 0.9;
-    const glm::dvec3 inBrick = index + 0.5 - asked_.bricks.originAt(index);
+  // Where a pixel looks: at the border of two bricks that both hold something there, at the rim of the medium where
+  // that is a border, too, or neither. A face that is seen from the front is no border.
+  enum class Look { inside, border, rim };
+  Look lookOf(const AskedPicture& picture, const glm::dvec3& index, const glm::dvec3& forwardIndex) const {
+    constexpr double kNear = 0.75, kAlong = 0.9;  // voxels
+    const glm::dvec3 origin = asked_.bricks.originAt(index), inBrick = index + 0.5 - origin;
+    const bool parallel = picture.scene.camera.projection == Projection::orthographic;
+    Look look = Look::inside;
     for (int axis = 0; axis < 3; ++axis) {
-      const bool along =
-          picture.scene.camera.projection == Projection::orthographic && std::abs(forwardIndex[axis]) > kAlong;
-      if (!along && std::min(inBrick[axis], asked_.bricks.interior()[axis] - inBrick[axis]) < kNear) return true;
+      const double edge = asked_.bricks.interior()[axis];
+      const bool low = inBrick[axis] < kNear, high = edge - inBrick[axis] < kNear;
+      if ((!low && !high) || (parallel && std::abs(forwardIndex[axis]) > kAlong)) continue;
+      glm::i64vec3 first(glm::round(index));
+      first[axis] = static_cast<std::int64_t>(origin[axis] + (low ? 0 : edge)) - 1;  // the last one before the face
+      glm::i64vec3 second = first;
+      ++second[axis];
+      if (voxel_(first) == background_ || voxel_(second) == background_) return Look::rim;
+      look = Look::border;
     }
-    return false;
+    return look;
   }
 
   bool isSeam(const AskedPicture& picture, const std::vector<double>& pixelErrors) const {
@@ -305,7 +317,9 @@ class CaseJudge {
       const int x = static_cast<int>(pixel) % picture.colour.width, y = static_cast<int>(pixel) / picture.colour.width;
       const auto index = seenAt(picture, x, y);
       if (!index || asked_.bricks.at(*index) < 0) continue;
-      const bool border = seesBorder(picture, *index, direction);
+      const Look look = lookOf(picture, *index, direction);
+      if (look == Look::rim) continue;
+      const bool border = look == Look::border;
       (border ? near : far) += pixelErrors[pixel];
       ++(border ? nearCount : farCount);
     }
@@ -333,8 +347,8 @@ class CaseJudge {
       const std::size_t i = errors.place();
       verdict.where = pixelWords(picture, i) + ": found " + digits(answer.pixels[i]) + ", expected " +
                       digits(picture.colour.pixels[i]);
-      if (isSeam(picture, pixelErrors)) verdict.invariant = kNoSeam;
       verdict.hint = explainPicture(asked_, picture, answer);
+      if (verdict.hint.empty() && isSeam(picture, pixelErrors)) verdict.invariant = kNoSeam;
     }
     finish(std::move(verdict), errors);
   }
@@ -344,6 +358,8 @@ class CaseJudge {
   const KitTolerance& tolerance_;
   KitJudgement& judgement_;
   std::set<fs::path>& known_;
+  VoxelAt voxel_;
+  double background_;
   bool brickedIsPng_ = false, lastWasPng_ = false;
 };
 

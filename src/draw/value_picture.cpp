@@ -12,6 +12,7 @@
 #include "umbrick/optics/projection_colour.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/shading_lights.h"
+#include "umbrick/scene/surface_light.h"
 
 namespace umbrick {
 
@@ -28,9 +29,13 @@ void checkSurfaces(const ResolvedScene& scene, const Range& values, int apron) {
                           " has no surface, the volume has values from " + shortNumber(values.min, 9) + " to " +
                           shortNumber(values.max, 9));
   }
-  if (apron < kGradientApron)
-    throw InvalidArgument("bricks: surfaces need an apron of " + std::to_string(kGradientApron) + " voxels, found " +
-                          std::to_string(apron));
+  if (apron < surfaceApron(scene))
+    throw InvalidArgument("bricks: surfaces need an apron of " + std::to_string(surfaceApron(scene)) +
+                          " voxels, found " + std::to_string(apron));
+}
+
+int surfaceApron(const SceneSettings& scene) {
+  return occlusionMethod(scene) ? std::max(kGradientApron, kSurfaceLightApron) : kGradientApron;
 }
 
 void checkSurfaceLight(const ResolvedScene& scene, bool gradients) {

@@ -126,6 +126,7 @@ std::unique_ptr<VoxelSource> openArray(const ArrayVolume& array, const std::stri
                           std::to_string(array.dims.x) + " x " + std::to_string(array.dims.y) + " x " +
                           std::to_string(array.dims.z));
   guessMeaning(info);
+  info.notes.clear();  // which are about files that do not say it
   info.fileBytes = *arrayBytes(info);
   info.metadata["source_format"] = "array";
   if (array.indexToWorld) {

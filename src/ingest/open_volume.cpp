@@ -233,6 +233,11 @@ std::unique_ptr<VoxelSource> placed(std::unique_ptr<VoxelSource> source, const O
 
 std::unique_ptr<VoxelSource> openPlacedArray(const fs::path& path, const OpenOptions& options) {
   auto source = openArray(*options.array, path.string(), options.parts);
+  // Who gives an array says what its numbers mean: there is no file that could have stated something else.
+  VolumeInfo info = source->info();
+  if (!options.lengthUnit.empty() && options.lengthUnit != "file") info.metadata["length_unit"] = options.lengthUnit;
+  if (!options.space.empty() && options.space != "file") info.metadata["space"] = options.space;
+  source = std::make_unique<PlacedSource>(std::move(source), std::move(info));
   if (!options.spacing && !options.origin) return source;
   if (options.array->indexToWorld)
     throw StatedPlace(path.string() + ": spacing and origin: its affine matrix states its own");

@@ -7,9 +7,9 @@
 
 namespace umbrick {
 
-void LitBlocks::markRow(const char* medium, int y, int z) {
+void LitBlocks::markRow(const char* medium, int y, int z, int around) {
   // The voxels next to the medium, and places of light around them.
-  const int reach = light_.spacing;
+  const int reach = light_.spacing + around;
   std::fill(row_.begin(), row_.end(), char{0});
   bool any = false;
   for (int x = -apron_; x + 1 < interior_.x + apron_; ++x)

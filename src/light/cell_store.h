@@ -55,7 +55,8 @@ class LitBlocks {
         row_(static_cast<std::size_t>(count_.x)) {}
   /// Marks what lies around the space between four rows of voxels: y and y + 1, z and z + 1, from -apron on.
   /// @param medium  whether there is any between voxels x and x + 1, for x from -apron on
-  void markRow(const char* medium, int y, int z);
+  /// @param around  voxels that are marked beyond those next to the medium
+  void markRow(const char* medium, int y, int z, int around = 0);
   void markAll() { std::ranges::fill(lit_, char{1}); }
   /// Calls visit(begin, end) for the places of a row along u that get light.
   /// @param v  row of places  n  slice of voxels; both count from the brick's first owned ones

@@ -52,7 +52,9 @@ class Sweep {
                       table.above(),
                       table.emptyBelow(),
                       table.emptyAbove(),
-                      static_cast<float>(direction.length)};
+                      static_cast<float>(direction.length),
+                      bricks.surfaces.data(),
+                      static_cast<int>(bricks.surfaces.size())};
       for (std::size_t c = 0; c < 3; ++c) paths.share.weight[c] = task.factor * direction.weight[c] * kWholeLight;
       if (!task.paths.empty()) {
         paths.within = task.paths[i];

@@ -58,8 +58,19 @@ SortedLight sortLight(const std::vector<LightDirection>& directions, const glm::
 }
 
 // Tells whether there is a surface between voxels of these values. A voxel is inside of one where its value is larger.
-bool crosses(const std::vector<double>& surfaces, float low, float high) {
-  return std::ranges::any_of(surfaces, [&](double value) { return low <= value && high > value; });
+bool crosses(const std::vector<LightSurface>& surfaces, float low, float high) {
+  return std::ranges::any_of(surfaces, [&](const LightSurface& one) { return low <= one.value && high > one.value; });
+}
+
+// Returns surfaces as paths of light meet them. The values of voxels are not known beside a 2D function.
+std::vector<PathSurface> pathSurfaces(const LightMedium& medium, const ExtinctionTable& extinction) {
+  std::vector<PathSurface> surfaces;
+  if (medium.transfer.is2d()) return surfaces;
+  for (const LightSurface& one : medium.surfaces)
+    if (one.opacity > 0)
+      surfaces.push_back({extinction.stepsOf(static_cast<float>(one.value), 0),
+                          std::min(static_cast<float>(-std::log1p(-one.opacity)), 2 * kDarkDepth)});
+  return surfaces;
 }
 
 }  // namespace
@@ -70,7 +81,7 @@ bool showsBackground(const TransferFunction& transfer, const Bricks& volume) {
 
 LightMedium lightAtSurfaces(const Bricks& volume, const ResolvedScene& scene, std::vector<LightDirection> directions) {
   LightMedium medium{scene.transfer, std::move(directions), {}, {}, scene.occlusion.ordinates.lightSpacing};
-  for (const SceneSurface& surface : scene.surfaces) medium.surfaces.push_back(surface.value);
+  for (const SceneSurface& surface : scene.surfaces) medium.surfaces.push_back({surface.value, surface.opacity});
   for (const Brick& brick : volume.bricks)
     if (!scene.bricks.culling || !scene.transfer.isTransparent(brick.value, brick.gradient) ||
         crosses(medium.surfaces, brick.value.min, brick.value.max))
@@ -211,6 +222,7 @@ class LightVolume::Implementation {
     const ExtinctionTable extinction(medium.transfer);
     bricks.extinction = &extinction;
     bricks.planes = medium.planes;
+    bricks.surfaces = pathSurfaces(medium, extinction);
     bricks.busy = std::make_unique<std::mutex[]>(bricks.origins.size());
     readValues(bricks, medium, cells);
     std::atomic<std::uint64_t> updates{0};
@@ -250,19 +262,20 @@ class LightVolume::Implementation {
   void findLit(const float* values, const ExtinctionTable& extinction, LitBlocks& lit) const {
     const auto [least, most] = std::minmax_element(values, values + volume_.layout.voxels());
     if (extinction.isOpaque(*least, *most)) return lit.markAll();
-    markCells(values, lit, [&](float low, float high) { return !extinction.isTransparent(low, high); });
+    markCells(values, lit, 0, [&](float low, float high) { return !extinction.isTransparent(low, high); });
   }
 
   // Marks those that surfaces cross.
-  void findSurfaces(std::span<const float> values, const std::vector<double>& surfaces, LitBlocks& lit) const {
+  void findSurfaces(std::span<const float> values, const std::vector<LightSurface>& surfaces, LitBlocks& lit) const {
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     if (crosses(surfaces, *least, *most))
-      markCells(values.data(), lit, [&](float low, float high) { return crosses(surfaces, low, high); });
+      markCells(values.data(), lit, 1, [&](float low, float high) { return crosses(surfaces, low, high); });
   }
 
   // Marks the blocks with cells of eight voxels for whose least and largest value isWanted(low, high) holds.
+  // @param around  so many voxels farther than light is interpolated around a medium
   template <class IsWanted>
-  void markCells(const float* values, LitBlocks& lit, const IsWanted& isWanted) const {
+  void markCells(const float* values, LitBlocks& lit, int around, const IsWanted& isWanted) const {
     const glm::ivec3 edge = volume_.layout.edge();
     const int apron = volume_.layout.apron;
     std::vector<float> low(static_cast<std::size_t>(edge.x)), high(low);
@@ -277,7 +290,7 @@ class LightVolume::Implementation {
         }
         for (std::size_t x = 0; x + 1 < low.size(); ++x)
           wanted[x] = isWanted(std::min(low[x], low[x + 1]), std::max(high[x], high[x + 1]));
-        lit.markRow(wanted.data(), y - apron, z - apron);
+        lit.markRow(wanted.data(), y - apron, z - apron, around);
       }
   }
 

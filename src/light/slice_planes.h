@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "light/cell_store.h"
+#include "light/sweep_kernels.h"
 #include "umbrick/light/extinction_table.h"
 
 namespace umbrick {
@@ -23,6 +24,7 @@ struct SweptBricks {
   int channels = 1;
   std::vector<std::int32_t> sums;  // of light, channel by channel within a brick
   const ExtinctionTable* extinction = nullptr;
+  std::vector<PathSurface> surfaces;   // that keep light away
   std::vector<glm::dvec4> planes;      // see LightMedium
   glm::dmat3 toIndex{1};               // of directions, from the world
   std::unique_ptr<std::mutex[]> busy;  // one for the sums of each brick

@@ -100,6 +100,17 @@ class MeanExtinction {
   const PathMedium& medium_;
 };
 
+// Optical depth of the surfaces that lie between two values. A voxel is inside of one where its value is larger.
+HWY_INLINE PathFloats crossed(PathLanes d, const PathMedium& medium, PathFloats from, PathFloats to) {
+  PathFloats depth = hn::Zero(d);
+  for (int i = 0; i < medium.surfaceCount; ++i) {
+    const PathFloats value = hn::Set(d, medium.surfaces[i].value);
+    const auto differ = hn::Xor(hn::Gt(from, value), hn::Gt(to, value));
+    depth = hn::Add(depth, hn::IfThenElseZero(differ, hn::Set(d, medium.surfaces[i].depth)));
+  }
+  return depth;
+}
+
 template <int kSpacing>
 void carry(const PathRow& before, const PathRow& here, const PathMedium& medium, float* depth, float* through,
            int count) {
@@ -115,9 +126,10 @@ void carry(const PathRow& before, const PathRow& here, const PathMedium& medium,
     }
     const PathFloats from = valuesAt<kSpacing>(d, before, i), to = valuesAt<kSpacing>(d, here, i);
     const auto empty = mean.empty(d, from, to);
+    const PathFloats surfaces = crossed(d, medium, from, to);
     PathFloats after = old;
-    if (!hn::AllTrue(d, empty)) {
-      after = hn::MulAdd(length, mean(d, from, to, empty), old);
+    if (!hn::AllTrue(d, empty) || !hn::AllTrue(d, hn::Eq(surfaces, hn::Zero(d)))) {
+      after = hn::Add(hn::MulAdd(length, mean(d, from, to, empty), old), surfaces);
       const PathFloats own =
           count - i < lanes ? hn::IfThenElse(hn::FirstN(d, static_cast<std::size_t>(count - i)), after, old) : after;
       hn::StoreU(own, d, depth + i);
@@ -201,7 +213,8 @@ void carryCut(const PathRow& before, const PathRow& here, const PathMedium& medi
     const PathFloats first = hn::MulAdd(begin, change, to), last = hn::MulAdd(end, change, to);
     const PathFloats old = hn::LoadU(d, depth + i);
     const PathFloats way = hn::Mul(length, hn::Sub(end, begin));
-    const PathFloats after = hn::MulAdd(way, mean(d, first, last, mean.empty(d, first, last)), old);
+    const PathFloats after = hn::Add(hn::MulAdd(way, mean(d, first, last, mean.empty(d, first, last)), old),
+                                     crossed(d, medium, first, last));
     const PathFloats own =
         count - i < lanes ? hn::IfThenElse(hn::FirstN(d, static_cast<std::size_t>(count - i)), after, old) : after;
     hn::StoreU(own, d, depth + i);

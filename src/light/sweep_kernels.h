@@ -23,12 +23,19 @@ struct PathRow {
   float u = 0, v = 0;
 };
 
+/// A surface on which values are `value` steps, and the optical depth of each of its crossings.
+struct PathSurface {
+  float value = 0, depth = 0;
+};
+
 /// What a path meets between two slices.
 struct PathMedium {
   const float *integrals = nullptr, *means = nullptr;  // see ExtinctionTable
   float below = 0, above = 0;
   float emptyBelow = 0, emptyAbove = 0;  // there is no medium at values up to the one, and from the other on
   float length = 0;                      // of a path between two slices, world units
+  const PathSurface* surfaces = nullptr;
+  int surfaceCount = 0;
 };
 
 /// Takes paths from the slice before to this one: depth grows by the optical depth in between, and `through` gets the

@@ -8,6 +8,7 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <cmath>
 #include <string>
 
 #include "core/text_file.h"
@@ -27,6 +28,33 @@ class NoOtherFiles : public Assimp::IOSystem {
   Assimp::IOStream* Open(const char*, const char*) override { return nullptr; }
   void Close(Assimp::IOStream*) override {}
 };
+
+// Checks what a reader made of a file before Assimp works on it, which takes it for right: Debian builds it with its
+// assertions, which end the program. A mesh says which kinds of faces it has, as it has them.
+void checkRead(const aiScene& scene, const std::string& name) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      const aiVector3D& v = mesh.mVertices[i];
+      if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
+        throw IoError(name + ": vertex " + std::to_string(i) + " of " + std::to_string(mesh.mNumVertices) +
+                      " is not finite");
+    }
+    mesh.mPrimitiveTypes = 0;
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+      const aiFace& face = mesh.mFaces[i];
+      for (unsigned k = 0; k < face.mNumIndices; ++k)
+        if (face.mIndices[k] >= mesh.mNumVertices)
+          throw IoError(name + ": face " + std::to_string(i) + " has the vertex " + std::to_string(face.mIndices[k]) +
+                        ", there are " + std::to_string(mesh.mNumVertices));
+      mesh.mPrimitiveTypes |= face.mNumIndices == 1   ? aiPrimitiveType_POINT
+                              : face.mNumIndices == 2 ? aiPrimitiveType_LINE
+                              : face.mNumIndices == 3 ? aiPrimitiveType_TRIANGLE
+                                                      : aiPrimitiveType_POLYGON;
+      if (face.mNumIndices == 0) throw IoError(name + ": face " + std::to_string(i) + " has no vertex");
+    }
+  }
+}
 
 std::string extensionOf(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -67,10 +95,12 @@ std::shared_ptr<const Mesh> readMesh(const std::filesystem::path& file) {
   importer.SetIOHandler(new NoOtherFiles);  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseDegrees);
-  const aiScene* const scene = importer.ReadFileFromMemory(
-      bytes.data(), bytes.size(),
-      aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType | aiProcess_GenSmoothNormals,
-      extension.c_str());
+  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str());
+  if (scene && scene->mNumMeshes > 0) {
+    checkRead(*scene, name);
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_PreTransformVertices |
+                                         aiProcess_SortByPType | aiProcess_GenSmoothNormals);
+  }
   if (!scene || scene->mNumMeshes == 0) {
     const std::string reason = printable(importer.GetErrorString());
     throw IoError(name + ": is no mesh that can be read" + (reason.empty() ? ": it holds no triangle" : ": " + reason));

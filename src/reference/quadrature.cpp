@@ -99,9 +99,10 @@ glm::dvec3 QuadraturePixel::shareOf(const glm::dvec3& light) const {
   return share;
 }
 
-std::optional<QuadraturePixel::Share> QuadraturePixel::shareAt(const EyeRays::Ray& ray, const glm::dvec3& point) {
+std::optional<QuadraturePixel::Share> QuadraturePixel::shareAt(const EyeRays::Ray& ray, const glm::dvec3& point,
+                                                               const std::function<double(const IndexRay&)>& through) {
   aimAlong(ray);
-  const Arriving arriving = arrivingAt(point);
+  const Arriving arriving = arrivingAt(point, through);
   if (stopped_) return std::nullopt;
   return Share{shareOf(arriving.light), arriving.visibility};
 }
@@ -170,7 +171,8 @@ void QuadraturePixel::shade(const IndexRay& ray, PixelResult& result) {
   }
 }
 
-QuadraturePixel::Arriving QuadraturePixel::arrivingAt(const glm::dvec3& point) {
+QuadraturePixel::Arriving QuadraturePixel::arrivingAt(const glm::dvec3& point,
+                                                      const std::function<double(const IndexRay&)>& through) {
   ++counts_.samples;
   // V takes time in proportion to its directions, so the job may be stopped here. That ends the pixel, whose result
   // does not count then.
@@ -191,7 +193,8 @@ QuadraturePixel::Arriving QuadraturePixel::arrivingAt(const glm::dvec3& point) {
     double tau = 0;
     if (!part.empty())
       tau = opticalDepth(space_.field, accessor_, space_.classifier, light, part, kDarkTau, counts_.cells);
-    const double transmittance = std::exp(-tau);
+    double transmittance = std::exp(-tau);
+    if (through && transmittance > 0) transmittance *= through(light);
     sum.light += transmittance * radiance;
     sum.visibility += transmittance * share;
   }

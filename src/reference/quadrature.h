@@ -53,9 +53,11 @@ class QuadraturePixel {
     glm::dvec3 colour{1};
     double visibility = 1;
   };
-  /// @param ray    of the eye, through the point; point: in index coordinates
+  /// @param ray      of the eye, through the point; point: in index coordinates
+  /// @param through  returns the share of light that gets through surfaces along a ray from the point
   /// @return none when the job was stopped meanwhile
-  std::optional<Share> shareAt(const EyeRays::Ray& ray, const glm::dvec3& point);
+  std::optional<Share> shareAt(const EyeRays::Ray& ray, const glm::dvec3& point,
+                               const std::function<double(const IndexRay&)>& through);
   /// Returns what arrives where nothing is in the way.
   const glm::dvec3& whole() const { return whole_; }
   const RayCounts& counts() const { return counts_; }
@@ -82,7 +84,7 @@ class QuadraturePixel {
 
   void aim(const std::vector<LightDirection>& lights);
   void aimAlong(const EyeRays::Ray& ray);
-  Arriving arrivingAt(const glm::dvec3& point);
+  Arriving arrivingAt(const glm::dvec3& point, const std::function<double(const IndexRay&)>& through = {});
   void shade(const IndexRay& ray, PixelResult& result);
   glm::dvec3 shareOf(const glm::dvec3& light) const;
   Arriving meanArriving(const IndexRay& ray, std::size_t begin, std::size_t end);

@@ -413,6 +413,8 @@ ReferencePicture renderReference(const ScalarGrid& grid, const ResolvedScene& sc
     return renderMedium(grid, mediumOf(scene), options, &scene);
   }
   if (!traitsOf(scene.mode).medium) return renderValues(grid, scene, options);
+  if (scene.mode == Mode::xray && scene.mesh.shape)
+    throw InvalidArgument("mesh: the mode xray is not integrated with one by the reference but rendered by rays");
   ReferencePicture picture = renderMedium(grid, mediumOf(scene), options);
   if (scene.mode == Mode::xray) showThrough(scene, picture);
   return picture;

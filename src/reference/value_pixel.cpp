@@ -97,7 +97,9 @@ ValueSpace::ValueSpace(const ScalarGrid& grid, const ResolvedScene& scene, bool 
       classifier_(functionOf(grid, scene)),
       field_(grid, classifier_, skipEmpty),
       rays_(scene.camera, indexToWorld_),
-      region_(scene, boxOf(scene, field_.domain()), indexToWorld_, false, 1e-6) {
+      region_(scene, boxOf(scene, field_.domain()), indexToWorld_, false, 1e-6),
+      litRegion_(scene, boxOf(scene, field_.domain()), indexToWorld_,
+                 traitsOf(scene.model).behindEye || lightComesFromBehind(scene), 1e-6) {
   if (isShaded(scene)) phong_.emplace(scene);
 }
 
@@ -191,12 +193,12 @@ std::optional<ValueResult> ValuePixel::integrate(int x, int y, QuadraturePixel* 
 }
 
 // The extremes of a cubic are at its ends and where it turns, and its mean is exact.
-ValueResult ValuePixel::project(const EyeRays::Ray& ray, double end) {
+ValueResult ValuePixel::project(const EyeRays::Ray& ray, double last) {
   ++counts_.eyeRays;
   const ResolvedScene& scene = space_.scene();
   const double background = space_.background();
   Interval part = space_.region().clip(ray.index, 0);
-  part.end = std::min(part.end, end);
+  part.end = std::min(part.end, last);
   ValueResult result;
   result.value = background;
   if (part.empty()) return result;
@@ -227,12 +229,38 @@ ValueResult ValuePixel::project(const EyeRays::Ray& ray, double end) {
   return result;
 }
 
-std::optional<ValueResult> ValuePixel::meet(const EyeRays::Ray& ray, double end, QuadraturePixel* light) {
+// Returns what is left of light once it has crossed the surfaces along a ray. A function of value and gradient has
+// none that keep light away.
+double ValuePixel::throughSurfaces(const IndexRay& ray) {
+  const ResolvedScene& scene = space_.scene();
+  const Interval part = space_.litRegion().clip(ray, 0);
+  double through = 1;
+  if (part.empty() || scene.transfer.is2d()) return through;
+  std::vector<int> sides(scene.surfaces.size(), 0);
+  forEachCell(space_.field(), accessor_, ray, part, [&](const Cubic& value, double, double) {
+    ++counts_.cells;
+    std::array<double, 2> turns{};
+    const int parts = value.turns(turns) + 1;
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      const double iso = scene.surfaces[k].value;
+      if (sides[k] == 0) sides[k] = value(0) > iso ? 1 : -1;
+      for (int i = 0; i < parts; ++i) {
+        const int side = value(i + 1 < parts ? turns[static_cast<std::size_t>(i)] : 1) > iso ? 1 : -1;
+        if (side != sides[k]) through *= 1 - scene.surfaces[k].opacity;
+        sides[k] = side;
+      }
+    }
+    return through > 0;
+  });
+  return through;
+}
+
+std::optional<ValueResult> ValuePixel::meet(const EyeRays::Ray& ray, double last, QuadraturePixel* light) {
   ++counts_.eyeRays;
   const ResolvedScene& scene = space_.scene();
   const bool firstOnly = scene.mode == Mode::hybrid;
   Interval part = space_.region().clip(ray.index, 0);
-  part.end = std::min(part.end, end);
+  part.end = std::min(part.end, last);
   ValueResult result;
   result.value = kNone;
   if (part.empty()) return result;
@@ -258,7 +286,8 @@ std::optional<ValueResult> ValuePixel::meet(const EyeRays::Ray& ray, double end,
     }
     QuadraturePixel::Share arriving;
     if (light) {
-      const auto lit = light->shareAt(ray, point + towardsLight(space_.toIndex(), normal));
+      const auto lit = light->shareAt(ray, point + towardsLight(space_.toIndex(), normal),
+                                      [&](const IndexRay& towards) { return throughSurfaces(towards); });
       stopped = stopped || !lit;
       arriving = lit.value_or(arriving);
     }

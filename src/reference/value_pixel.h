@@ -55,6 +55,8 @@ class ValueSpace {
   const Field& field() const { return field_; }
   const EyeRays& rays() const { return rays_; }
   const ConvexRegion& region() const { return region_; }
+  /// Where light comes through, which may be behind the eye.
+  const ConvexRegion& litRegion() const { return litRegion_; }
   double background() const { return background_; }
   /// The matrix that takes directions of the world to index space.
   glm::dmat3 toIndex() const { return glm::inverse(glm::dmat3(indexToWorld_)); }
@@ -77,7 +79,7 @@ class ValueSpace {
   Classifier classifier_;
   Field field_;
   EyeRays rays_;
-  ConvexRegion region_;
+  ConvexRegion region_, litRegion_;
   std::optional<PhongModel> phong_;  // none: surfaces are flat
 };
 
@@ -90,12 +92,13 @@ class ValuePixel {
   /// @return none when the job was stopped meanwhile
   std::optional<ValueResult> integrate(int x, int y, QuadraturePixel* light = nullptr);
   /// Returns the surfaces of a ray, or the first one of hybrid. @pre the mode is one of surfaces
-  /// @param end  of the ray
-  std::optional<ValueResult> meet(const EyeRays::Ray& ray, double end, QuadraturePixel* light);
+  /// @param last  place on the ray, where it ends
+  std::optional<ValueResult> meet(const EyeRays::Ray& ray, double last, QuadraturePixel* light);
   const RayCounts& counts() const { return counts_; }
 
  private:
-  ValueResult project(const EyeRays::Ray& ray, double end);
+  ValueResult project(const EyeRays::Ray& ray, double last);
+  double throughSurfaces(const IndexRay& ray);
 
   const ValueSpace& space_;
   const std::vector<glm::dvec2>& places_;

@@ -271,6 +271,8 @@ void fitToPicture(const AskedScene& asked, const AskedPicture& picture, Scene& s
   const bool bySlices =
       !picture.onCpu && (scene.technique == Technique::automatic || scene.technique == Technique::slices);
   if (!bySlices && asked.quality && !asked.has("method")) scene.method = Method::lightVolume;
+  // Surfaces take light from a light volume alone.
+  if (traitsOf(scene.mode).surfaces && !asked.has("method")) scene.method = Method::lightVolume;
 }
 
 }  // namespace umbrick

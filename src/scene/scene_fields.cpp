@@ -23,7 +23,8 @@ std::string modelHelp() {
       others += (others.empty() ? "" : " and ") + modelName(traits.model);
   }
   return list + "; " + others +
-         " only in the reference; surfaces are occluded by the medium of the transfer function, not by one another";
+         " only in the reference; surfaces are occluded by one another and by the medium of the transfer function, "
+         "beside a 2D one by that alone";
 }
 
 // "integrate (a medium ...), mip (the largest value along each ray), ... or isosurface (...)"

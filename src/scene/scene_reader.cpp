@@ -120,12 +120,13 @@ void readLight(const JsonValue& value, const SceneFolder& folder, Scene& scene) 
 
 void readMeshOf(const JsonValue& value, const SceneFolder& folder, Scene& scene) {
   readSection(value, "mesh", scene, {"file"});
-  const JsonValue file = value.at("file");
-  scene.mesh.file = folder.file(file);
+  const auto file = value.find("file");
+  if (!file) return;
+  scene.mesh.file = folder.file(*file);
   try {
     scene.mesh.shape = readMesh(scene.mesh.file);
   } catch (const IoError& error) {
-    file.fail(error.what());
+    file->fail(error.what());
   }
 }
 

@@ -54,8 +54,11 @@ std::string printedLight(Scene& scene) {
 }
 
 std::string printedMesh(Scene& scene) {
-  if (scene.mesh.file.empty()) throw InvalidArgument("mesh: one that comes from no file has no place in JSON");
-  JsonFields fields{{"file", jsonString(scene.mesh.file.string())}};
+  JsonFields fields;
+  if (scene.mesh.shape) {
+    if (scene.mesh.file.empty()) throw InvalidArgument("mesh: one that comes from no file has no place in JSON");
+    fields.emplace_back("file", jsonString(scene.mesh.file.string()));
+  }
   for (const auto& field : printedFields("mesh", scene)) fields.push_back(field);
   return jsonObject(fields);
 }
@@ -83,7 +86,7 @@ std::string printScene(const Scene& given) {
   if (scene.transfer) fields.emplace_back("transfer", printedTransfer(scene));
   for (const auto& field : printedFields("", scene)) fields.push_back(field);
   if (!scene.surfaces.empty()) fields.emplace_back("surfaces", printedSurfaces(scene));
-  if (scene.mesh.shape) fields.emplace_back("mesh", printedMesh(scene));
+  if (scene.mesh != SceneMesh{} || !printedKeys("mesh", scene).empty()) fields.emplace_back("mesh", printedMesh(scene));
   if (scene.shading != ShadingOptions{} || !printedKeys("shading", scene).empty())
     fields.emplace_back("shading", jsonObject(printedFields("shading", scene)));
   fields.emplace_back("light", printedLight(scene));

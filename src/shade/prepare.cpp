@@ -51,7 +51,8 @@ BrickOptions requiredBricks(const ResolvedScene& scene, const glm::dmat4& indexT
   options.apron = requiredApron(scene, indexToWorld);
   const double any = apronOfAnyView(scene, indexToWorld);
   if (any <= options.interior) options.apron = std::max(options.apron, static_cast<int>(any));
-  if (traitsOf(scene.mode).surfaces || isShaded(scene)) options.apron = std::max(options.apron, kGradientApron);
+  if (isShaded(scene)) options.apron = std::max(options.apron, kGradientApron);
+  if (traitsOf(scene.mode).surfaces) options.apron = std::max(options.apron, surfaceApron(scene));
   options.gradients = scene.transfer.is2d();
   return options;
 }

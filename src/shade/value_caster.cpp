@@ -43,7 +43,9 @@ bool ValueCaster::isWanted(const Wanted& wanted, float background, const Range& 
 
 void ValueCaster::update(const ResolvedScene& next) {
   checkSize(next, resident_.context());
-  Wanted wanted{traitsOf(next.mode).surfaces, next.bricks.culling};
+  Wanted wanted;
+  wanted.surfaces = traitsOf(next.mode).surfaces;
+  wanted.culling = next.bricks.culling;
   if (wanted.surfaces) {
     checkSurfaces(next, resident_.volume().value, resident_.volume().layout.apron);
     if (isShaded(next)) shadingLights(next);  // says whether there is light

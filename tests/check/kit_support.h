@@ -74,6 +74,7 @@ class KitInput {
       first[axis] = json["volume"]["first_voxel"][static_cast<std::size_t>(axis)];
       dims[axis] = json["volume"]["dims"][static_cast<std::size_t>(axis)];
     }
+    background = json["volume"]["background"];
     const auto columns = readColumns(folder_ / "transfer.csv");
     transfer = {numbersOf(columns.at("value")), numbersOf(columns.at("albedo_r")), numbersOf(columns.at("albedo_g")),
                 numbersOf(columns.at("albedo_b")), numbersOf(columns.at("sigma_t"))};
@@ -88,8 +89,7 @@ class KitInput {
   }
   double voxel(glm::dvec3 at) const {
     at -= first;
-    if (at.x < 0 || at.y < 0 || at.z < 0 || at.x >= dims.x || at.y >= dims.y || at.z >= dims.z)
-      return json["volume"]["background"];
+    if (at.x < 0 || at.y < 0 || at.z < 0 || at.x >= dims.x || at.y >= dims.y || at.z >= dims.z) return background;
     return voxels[static_cast<std::size_t>((at.z * dims.y + at.y) * dims.x + at.x)];
   }
   /// Interpolates by three linear steps, which is not how the library does it.
@@ -123,6 +123,7 @@ class KitInput {
   nlohmann::json json;
   std::vector<float> voxels;
   glm::dvec3 first{0}, dims{0};
+  double background = 0;
   std::vector<std::vector<double>> transfer;
 };
 

@@ -3,10 +3,10 @@
 #include "umbrick/convert/load_volume.h"
 
 #include <catch2/catch.hpp>
+#include <vector>
 
 #include "support/complaint.h"
 #include "support/temporary_folder.h"
-#include "support/test_grids.h"
 #include "umbrick/convert/convert.h"
 #include "umbrick/convert/options_error.h"
 #include "umbrick/grid/dense_values.h"

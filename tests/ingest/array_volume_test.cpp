@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 #include <numeric>
+#include <tuple>
+#include <vector>
 
 #include "support/complaint.h"
 #include "support/read_volume.h"
@@ -54,7 +56,8 @@ TEST_CASE("Arrays of any order are read where they lie", "[ingest]") {
     source->skipSlices(2);
     std::vector<float> last(20);
     source->readSlab(1, last);
-    CHECK(last == std::vector<float>(counted().begin() + 40, counted().end()));
+    const std::vector<float> all = counted();
+    CHECK(last == std::vector<float>(all.begin() + 40, all.end()));
   }
 }
 
@@ -81,6 +84,13 @@ TEST_CASE("An array lies where its matrix or the spacing says", "[ingest]") {
   options.origin = glm::dvec3(7, 8, 9);
   const glm::dmat4 placed = openVolume("array", options)->info().indexToWorld;
   CHECK(placed == glm::dmat4(1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0, 7, 8, 9, 1));
+  options.lengthUnit = "cm";
+  options.space = "RAS";
+  const VolumeInfo info = openVolume("array", options)->info();
+  CHECK(info.indexToWorld == placed);
+  CHECK(info.metadata.at("length_unit") == "cm");
+  CHECK(info.metadata.at("space") == "RAS");
+  CHECK(info.notes.empty());
   options.array->indexToWorld = placed;
   CHECK_THAT(complaint<StatedPlace>([&] { openVolume("array", options); }), Contains("affine"));
   options.spacing.reset();

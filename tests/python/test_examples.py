@@ -21,7 +21,8 @@ def run(name, tmp_path, *arguments):
 
 
 def test_every_example_is_tested():
-    assert {path.name for path in EXAMPLES.glob("*.py")} == {
+    by_hand = {"test_vtk_against_kit.py"}  # needs VTK
+    assert {path.name for path in EXAMPLES.glob("*.py")} - by_hand == {
         "ct_to_picture.py", "simulation_to_vdb.py", "transfer_sweep.py", "turntable.py"}
 
 

@@ -61,6 +61,8 @@ def test_python_makes_no_copy_of_an_array():
 def test_place_follows_spacing_origin_and_affine():
     volume = umbrick.convert(ramp(), spacing=(1, 2, 3), origin=(10, 20, 30))
     np.testing.assert_array_equal(volume.affine, [[1, 0, 0, 10], [0, 2, 0, 20], [0, 0, 3, 30], [0, 0, 0, 1]])
+    centimetres = umbrick.convert(ramp(), length_unit="cm", space="lps").info()["metadata"]
+    assert (centimetres["length_unit"], centimetres["space"]) == ("cm", "LPS")
     oblique = np.array([[0, -2, 0.5, 1], [1.5, 0, 0, 2], [0, 0.25, 3, -4], [0, 0, 0, 1]])
     np.testing.assert_allclose(umbrick.convert(ramp(), affine=oblique).affine, oblique, atol=1e-15)
     with pytest.raises(umbrick.InvalidArgument) as error:
@@ -194,6 +196,8 @@ def test_bad_arrays_and_keywords_are_one_clear_line(tmp_path):
         for word in words:
             assert word in one_line(error)
         assert "--" not in str(error.value)
+    with pytest.raises(TypeError, match="source: expected an array"):
+        umbrick.convert([1, 2, 3])
     with pytest.raises(OSError):
         umbrick.Volume.open(tmp_path / "none.vdb")
     with pytest.raises(ValueError):

@@ -56,11 +56,12 @@ TEST_CASE("Frames come in their order, one that cannot be read ends nothing but 
 TEST_CASE("One frame is read ahead and no more", "[render]") {
   const TemporaryFolder folder;
   std::atomic<int> cut = 0;
-  VolumeFrames frames({bytesOf(folder, 1), bytesOf(folder, 2), bytesOf(folder, 3)}, [&](const Volume&, std::size_t index) {
-    CHECK(index == static_cast<std::size_t>(cut));
-    ++cut;
-    return std::unique_ptr<Bricks>();
-  });
+  VolumeFrames frames({bytesOf(folder, 1), bytesOf(folder, 2), bytesOf(folder, 3)},
+                      [&](const Volume&, std::size_t index) {
+                        CHECK(index == static_cast<std::size_t>(cut));
+                        ++cut;
+                        return std::unique_ptr<Bricks>();
+                      });
   const auto settles = [&](int expected) {
     for (int i = 0; i < 6000 && cut < expected; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     std::this_thread::sleep_for(std::chrono::milliseconds(50));  // in which another would begin

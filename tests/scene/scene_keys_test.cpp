@@ -19,7 +19,7 @@ using Catch::Contains;
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kOneDegree = std::numbers::pi / 180;
 
 Scene keyedScene(const std::string& text) { return parseScene(text, "s.json"); }
 
@@ -176,17 +176,17 @@ TEST_CASE("Keys of each section are read, printed and followed", "[scene]") {
     "clip": {"keys": [{"frame": 0, "box": [[0, 0, 0], [1, 1, 1]], "planes": [[1, 0, 0, 0]]},
                       {"frame": 10, "box": [[0, 0, 0], [1, 1, 3]], "planes": [[1, 0, 0, 2]]}]}})");
   const Scene half = sceneAt(scene, 5);
-  CHECK(scene.orbit->azimuth == Approx(10 * kDegree));
-  CHECK(half.orbit->azimuth == Approx(190 * kDegree));
-  CHECK(half.orbit->elevation == Approx(5 * kDegree));
-  CHECK(sceneAt(scene, 10).camera.fov == Approx(45 * kDegree));  // runs on over a key that does not name it
+  CHECK(scene.orbit->azimuth == Approx(10 * kOneDegree));
+  CHECK(half.orbit->azimuth == Approx(190 * kOneDegree));
+  CHECK(half.orbit->elevation == Approx(5 * kOneDegree));
+  CHECK(sceneAt(scene, 10).camera.fov == Approx(45 * kOneDegree));  // runs on over a key that does not name it
   REQUIRE(half.surfaces.size() == 1);
   CHECK(half.surfaces[0].value == Approx(1.5));
   CHECK(half.surfaces[0].opacity == Approx(0.5));
   CHECK(half.surfaces[0].colour == glm::dvec3(1, 0, 0));
   CHECK(half.shading.specular == Approx(0.5));
   CHECK(half.background->g == Approx(0.5));
-  CHECK(sceneAt(scene, 2).occlusion.aperture == Approx(16 * kDegree));
+  CHECK(sceneAt(scene, 2).occlusion.aperture == Approx(16 * kOneDegree));
   CHECK(half.clipBox->max.z == Approx(2));
   CHECK(half.clipPlanes.at(0).w == Approx(1));
   CHECK((*half.transfer)(0).sigma_t == Approx(1.5));
@@ -208,7 +208,7 @@ TEST_CASE("Keys that place the eye replace the orbit, as the eye itself does", "
 TEST_CASE("Malformed keys are refused with line, column and field", "[scene]") {
   const auto check = [](const std::string& text, const std::string& message) {
     CAPTURE(text);
-    CHECK_THROWS_WITH(keyedScene(text), Contains("s.json:1:") && Contains(message));
+    CHECK_THROWS_WITH(keyedScene(text), Contains("s.json:") && Contains(message));
   };
   check(R"({"camera": {"keys": [{"frame": 3, "fov": 20}, {"frame": 3, "fov": 30}]}})",
         "camera.keys[1].frame: expected keys in ascending order, found frame 3 after frame 3");
@@ -231,7 +231,7 @@ TEST_CASE("Malformed keys are refused with line, column and field", "[scene]") {
       "clip.keys[1].planes: expected as many as at frame 0");
   check(R"({"clip": {"keys": [{"frame": 0, "box": [[0, 0, 0], [0, 1, 1]]}]}})", "clip.keys[0].box");
   check(R"({"keys": [{"frame": 0, "surfaces": [{"value": 1, "colour": [1, 0, 0]}]}]})", "colour: cannot have keys");
-  check(R"({"sampling": {"keys": [{"frame": 0, "spacing": 1}]}})", "keys");
+  check(R"({"sampling": {"keys": [{"frame": 0, "spacing": 1}]}})", "sampling: unknown field");
   check(R"({"transfer": {"keys": [{"frame": 0}]}})", "function");
   check(R"({"transfer": {"keys": [{"frame": 0, "function": "smoke"}, {"frame": 1, "function":
             {"values": [0, 1], "gradients": [0, 1], "albedo": [[1,1,1],[1,1,1],[1,1,1],[1,1,1]], "sigma_t": [1, 1, 1, 1]}}]}})",

@@ -21,7 +21,7 @@ Picture castHybrid(const GlContext& context, const ScalarGrid& grid, const Resol
   options.visibilityAndDepth = layers;
   BrickOptions cut;
   cut.interior = scene.bricks.interior;
-  cut.apron = 2;
+  cut.apron = 3;  // light is taken two voxels in front of a surface
   cut.gradients = scene.transfer.is2d();
   const auto volume = cutGrid(grid, cut, scene.bricks.bricked);
   return RayCaster(context, *volume, scene, options, limits).render();

@@ -51,7 +51,10 @@ TEST_CASE("A scene with a mesh on OpenGL is that of the CPU in each mode", "[sha
     ResolvedScene scene = meshScene(mode, smallCameras(24).back());
     scene.background = glm::dvec3(0.1, 0.2, 0.5);
     const Picture ours = castMesh(*context, grid, scene);
-    CHECK(rmsDifference(ours.colour, valuePicture(grid, scene, 4).colour) < 1e-3);
+    const Picture theirs = valuePicture(grid, scene, 4);
+    // Of projections the number: where it is next to nothing a pixel may be clear or black.
+    CHECK((traitsOf(mode).projection ? rmsDifference(layerOf(ours, "value"), layerOf(theirs, "value"))
+                                     : rmsDifference(ours.colour, theirs.colour)) < 1e-3);
     AtlasLimits small;
     small.budgetBytes = ours.stats.textureBytes / 3;
     CHECK(maxDifference(castMesh(*context, grid, scene, small).colour, ours.colour) < 1e-4);

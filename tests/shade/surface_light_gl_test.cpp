@@ -40,10 +40,19 @@ TEST_CASE("A surface below a slab gets on OpenGL what the slab lets through", "[
       for (int c = 0; c < 3; ++c)
         CHECK(ours.colour.at(1, 2)[c] ==
               Approx(colour[c] * (phong ? 0.2 + share * radiance[c] * 0.7 * std::cos(0.5) : share * radiance[c]))
-                  .margin(2e-5));
-      CHECK(*ours.visibility.at(1, 2) == Approx(share).margin(2e-5));
+                  .margin(2e-4));
+      CHECK(*ours.visibility.at(1, 2) == Approx(share).margin(2e-4));
     }
   }
+}
+
+TEST_CASE("Surfaces keep their opacity of the light away on OpenGL", "[shade][rays][modes][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = floorGrid();
+  for (const double opacity : {0.4, 1.0})
+    CHECK(castLit(*context, grid, roofScene(opacity)).colour.at(1, 2)[0] ==
+          Approx(0.8 * roofShare(opacity)).margin(2e-5));
 }
 
 TEST_CASE("Lit surfaces on OpenGL are those of the CPU and of the reference", "[shade][rays][modes][gl]") {
@@ -107,7 +116,8 @@ TEST_CASE("Light on surfaces comes and goes with a scene on OpenGL", "[shade][ra
   RayCaster renderer(*context, *bricks, lit);
   for (const ResolvedScene& scene : {plain, lit, medium, lit}) {
     renderer.setScene(scene);
-    CHECK(maxDifference(renderer.render().colour, RayCaster(*context, *bricks, scene).render().colour) == 0);
+    // Light that was swept as an edit is off by half a step of 1/65535 more.
+    CHECK(maxDifference(renderer.render().colour, RayCaster(*context, *bricks, scene).render().colour) < 2e-5);
   }
   ResolvedScene refused = lit;
   refused.method = Method::dos;

@@ -38,6 +38,20 @@ inline ResolvedScene floorScene(double sigma_t, const glm::dvec3& towardsLight, 
   return scene;
 }
 
+/// The floor again, and the slab as a roof of the same value: a surface that lets a share through, lit and seen from
+/// straight above, without a medium. The light at each of four crossings, of which the last is the lower face of the
+/// volume, has crossed those above it.
+inline ResolvedScene roofScene(double opacity) {
+  ResolvedScene scene = floorScene(0, {0, 0, 1}, glm::dvec3(1));
+  scene.shading.kind = Shading::none;
+  scene.surfaces = {{0.25, glm::dvec3(0.8, 0.6, 0.4), opacity}};
+  return scene;
+}
+inline double roofShare(double opacity) {
+  const double through = (1 - opacity) * (1 - opacity);
+  return opacity * (1 + through + std::pow(through, 2) + std::pow(through, 3));
+}
+
 /// Soft blobs with a surface, of which a medium holds light off. @param kind  0 to 3: cone, ambient, lights of two
 /// colours, cone on flat surfaces
 inline ResolvedScene litBlobs(const ScalarGrid& grid, Projection projection, int kind, int size) {
@@ -65,7 +79,7 @@ struct ReflectingBlock {
   glm::dvec3 slope{0.02, 0.01, 0.04}, albedo{0.8, 0.5, 0.25};
   ScalarGrid grid =
       makeFilled(glm::ivec3(32), glm::ivec3(0), [this](const glm::ivec3& i) { return glm::dot(slope, glm::dvec3(i)); });
-  ResolvedScene scene = plainScene(TransferFunction({{0, {albedo, kSigma}}}),
+  ResolvedScene scene = plainScene(TransferFunction({{0, {albedo, kSigma}}, {3, {albedo, kSigma}}}),
                                    orthographicCamera({40, 30, 80}, glm::dvec3(15.5), 6, 8), 0.25);
   ReflectingBlock() {
     scene.shading = {Shading::phong, ShadingLight::automatic, kAmbient, kDiffuse, 0, 1};

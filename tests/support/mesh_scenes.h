@@ -1,11 +1,17 @@
 // Scenes with a mesh in the volume.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
+
 #include "support/small_blobs.h"
 #include "support/test_meshes.h"
 #include "support/test_scenes.h"
 
 namespace umbrick {
+
+inline SceneMesh sceneMesh(const TriangleMesh& mesh, const glm::dvec3& colour) {
+  return {{}, std::make_shared<Mesh>(mesh), colour};
+}
 
 inline constexpr Mode kAllModes[]{Mode::integrate, Mode::mip,        Mode::minip, Mode::average,
                                   Mode::xray,      Mode::isosurface, Mode::hybrid};

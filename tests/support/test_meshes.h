@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
-#include <memory>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <numbers>
 #include <string>
 
 #include "umbrick/mesh/mesh.h"
-#include "umbrick/scene/scene.h"
 
 namespace umbrick {
 
@@ -38,10 +38,6 @@ inline TriangleMesh squareMesh(const glm::dvec2& low, const glm::dvec2& high, do
   return {{{low.x, low.y, height}, {high.x, low.y, height}, {high.x, high.y, height}, {low.x, high.y, height}},
           {},
           {{0, 1, 2}, {0, 2, 3}}};
-}
-
-inline SceneMesh sceneMesh(const TriangleMesh& mesh, const glm::dvec3& colour) {
-  return {{}, std::make_shared<Mesh>(mesh), colour};
 }
 
 /// A file's text: vertices, and polygons that count them from `first` on.

@@ -166,7 +166,4 @@ TEST_CASE("What hybrid cannot do is refused in one line", "[sweep][cpu][modes]")
   CHECK_THROWS_WITH(renderReference(grid, scene, random), Contains("mode: hybrid is integrated by quadrature"));
   scene.model = Model::cone;
   CHECK_THROWS_WITH(valuePicture(grid, scene), Contains("method: dos is one of slices"));
-  scene.method = Method::lightVolume;
-  scene.shading.kind = Shading::phong;
-  CHECK_THROWS_WITH(valuePicture(grid, scene), Contains("phong in a medium goes with the model emission"));
 }

@@ -27,7 +27,7 @@ inline SceneSurface surfaceAt(double value, double opacity = 1) {
 inline std::unique_ptr<Bricks> valueBricks(const ScalarGrid& grid, const ResolvedScene& scene) {
   BrickOptions bricks;
   bricks.interior = scene.bricks.interior;
-  bricks.apron = isShaded(scene) || traitsOf(scene.mode).surfaces ? kGradientApron : 1;
+  bricks.apron = traitsOf(scene.mode).surfaces ? surfaceApron(scene) : isShaded(scene) ? kGradientApron : 1;
   bricks.gradients = scene.transfer.is2d();
   return cutGrid(grid, bricks, scene.bricks.bricked);
 }

@@ -10,6 +10,7 @@
 
 using namespace umbrick;
 using Catch::Contains;
+using Catch::Equals;
 namespace fs = std::filesystem;
 
 namespace {
@@ -95,5 +96,6 @@ TEST_CASE("Options of kits that do not go together are refused, and nothing is w
   CHECK_THAT(refused(kSmoke + "--against full", 2), Contains("input: does not go with --against"));
   CHECK_THAT(refused("--export full", 1), Contains("full: holds files"));
   CHECK_THAT(refused("--against full", 1), Contains("expected a kit with a kit.json"));
-  CHECK_THAT(refused(kSmoke + "--grid density --mode mip --export kit", 1), Contains("mode: is mip"));
+  CHECK_THAT(refused(kSmoke + "--grid density --mode mip --export kit", 1),
+             Equals("umbrick: mode (--mode): is mip, and a kit for other renderers has integrate alone\n"));
 }

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::string kReference = "--size 8x8 --model emission --azimuth 0 --elevation 0 --up z ";
+const std::string kReferenceOptions = "--size 8x8 --model emission --azimuth 0 --elevation 0 --up z ";
 
 bool isPlain(const std::string& text) {
   return std::none_of(text.begin(), text.end(), [](char c) {
@@ -45,8 +45,8 @@ TEST_CASE("Pipes and devices are no scene, transfer function, environment or hea
   expectRefusal(at.folder, "reference zero.json -o a.exr", 1, device);
   expectRefusal(at.folder, "reference /proc/self/environ -o a.exr", 1, "made up by the system");
   expectRefusal(at.folder, "reference lit.json -o a.exr", 1, device);
-  expectRefusal(at.folder, "reference ball.vdb --tf pipe.json " + kReference + "-o a.exr", 1, pipe);
-  expectRefusal(at.folder, "reference ball.vdb --tf /dev/zero " + kReference + "-o a.exr", 1, device);
+  expectRefusal(at.folder, "reference ball.vdb --tf pipe.json " + kReferenceOptions + "-o a.exr", 1, pipe);
+  expectRefusal(at.folder, "reference ball.vdb --tf /dev/zero " + kReferenceOptions + "-o a.exr", 1, device);
   REQUIRE(mkfifo((folder / "pipe.vdb").c_str(), 0600) == 0);
   expectRefusal(at.folder, "info pipe.vdb", 1, "found a pipe or device");
   expectRefusal(at.folder, "convert pipe.nrrd -o a.vdb", 1, pipe);
@@ -60,7 +60,7 @@ TEST_CASE("Pipes and devices are no scene, transfer function, environment or hea
 TEST_CASE("Each input of each command refuses links to what is no ordinary file", "[tools][foreign]") {
   const BallWorkplace at;
   const fs::path& folder = at.folder.path();
-  REQUIRE(at.run("reference ball.vdb --tf ball.json " + kReference + "-o good.exr -o good.png").status == 0);
+  REQUIRE(at.run("reference ball.vdb --tf ball.json " + kReferenceOptions + "-o good.exr -o good.png").status == 0);
   REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
   const std::string shown = "ball.vdb --azimuth 0 --elevation 0 --up z ", study = "study " + shown + "--quick --tf ";
   const std::vector<std::string> commands{"convert x.nrrd -o a.vdb",
@@ -123,8 +123,8 @@ TEST_CASE("A name that is no UTF-8 is escaped in what is written about it", "[to
   const BallWorkplace at;
   const std::string name = "b\xe9ll\x1b[2J";
   fs::copy_file(at.folder.path() / "ball.vdb", at.folder.path() / (name + ".vdb"));
-  const ProgramResult made =
-      at.run("reference '" + name + ".vdb' --tf ball.json " + kReference + "-o a.exr -o a.png --stats a.stats.json");
+  const ProgramResult made = at.run("reference '" + name + ".vdb' --tf ball.json " + kReferenceOptions +
+                                    "-o a.exr -o a.png --stats a.stats.json");
   CHECK(made.status == 0);
   CHECK(isPlain(made.err));
   const std::string scene = at.exr("a.exr").metadata.at("umbrick.scene");

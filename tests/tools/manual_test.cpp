@@ -72,10 +72,11 @@ std::string between(const std::string& text, const std::string& begin, const std
   return from == std::string::npos ? std::string() : text.substr(from, text.find(end, from) - from);
 }
 
-// What bash offers for the last of some words. @param line  as a list of words of bash
+// What bash offers for the last of some words, in the folder `files`. @param line  as a list of words of bash
 Words offeredByBash(const TemporaryFolder& folder, const std::string& line) {
-  const std::string script = "source <(\"$umbrick\" completion bash); COMP_WORDS=(" + line +
-                             "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _umbrick; printf \"%s\\n\" \"${COMPREPLY[@]}\"";
+  const std::string script =
+      "source <(\"$umbrick\" completion bash); COMP_WORDS=(" + line +
+      "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); cd files; _umbrick; printf \"%s\\n\" \"${COMPREPLY[@]}\"";
   const ProgramResult result = runShell(folder, "cat >script <<'END'\n" + script + "\nEND\nbash script; rm script");
   CHECK(result.err.empty());
   Words words = linesOf(result.out);
@@ -84,10 +85,10 @@ Words offeredByBash(const TemporaryFolder& folder, const std::string& line) {
   return words;
 }
 
-// What fish offers for a line; only the words, without what it says of them.
+// What fish offers for a line in the folder `files`; only the words, without what it says of them.
 Words offeredByFish(const TemporaryFolder& folder, const std::string& line) {
   const ProgramResult result =
-      runShell(folder, "printf '%s\\n' '$umbrick completion fish | source' 'complete -C \"" + line +
+      runShell(folder, "printf '%s\\n' '$umbrick completion fish | source' 'cd files' 'complete -C \"" + line +
                            "\"' >script; HOME=$PWD fish script; rm -rf script .config .local .cache");
   CHECK(result.err.empty());
   Words words = findAll(result.out, "^([^\t\n]+)");
@@ -132,8 +133,9 @@ TEST_CASE("Every option of every help is in the manual and in the completion of 
 
 TEST_CASE("bash completes commands, options, words and files", "[tools]") {
   const TemporaryFolder folder;
-  std::ofstream(folder.path() / "a scan.nii");
-  std::ofstream(folder.path() / "scene.json");
+  fs::create_directory(folder.path() / "files");
+  std::ofstream(folder.path() / "files" / "a scan.nii");
+  std::ofstream(folder.path() / "files" / "scene.json");
   const auto offered = [&](const std::string& line) { return offeredByBash(folder, line); };
   CHECK(offered("umbrick ren") == Words{"render"});
   CHECK(offered("umbrick tf ''") == Words{"auto", "list"});
@@ -150,14 +152,16 @@ TEST_CASE("bash completes commands, options, words and files", "[tools]") {
   CHECK(offered("umbrick render --dims 2 3 4 s") == Words{"scene.json"});
   CHECK(offered("umbrick render --eye 1 -2 3 s") == Words{"scene.json"});
   CHECK(offered("umbrick render --annotate triad,sc") == Words{"triad,scale"});
-  CHECK(offered("umbrick study --methods dos ra") == Words{"rays", "rays-midpoint", "rays-pre"});
+  CHECK(offered("umbrick study --methods dos ra") ==
+        Words{"rays", "rays-gl", "rays-gl-light-volume", "rays-light-volume", "rays-midpoint", "rays-pre"});
   CHECK(offered("umbrick nothing s").empty());
 }
 
 TEST_CASE("fish completes commands, options, words and files", "[tools]") {
   if (!hasProgram("fish")) return;
   const TemporaryFolder folder;
-  std::ofstream(folder.path() / "scene.json");
+  fs::create_directory(folder.path() / "files");
+  std::ofstream(folder.path() / "files" / "scene.json");
   const auto offered = [&](const std::string& line) { return offeredByFish(folder, line); };
   CHECK(offered("umbrick ren") == Words{"render"});
   CHECK(offered("umbrick tf ") == Words{"auto", "list"});
@@ -215,7 +219,8 @@ TEST_CASE("The examples of the manual work as they stand", "[tools][slow]") {
   std::size_t ran = 0;
   for (const std::string& command : commands) {
     const std::string page = replaced(runProgram(folder, "manual " + command).out, '\\', "");
-    for (const std::string& line : findAll(page, "^(umbrick .*)$")) {
+    const std::string examples = between(page, ".SH EXAMPLES", ".SH EXIT STATUS");
+    for (const std::string& line : findAll(examples, "^(umbrick .*)$")) {
       CAPTURE(line);
       // A study takes minutes, and the viewer goes on until it is stopped; pipes are for people.
       if (line.find("|") != std::string::npos || line.starts_with("umbrick study") || line.starts_with("umbrick view"))

@@ -113,8 +113,8 @@ TEST_CASE("A job goes on where it ended, and draws all again when it is told to"
   CHECK(count(rest.err, "another scene") == 0);
   CHECK_THAT(at.render(job).err, Contains("4 of 4 frames are there and stay: 1 to 4"));
   fs::remove(at.folder.path() / "o_2.exr");
-  CHECK_THAT(at.render(job + "--model cone").err, Contains("o_1.exr: was drawn of another scene (/") &&
-                                                      Contains(") and stays; --overwrite draws all again\n"));
+  CHECK_THAT(at.render(job + "--model emission").err, Contains("o_1.exr: was drawn of another scene (/") &&
+                                                          Contains(") and stays; --overwrite draws all again\n"));
   writeBytes(at.folder.path() / "o_1.exr", "not a picture");
   fs::remove(at.folder.path() / "o_2.exr");
   CHECK_THAT(at.render(job).err, Contains("o_1.exr: is no picture that can be read and stays"));
@@ -174,6 +174,9 @@ TEST_CASE("Frames in one file are counted from 0", "[tools]") {
   REQUIRE(stats.size() == 2);
   CHECK(stats.at(1).at("frame") == 2);
   CHECK(stats.at(1).at("time_ms").at("load") > 0);
+  // A scene of one of them is no sequence.
+  writeBytes(at.folder.path() / "one.json", R"({"volume": {"file": "four.nrrd", "grid": "[1]"}})");
+  CHECK_THAT(at.run("render one.json -o n_%d.png").err, Contains("n_%d.png: expected a sequence"));
 }
 
 TEST_CASE("Several frames go to stdout one after another", "[tools]") {

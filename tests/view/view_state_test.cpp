@@ -98,6 +98,7 @@ TEST_CASE("A patch that is wrong leaves the scene as it was, and says why", "[vi
            {{{"transfer", "/etc/passwd"}}, "is no preset"},
            {{{"transfer", "../secret.json"}}, "is no preset"},
            {{{"transfer", {{"points", Json::array()}}}}, "transfer"},
+           {Json::parse(R"({"mesh": {"file": "/etc/passwd"}})"), "mesh.file: a page cannot change it"},
            {Json::parse(R"({"transfer": {"keys": [{"frame": 0, "function": "secret.json"}]}})"), "keys: a page cannot"},
            {Json::parse(R"({"camera": {"keys": [{"frame": 0, "azimuth": 9}]}})"), "keys: a page cannot set them"},
            {{{"light", {{"sources", {{{"type", "environment"}, {"file", "/etc/passwd"}}}}}}}, "expected a file beside"},

@@ -73,9 +73,9 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 set(same_version "(= ${debian_version})")
-set(about "Umbrick converts scans and simulation output to sparse OpenVDB grids, cuts grids
-into bricks and renders what the transfer function shows of them: by rays on the
-CPU, or by slices and rays on OpenGL, with directional occlusion.
+set(about "Umbrick converts scans and simulation output to sparse OpenVDB grids, cuts
+grids into bricks and renders what the transfer function shows of them: by
+rays on the CPU, or by slices and rays on OpenGL, with directional occlusion.
 ")
 
 # --- umbrick: the program ---
@@ -100,13 +100,16 @@ This package has the shared library.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libosmesa6")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "libegl1, libgl1-mesa-dri")
 
+# The loader's cache is brought up to date once, after all packages of an installation.
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/triggers)
+
 # --- libumbrick-dev: headers and the CMake package ---
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libumbrick-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "sparse volumes: headers and CMake package
 ${about}.
-This package has what programs need that use the library: its headers and a CMake
-package.")
+This package has what programs need that use the library: its headers and a
+CMake package.")
 # What its headers include, and what its CMake package finds. libopenvdb-dev does not bring the boost headers that its own
 # include.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS

@@ -7,7 +7,6 @@ author = "The authors of Umbrick"
 release = os.environ["UMBRICK_VERSION"]
 extensions = ["myst_parser"]
 root_doc = "index"
-exclude_patterns = ["api"]
 myst_heading_anchors = 4
 html_theme = "furo"
 html_title = f"Umbrick {release}"

@@ -78,6 +78,13 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     return wheel
 
 
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    info = pathlib.Path(metadata_directory) / f"umbrick-{_version()}.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(_metadata())
+    return info.name
+
+
 def build_sdist(sdist_directory, config_settings=None):
     raise RuntimeError("umbrick: a source distribution is the whole checkout: install from that")
 

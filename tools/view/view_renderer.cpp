@@ -191,8 +191,6 @@ Renderer& ViewRenderer::rendererFor(const ResolvedScene& scene) {
   return drawer_->rendererFor(scene);
 }
 
-}
-
 void ViewRenderer::drawBlank(const ResolvedScene& scene, bool draft) {
   last_ = blankPicture(scene, true);
   lastScene_ = scene;

@@ -19,6 +19,8 @@ using Json = nlohmann::ordered_json;
 void refuseFiles(const Json& patch) {
   if (!patch.is_object()) throw InvalidArgument("patch: is no object");
   if (patch.contains("volume")) throw InvalidArgument("volume: a page cannot change it");
+  if (const auto mesh = patch.find("mesh"); mesh != patch.end() && mesh->is_object() && mesh->contains("file"))
+    throw InvalidArgument("mesh.file: a page cannot change it");
   const auto refuseKeys = [](const Json& section) {
     if (section.is_object() && section.contains("keys")) throw InvalidArgument("keys: a page cannot set them");
   };
@@ -64,10 +66,13 @@ Scene ViewState::patched(const Json& patch) const {
   const bool sameLights =
       !patch.contains("light") || !patch["light"].is_object() || !patch["light"].contains("sources");
   if (sameLights && whole.contains("light")) whole["light"].erase("sources");
+  if (whole.contains("mesh")) whole["mesh"].erase("file");
   whole.merge_patch(patch);
   Scene next = parseScene(whole.dump(), "edit", {}, true);
   if (sameLights) next.lights = scene_.lights;
   next.volume = scene_.volume;
+  next.mesh.file = scene_.mesh.file;
+  next.mesh.shape = scene_.mesh.shape;
   if (next.camera.width > kMostPixels || next.camera.height > kMostPixels)
     throw InvalidArgument("camera.size: is " + std::to_string(next.camera.width) + " x " +
                           std::to_string(next.camera.height) + ", a page shows up to " + std::to_string(kMostPixels));
@@ -81,6 +86,9 @@ Scene ViewState::patched(const Json& patch) const {
     if (!surface_) surface_ = suggestSurface(volume_->grid());  // looks at the whole volume
     next.surfaces = {SceneSurface{*surface_}};
   }
+  // Surfaces take light from a light volume alone.
+  if (traitsOf(next.mode).surfaces && traitsOf(next.model).occlusion && !patch.contains("method"))
+    next.method = Method::lightVolume;
   return next;
 }
 

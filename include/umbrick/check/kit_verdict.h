@@ -31,8 +31,8 @@ enum class KitOutcome {
 ///   "samples at brick borders are exact"   interpolation across the border of a brick; called "no seam at brick
 ///                                          borders" where they are further off than those inside
 ///   "samples outside are background"
-///   "the picture agrees with the reference"   called "no seam at brick borders" where pixels that see brick borders
-///                                             are further off than others
+///   "the picture agrees with the reference"   called "no seam at brick borders" where pixels that see the border of
+///                                             two bricks are further off than others, and no mistake explains why
 ///   "bricked equals unbricked"             of both answers, where both are given
 struct KitVerdict {
   std::string kitCase;
@@ -41,10 +41,9 @@ struct KitVerdict {
   KitOutcome outcome = KitOutcome::notAnswered;
   double worst = 0, limit = 0;          // largest error, and what it may be; of a picture beyond the error bar
   double rmse = 0, rmseLimit = 0;       // rmseLimit 0: has no limit
-  std::size_t compared = 0, wrong = 0;  // samples or pixels
-  std::string
-      where;  // of the largest error, with what was found and what was expected; of a file: what is wrong with it
-  std::string hint;  // what would explain the error; empty: nothing that is known
+  std::size_t compared = 0, wrong = 0;  // samples or pixels; of "all numbers are finite" the numbers of pixels
+  std::string where;  // the largest error, with what was found and expected; of a file: what is wrong with it
+  std::string hint;   // what would explain the error; empty: nothing that is known
 };
 
 struct KitJudgement {

@@ -17,6 +17,9 @@ bool showsValues(Mode mode);
 /// corners look one voxel beyond them.
 inline constexpr int kGradientApron = 2;
 
+/// Returns the apron that the surfaces of a scene need, which is more where light reaches them.
+int surfaceApron(const SceneSettings& scene);
+
 /// Checks what a scene's surfaces ask of a volume.
 /// @param values  of all voxels, the background included; @param apron  of its bricks
 /// @throw InvalidArgument  there is no surface, or one of a value that the volume does not have; the apron is too small

@@ -16,8 +16,10 @@
 namespace umbrick {
 
 struct OpenOptions {
-  std::optional<RawOptions> raw = {};     // when given, the file is read as headerless raw, whatever its name
-  std::optional<ArrayVolume> array = {};  // when given, voxels are read from memory, and the path is but their name
+  std::optional<RawOptions> raw = {};  // when given, the file is read as headerless raw, whatever its name
+  /// When given, voxels are read from memory, and the path is but their name. lengthUnit and space are then what its
+  /// world has.
+  std::optional<ArrayVolume> array = {};
   bool strict = false;  // refuses plain files that go on behind the voxels of their header, or of `raw`: else a note
   /// The unit of length that the world gets: nm, um, mm, cm, m, or "file" for the one that the file states. Where a
   /// file states none, its numbers are taken for this unit. Empty: mm, or smaller where voxels are too small for

@@ -38,6 +38,14 @@
 
 namespace umbrick {
 
+/// A surface on which the volume has one value. It keeps a share of the light away, and light is held around it as it
+/// is around a medium, for one voxel more than it is read at.
+struct LightSurface {
+  double value = 0;    // grid units
+  double opacity = 1;  // in [0, 1]: the share that each crossing takes; of no effect beside a 2D function
+  bool operator==(const LightSurface&) const = default;
+};
+
 /// All that light depends on besides the voxels.
 struct LightMedium {
   TransferFunction transfer;
@@ -50,9 +58,7 @@ struct LightMedium {
   /// Light is held at every voxel (1) or at every second one along each axis (2), which takes a sixth of the memory and
   /// half the time. 0: at every voxel, unless there is no memory for that.
   int spacing = 0;
-  /// Values on whose surfaces light is asked for, too: it is held around them as it is around the medium, for a voxel
-  /// more than the cells that they cross. They keep no light away.
-  std::vector<double> surfaces = {};
+  std::vector<LightSurface> surfaces = {};
   bool operator==(const LightMedium&) const = default;
 };
 

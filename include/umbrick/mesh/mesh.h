@@ -25,8 +25,7 @@ class Mesh {
  public:
   /// @param name  what messages call it, such as the name of its file
   /// @throw InvalidArgument  there is no triangle, a corner is none of the vertices, a vertex is not finite, or the
-  /// mesh
-  ///   is larger than 1e18 world units
+  ///   mesh is larger than 1e18 world units
   explicit Mesh(const TriangleMesh& triangles, const std::string& name = "mesh");
   ~Mesh();
   Mesh(const Mesh&) = delete;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "umbrick/brick/bricks.h"
+#include "umbrick/draw/value_picture.h"
 #include "umbrick/scene/capabilities.h"
 #include "umbrick/scene/resolve.h"
 
@@ -14,7 +15,8 @@ inline BrickOptions sweptBricks(const ResolvedScene& scene) {
   if (scene.bricks.interior > 0) options.interior = scene.bricks.interior;
   options.gradients = scene.transfer.is2d();
   // Central differences of a cell's corners look one voxel beyond them.
-  if (traitsOf(scene.mode).surfaces || isShaded(scene)) options.apron = 2;
+  if (isShaded(scene)) options.apron = kGradientApron;
+  if (traitsOf(scene.mode).surfaces) options.apron = surfaceApron(scene);
   return options;
 }
 

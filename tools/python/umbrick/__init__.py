@@ -17,6 +17,8 @@ tf_auto, tf_list, tf_load    transfer functions
 Errors are exceptions below `Error`, whose message is one line; what was lost is a warning, UmbrickWarning; what was
 chosen is logged by the logger "umbrick" and kept in notes. All that takes long has `progress=`, ends by Ctrl+C and
 leaves the interpreter free for other threads.
+
+An array is indexed [x, y, z], as in pyopenvdb and nibabel; axes="zyx" takes one that is indexed [z, y, x].
 """
 from ._core import Error, GlError, InvalidArgument, IoError, OutOfMemory, __version__, scene_keywords
 from ._common import UmbrickWarning

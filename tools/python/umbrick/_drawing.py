@@ -120,7 +120,7 @@ class Renderer:
 
     def render(self, *, progress: Optional[Progress] = None) -> Picture:
         """Draws the scene. Raises as `umbrick.render`."""
-        return told(self._renderer.render(progress))
+        return told(self._renderer.render(progress), again=True)
 
     @property
     def scene(self) -> Dict[str, Any]:

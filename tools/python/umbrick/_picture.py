@@ -124,10 +124,10 @@ class Picture:
         return f"<umbrick.Picture {self.width} x {self.height}, RGBA{layers}>"
 
 
-def told(handle: "_core.Picture") -> Picture:
-    """Returns a picture after what should be known of it is said."""
+def told(handle: "_core.Picture", again: bool = False) -> Picture:
+    """Returns a picture after what should be known of it is said: choices not again for each picture of a renderer."""
     warn(handle.notes, level=4)
-    if handle.chosen or handle.reasons:
+    if (handle.chosen or handle.reasons) and not again:
         words = [f"{name}={value}" for name, value in handle.chosen] + list(handle.reasons)
         tell("render", ["; ".join(words)])
     return Picture(handle)

@@ -94,7 +94,7 @@ class Volume:
                             where=where, dims=dims, type=type, endian=endian, header_bytes=header_bytes,
                             bits_stored=bits_stored, beside_only=beside_only)
             _refuse("Volume.open", "arrays", affine=affine, axes=axes, length_unit=length_unit, space=space)
-            handle = _core.open_file(os.fspath(source), options, progress)
+            handle = _core.open_file(_path_of(source), options, progress)
         tell(handle.source, handle.notes)
         return cls(handle)
 
@@ -279,9 +279,15 @@ def convert(
         handle = _core.convert_array(array, {**place, **options, **given(affine=affine, axes=axes)}, progress)
     else:
         _refuse("convert", "arrays", affine=affine, axes=axes)
-        handle = _core.convert_file(os.fspath(source), {**options, **files}, progress)
+        handle = _core.convert_file(_path_of(source), {**options, **files}, progress)
     warn(handle.notes, handle.source)
     return Volume(handle)
+
+
+def _path_of(source):
+    if not isinstance(source, (str, os.PathLike)):
+        raise TypeError(f"source: expected an array, a path or an image of nibabel, found {type(source).__name__}")
+    return os.fspath(source)
 
 
 def volume_of(source: Any) -> Volume:
