@@ -1,6 +1,8 @@
 // A small volume and a page of it, without a browser.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <filesystem>
 #include <functional>
@@ -87,6 +89,17 @@ class NotingClient final : public ViewClient {
   /// Waits until the picture is done.
   nlohmann::ordered_json takeDone() {
     return take([](const auto& text) { return text["type"] == "status" && text["done"] == true; });
+  }
+  /// Waits for a frame that a test accepts, of those that came before, too; null where none comes.
+  std::shared_ptr<const ViewFrame> awaitFrame(const std::function<bool(const ViewFrame&)>& accepts) {
+    std::unique_lock lock(mutex_);
+    std::shared_ptr<const ViewFrame> found;
+    changed_.wait_for(lock, std::chrono::minutes(2), [&] {
+      const auto frame = std::find_if(frames_.begin(), frames_.end(), [&](const auto& each) { return accepts(*each); });
+      if (frame != frames_.end()) found = *frame;
+      return found != nullptr;
+    });
+    return found;
   }
   std::vector<std::shared_ptr<const ViewFrame>> frames() {
     const std::lock_guard lock(mutex_);
