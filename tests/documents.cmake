@@ -1,4 +1,5 @@
-# Fails on a page that links to what is not there, names a file that does not exist, or lists other rooms than tests/rooms.cmake:
+# Fails on a page that links to what is no file, names a file that does not exist, or lists other rooms than tests/rooms.cmake,
+# and on one that the documentation does not lead to:
 #   cmake -DTOP=<checkout> -P documents.cmake
 # Links are [text](file#heading) and [text](#heading). Names of files are those in `backquotes` that begin with a folder of the
 # checkout; they may have a * in them, and capitals like NAME stand for what a reader puts there.
@@ -59,7 +60,7 @@ foreach(page IN LISTS pages)
     if(file)
       get_filename_component(target ${folder}/${file} ABSOLUTE)
     endif()
-    if(NOT EXISTS ${target})
+    if(NOT EXISTS ${target} OR IS_DIRECTORY ${target})
       string(APPEND wrong "  ${name}: no file for the link ${link}\n")
     elseif(link MATCHES "#(.*)$")
       set(anchor "${CMAKE_MATCH_1}")
@@ -82,6 +83,16 @@ foreach(page IN LISTS pages)
       string(APPEND wrong "  ${name}: there is no ${file}\n")
     endif()
   endforeach()
+endforeach()
+
+# The documentation leads to each of them.
+file(READ ${TOP}/tools/docs/index.md index)
+foreach(page IN LISTS pages)
+  file(RELATIVE_PATH name ${TOP} ${page})
+  string(REGEX REPLACE "[.]md$" "" name "${name}")
+  if(NOT name STREQUAL tools/docs/index AND NOT index MATCHES "[\n<]${name}[\n>]")
+    string(APPEND wrong "  tools/docs/index.md: does not lead to ${name}\n")
+  endif()
 endforeach()
 
 # The table of rooms in src/README.md says what tests/rooms.cmake allows.
