@@ -163,12 +163,15 @@ class Page:
         self.select_in(f"#{name}", choice)
 
     def press(self, text):
-        for button in self.driver.find_elements(By.TAG_NAME, "button"):
-            if button.text == text:
-                self.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", button)
-                button.click()
-                return
-        raise AssertionError(f"there is no button '{text}'")
+        """Presses a button, which may be replaced by its like, or come, meanwhile."""
+        def pressed():
+            for button in self.driver.find_elements(By.TAG_NAME, "button"):
+                if button.text == text:
+                    self.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", button)
+                    button.click()
+                    return True
+            return False
+        self.wait(f"the button '{text}'", pressed)
 
     def keys(self, *keys):
         ActionChains(self.driver).send_keys_to_element(self.find("#picture"), *keys).perform()
