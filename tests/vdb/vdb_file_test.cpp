@@ -236,7 +236,7 @@ TEST_CASE("A .vdb with flipped bytes ends in a grid or an IoError", "[grid]") {
   const std::string good = readBytes(UMBRICK_ASSETS "/densityAndHeat.vdb");
   std::mt19937 random(2);
   int told = 0;
-  for (int trial = 0; trial < 1500; ++trial) {
+  for (int trial = 0; trial < 500; ++trial) {
     std::string bytes = good;
     // Every other trial changes the first 2000 bytes: header, metadata, transform and the top of the tree.
     const std::size_t reach = trial % 2 ? 2000 : bytes.size();
@@ -244,7 +244,7 @@ TEST_CASE("A .vdb with flipped bytes ends in a grid or an IoError", "[grid]") {
     writeBytes(path, bytes);
     told += !readsOrTells(path);
   }
-  CHECK(told > 100);
+  CHECK(told > 50);  // of 500
 }
 
 TEST_CASE("Writing that fails leaves no file", "[grid]") {
