@@ -1,21 +1,17 @@
 // Phong's model in a medium: what the voxels of a cell reflect, interpolated as values are. The shares multiply albedos.
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/phong_lights.glsl"
-#include "shade/voxel_fetch.glsl"
+#include "shade/voxel_gradient.glsl"
 uniform vec3 index_to_world[3];  // world units per voxel
 uniform vec3 from_eye;           // from the eye to the first voxel that places are counted from, world units
 
 // @param place  of the voxel, voxels from there
 vec3 reflectedAtVoxel(ivec3 texel, int number, vec3 place, vec3 arriving) {
-  const ivec3 x = ivec3(1, 0, 0), y = ivec3(0, 1, 0), z = ivec3(0, 0, 1);
-  vec3 gradient = vec3(codeAt(texel + x, number) - codeAt(texel - x, number),
-                       codeAt(texel + y, number) - codeAt(texel - y, number),
-                       codeAt(texel + z, number) - codeAt(texel - z, number));
   vec3 viewer = -view_forward;
   if (kPerspective != 0)
     viewer = -normalize(from_eye + place.x * index_to_world[0] + place.y * index_to_world[1] +
                         place.z * index_to_world[2]);
-  return reflectedBy(vec3(1.0), normalOf(gradient, viewer), viewer, arriving);
+  return reflectedBy(vec3(1.0), normalOf(differencesAt(texel, number), viewer), viewer, arriving);
 }
 
 // @param point  in the atlas, texels, where voxels are at whole numbers; shift: from there to places

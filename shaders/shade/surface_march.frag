@@ -16,7 +16,7 @@
 #include "shade/cell_cubic.glsl"
 #include "shade/light_share.glsl"
 #include "shade/phong_lights.glsl"
-#include "shade/voxel_fetch.glsl"
+#include "shade/voxel_gradient.glsl"
 uniform vec4 surfaces[kSurfaces];       // colour and opacity
 uniform vec4 surface_codes[kSurfaces];  // x: value of a surface, in codes above base_code
 uniform float base_code;                // the least of them
@@ -42,14 +42,6 @@ int above = 0;      // bit k: the ray is above surface k
 bool known = false;  // whether that is known
 float reached = -1e30;  // up to where
 
-// Returns the difference of the values a voxel away on both sides: the central difference at voxels, interpolated.
-vec3 gradientAt(ivec3 texel, int number, vec3 share) {
-  const ivec3 x = ivec3(1, 0, 0), y = ivec3(0, 1, 0), z = ivec3(0, 0, 1);
-  return 0.5 * vec3(codeBetween(texel + x, number, share) - codeBetween(texel - x, number, share),
-                    codeBetween(texel + y, number, share) - codeBetween(texel - y, number, share),
-                    codeBetween(texel + z, number, share) - codeBetween(texel - z, number, share));
-}
-
 // Returns the share of the light that reaches a point of a surface. Beyond planes that cut the medium there is more
 // light than arrives.
 vec4 arrivingAtSurface(vec3 texel, int number, vec3 facing) {
@@ -62,7 +54,7 @@ vec4 arrivingAtSurface(vec3 texel, int number, vec3 facing) {
 // Adds a crossing. @return whether the ray goes on
 bool tell(ivec3 texel, int number, vec3 share, float place, int surface) {
   share = clamp(share, 0.0, 1.0);
-  vec3 facing = normalOf(gradientAt(texel, number, share), viewer);
+  vec3 facing = normalOf(differencesBetween(texel, number, share), viewer);
   vec3 colour = surfaces[surface].rgb;
   float part_of = (1.0 - sum.a) * surfaces[surface].a;
   vec4 arriving = vec4(1.0);

@@ -48,12 +48,13 @@ class GridBricks final : public Bricks {
       : grid_(grid.grid),
         name_(grid.name),
         reader_(grid_->tree(), finiteOrZero(grid_->background())),
-        worldGradient_(grid.indexToWorld()) {
+        worldGradient_(grid.indexToWorld(), options.gradientFilter) {
     layout.interior = glm::ivec3(options.interior);
     layout.apron = options.apron;
     indexToWorld = grid.indexToWorld();
     background = finiteOrZero(grid_->background());
     hasGradients = options.gradients;
+    gradientFilter = options.gradientFilter;
     gradient = {0, 0};
     VoxelSurvey survey = surveyVoxels(grid_->tree(), background, options.interior, margin());
     value = survey.value;
@@ -171,7 +172,7 @@ class GridBricks final : public Bricks {
   }
 
   // Calls visit(row, strideY, strideZ, count) for each row of voxels along x in `box`, in ascending order of y, then z.
-  // Each voxel has all its neighbours. The voxels are read in voxel slabs, so that a huge box needs little memory.
+  // Each voxel has its 26 neighbours. The voxels are read in voxel slabs, so that a huge box needs little memory.
   template <class Visit>
   void forEachRow(const CoordBBox& box, std::vector<float>& slab, const Visit& visit) const {
     const glm::i64vec3 first(box.min().x(), box.min().y(), box.min().z());

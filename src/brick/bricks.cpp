@@ -25,6 +25,14 @@ IndexBox Bricks::reach() const {
   return {domain.min - margin(), domain.max + margin()};
 }
 
+void requireGradients(const Bricks& bricks, GradientFilter filter) {
+  if (!bricks.hasGradients) throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
+  if (bricks.gradientFilter != filter)
+    throw InvalidArgument("gradients: is " + std::string(nameOf(kGradientFilters, filter)) +
+                          ", bricks have those of the kind " +
+                          std::string(nameOf(kGradientFilters, bricks.gradientFilter)));
+}
+
 std::vector<Brick> backgroundBricks(const Bricks& bricks, std::size_t limit) {
   if (bricks.domain.empty()) return {};
   const IndexBox reach = bricks.reach();

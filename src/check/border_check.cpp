@@ -91,6 +91,7 @@ void checkBorder(const GlContext& context, const ScalarGrid& grid, const Resolve
     options.apron = requiredApron(wide, alone.indexToWorld());
     options.interior = brickInterior(wide, alone.indexToWorld(), alone.worldBounds());
     options.gradients = scene.transfer.is2d();
+    options.gradientFilter = scene.gradients;
     const auto draw = [&](const ScalarGrid& volume) {
       const std::unique_ptr<Bricks> bricks = cut(volume, options);
       return SliceRenderer(context, *bricks, wide).render().colour;

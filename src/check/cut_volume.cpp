@@ -70,6 +70,7 @@ BrickOptions bricksOf(const CutVolume& volume, const ResolvedScene& scene, int e
   options.interior = edge;
   options.apron = volume.apron;
   options.gradients = scene.transfer.is2d();
+  options.gradientFilter = scene.gradients;
   return options;
 }
 

@@ -38,18 +38,17 @@ int surfaceApron(const SceneSettings& scene) {
   return occlusionMethod(scene) ? std::max(kGradientApron, kSurfaceLightApron) : kGradientApron;
 }
 
-void checkSurfaceLight(const ResolvedScene& scene, bool gradients) {
+void checkSurfaceLight(const ResolvedScene& scene) {
   if (!occlusionMethod(scene)) return;
   if (!supports(Method::lightVolume, scene.model))
     throw InvalidArgument("model: " + modelName(scene.model) +
                           " on surfaces is integrated by the reference alone; rays render emission, cone, ambient and "
                           "lights");
+  refuseConeRays(scene, "surfaces");
   if (scene.method != Method::lightVolume)
     throw InvalidArgument("method: " + methodName(scene.method) +
                           " is one of slices; surfaces take light from a light volume");
   requireClassification(scene);
-  if (scene.transfer.is2d() && !gradients)
-    throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
 }
 
 void checkShading(const ResolvedScene& scene, int apron) {

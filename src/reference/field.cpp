@@ -14,6 +14,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "reference/voxel_gradient.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -50,11 +51,13 @@ CoordBBox blocksOf(const CoordBBox& box, int reach) {
 // Reads the voxels of one block with `margin` on each side, x fastest. Those that are not finite become background.
 class BlockReader {
  public:
-  BlockReader(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, float background, bool gradients)
+  BlockReader(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, float background, bool gradients,
+              GradientFilter filter)
       : tree_(tree),
         covariant_(glm::transpose(glm::inverse(glm::dmat3(indexToWorld)))),
         background_(background),
-        gradients_(gradients) {}
+        gradients_(gradients),
+        filter_(filter) {}
 
   // @param values  receives kBlockSize floats, and behind them as many gradients if there are any
   void read(const Coord& block, float* values) {
@@ -76,10 +79,11 @@ class BlockReader {
   }
 
  private:
-  // Computes central differences per voxel and turns them into a gradient per world unit.
+  // Turns the gradient per voxel into one per world unit.
   float magnitude(const float* v, std::ptrdiff_t edge) const {
-    const auto difference = [&](std::ptrdiff_t stride) { return (double(v[stride]) - double(v[-stride])) / 2; };
-    const double size = glm::length(covariant_ * glm::dvec3(difference(1), difference(edge), difference(edge * edge)));
+    const glm::dvec3 gradient = voxelGradient(
+        glm::dvec3(0), filter_, [&](int i, int j, int k) { return double(v[(k * edge + j) * edge + i]); });
+    const double size = glm::length(covariant_ * gradient);
     return static_cast<float>(std::min<double>(size, std::numeric_limits<float>::max()));
   }
 
@@ -87,6 +91,7 @@ class BlockReader {
   glm::dmat3 covariant_;
   float background_;
   bool gradients_;
+  GradientFilter filter_;
   std::vector<float> scratch_;
 };
 
@@ -132,7 +137,8 @@ bool survey(FieldBlock& block, const Classifier& classifier, bool skipEmpty) {
 
 }  // namespace
 
-Field::Field(const ScalarGrid& grid, const Classifier& classifier, bool skipEmpty) : skipEmpty_(skipEmpty) {
+Field::Field(const ScalarGrid& grid, const Classifier& classifier, GradientFilter filter, bool skipEmpty)
+    : skipEmpty_(skipEmpty) {
   const TransferFunction& transfer = classifier.transfer();
   const openvdb::FloatTree& tree = grid.grid->tree();
   background_ = std::isfinite(tree.background()) ? tree.background() : 0.0f;
@@ -141,7 +147,7 @@ Field::Field(const ScalarGrid& grid, const Classifier& classifier, bool skipEmpt
                              ? -1
                              : uniformBlock(background_, transfer);
   tree_ = std::make_unique<BlockTree>(background);
-  if (!domain_.empty()) addBlocks(tree, grid.indexToWorld(), classifier);
+  if (!domain_.empty()) addBlocks(tree, grid.indexToWorld(), classifier, filter);
 }
 
 Field::~Field() = default;
@@ -200,7 +206,8 @@ int Field::uniformBlock(float value, const TransferFunction& transfer) {
   return static_cast<int>(blocks_.size()) - 1;
 }
 
-void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, const Classifier& classifier) {
+void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, const Classifier& classifier,
+                      GradientFilter filter) {
   const TransferFunction& transfer = classifier.transfer();
   const bool gradients = transfer.is2d();
   const int reach = gradients ? 1 : 0;
@@ -240,7 +247,7 @@ void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToW
     std::vector<FieldBlock> found(coords.size());
     std::vector<std::unique_ptr<float[]>> voxels(coords.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, coords.size(), 16), [&](const auto& range) {
-      BlockReader reader(tree, indexToWorld, background_, gradients);
+      BlockReader reader(tree, indexToWorld, background_, gradients, filter);
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         if (!voxels[i]) voxels[i] = std::make_unique<float[]>(size);
         reader.read(coords[i], voxels[i].get());

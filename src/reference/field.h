@@ -16,6 +16,7 @@
 #include "umbrick/core/range.h"
 #include "umbrick/grid/float_grid.h"
 #include "umbrick/grid/scalar_grid.h"
+#include "umbrick/optics/gradient_filter.h"
 #include "umbrick/optics/transfer_function.h"
 
 namespace umbrick {
@@ -112,7 +113,8 @@ class Field {
   using Accessor = openvdb::tree::ValueAccessor<const BlockTree, false>;
 
   /// @param skipEmpty  false: transparent blocks are kept as well, and rays visit each cell
-  Field(const ScalarGrid& grid, const Classifier& classifier, bool skipEmpty);
+  /// @param filter  by which gradients are found, where the function asks for them
+  Field(const ScalarGrid& grid, const Classifier& classifier, GradientFilter filter, bool skipEmpty);
   ~Field();  // where the tree is known: each file that deletes one compiles all of its virtual functions
 
   /// Returns the box of active voxels and of others that differ from the background, grown by one voxel.
@@ -130,7 +132,8 @@ class Field {
 
  private:
   void findDomain(const openvdb::FloatTree& tree);
-  void addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, const Classifier& classifier);
+  void addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, const Classifier& classifier,
+                 GradientFilter filter);
   int uniformBlock(float value, const TransferFunction& transfer);
 
   bool skipEmpty_;

@@ -269,7 +269,7 @@ class MediumSpace {
       : lights_(lightsOf(scene, options)),
         indexToWorld_(grid.indexToWorld()),
         classifier_(scene.transfer),
-        field_(grid, classifier_, options.skipEmpty),
+        field_(grid, classifier_, scene.gradients, options.skipEmpty),
         rays_(scene.camera, indexToWorld_),
         region_(scene, mediumBox(scene.transfer, field_.domain()), indexToWorld_,
                 traitsOf(scene.model).behindEye || lightComesFromBehind(scene)),

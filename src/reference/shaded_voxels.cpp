@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "reference/voxel_gradient.h"
+
 namespace umbrick {
 
 ShadedVoxels::ShadedVoxels(const ScalarGrid& grid, const ResolvedScene& scene)
@@ -13,7 +15,8 @@ ShadedVoxels::ShadedVoxels(const ScalarGrid& grid, const ResolvedScene& scene)
       indexToWorld_(grid.indexToWorld()),
       gradientToWorld_(glm::transpose(glm::inverse(glm::dmat3(indexToWorld_)))),
       phong_(scene),
-      camera_(scene.camera) {}
+      camera_(scene.camera),
+      gradients_(scene.gradients) {}
 
 double ShadedVoxels::valueAt(openvdb::Coord at) const {
   const float value = accessor_.getValue(at);
@@ -24,13 +27,9 @@ glm::dvec3 ShadedVoxels::atVoxel(const openvdb::Coord& at) const {
   const glm::dvec3 world(indexToWorld_ * glm::dvec4(at.x(), at.y(), at.z(), 1));
   const glm::dvec3 viewer = camera_.projection == Projection::perspective ? glm::normalize(camera_.eye - world)
                                                                           : -cameraFrame(camera_).forward;
-  glm::dvec3 rise;
-  for (int axis = 0; axis < 3; ++axis) {
-    openvdb::Coord step(0, 0, 0);
-    step[axis] = 1;
-    rise[axis] = (valueAt(at + step) - valueAt(at - step)) / 2;
-  }
-  rise = gradientToWorld_ * rise;
+  const glm::dvec3 rise = gradientToWorld_ * voxelGradient(glm::dvec3(0), gradients_, [&](int i, int j, int k) {
+                            return valueAt(at.offsetBy(i, j, k));
+                          });
   const double length = glm::length(rise);
   glm::dvec3 normal = length > 0 ? rise / length : viewer;
   if (glm::dot(normal, viewer) < 0) normal = -normal;

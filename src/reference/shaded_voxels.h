@@ -31,6 +31,7 @@ class ShadedVoxels {
   glm::dmat3 gradientToWorld_;
   PhongModel phong_;
   Camera camera_;
+  GradientFilter gradients_;
 };
 
 }  // namespace umbrick

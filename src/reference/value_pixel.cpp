@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 #include <limits>
 
+#include "reference/voxel_gradient.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/short_number.h"
 #include "umbrick/grid/value_survey.h"
@@ -95,7 +96,7 @@ ValueSpace::ValueSpace(const ScalarGrid& grid, const ResolvedScene& scene, bool 
       indexToWorld_(grid.indexToWorld()),
       background_(backgroundOf(grid)),
       classifier_(functionOf(grid, scene)),
-      field_(grid, classifier_, skipEmpty),
+      field_(grid, classifier_, scene.gradients, skipEmpty),
       rays_(scene.camera, indexToWorld_),
       region_(scene, boxOf(scene, field_.domain()), indexToWorld_, false, 1e-6),
       litRegion_(scene, boxOf(scene, field_.domain()), indexToWorld_,
@@ -105,31 +106,14 @@ ValueSpace::ValueSpace(const ScalarGrid& grid, const ResolvedScene& scene, bool 
 
 ValueSpace::~ValueSpace() = default;
 
-double ValueSpace::valueAt(const glm::dvec3& point) const {
-  const auto accessor = grid_.grid->getConstAccessor();
-  const glm::dvec3 below = glm::floor(point), share = point - below;
-  double sum = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    double weight = 1;
-    openvdb::Coord at;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int upper = corner >> axis & 1;
-      at[axis] = static_cast<int>(below[axis]) + upper;
-      weight *= upper ? share[axis] : 1 - share[axis];
-    }
-    const float value = accessor.getValue(at);
-    sum += weight * (std::isfinite(value) ? static_cast<double>(value) : background_);
-  }
-  return sum;
-}
-
 glm::dvec3 ValueSpace::gradientAt(const glm::dvec3& point) const {
-  glm::dvec3 gradient;
-  for (int axis = 0; axis < 3; ++axis) {
-    glm::dvec3 step(0);
-    step[axis] = 1;
-    gradient[axis] = (valueAt(point + step) - valueAt(point - step)) / 2;
-  }
+  const auto accessor = grid_.grid->getConstAccessor();
+  const glm::dvec3 below = glm::floor(point);
+  const openvdb::Coord at(static_cast<int>(below.x), static_cast<int>(below.y), static_cast<int>(below.z));
+  const glm::dvec3 gradient = voxelGradient(point - below, scene_.gradients, [&](int i, int j, int k) {
+    const float value = accessor.getValue(at.offsetBy(i, j, k));
+    return std::isfinite(value) ? static_cast<double>(value) : background_;
+  });
   return glm::transpose(glm::inverse(glm::dmat3(indexToWorld_))) * gradient;
 }
 

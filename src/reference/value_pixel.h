@@ -70,8 +70,6 @@ class ValueSpace {
                     const glm::dvec3& share, const glm::dvec3& whole) const;
 
  private:
-  double valueAt(const glm::dvec3& point) const;
-
   const ScalarGrid& grid_;
   const ResolvedScene& scene_;
   glm::dmat4 indexToWorld_;

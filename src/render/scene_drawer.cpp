@@ -17,8 +17,8 @@ struct MadeFor {
   Technique technique;
   std::optional<Method> method;
   Model model;
-  bool gradients;
-  int apron;   // that techniques on the CPU need
+  std::optional<GradientFilter> gradients;  // of bricks; none: they have none
+  int apron;                                // that techniques on the CPU need
   bool byAll;  // techniques can render the mode and its shading; else another one may have to be chosen
   BrickSettings bricks;
   bool operator==(const MadeFor&) const = default;
@@ -32,7 +32,7 @@ MadeFor madeFor(const ResolvedScene& scene) {
   return {scene.technique,
           occlusionMethod(scene),
           scene.model,
-          scene.transfer.is2d(),
+          scene.transfer.is2d() ? std::optional(scene.gradients) : std::nullopt,
           sweptBricks(scene).apron,
           supportsMode(scene, Technique::slices) && supportsMode(scene, Technique::shearWarp),
           scene.bricks};

@@ -26,7 +26,7 @@ std::unique_ptr<Renderer> makeOnCpu(const Bricks& volume, const ResolvedScene& s
 
 bool slicesSupport(const SceneSettings& scene) {
   return supportsMode(scene, Technique::slices) && supports(scene.method, scene.model) &&
-         scene.sampling.classification == Classification::post;
+         occlusionMethod(scene) != Method::coneRays && scene.sampling.classification == Classification::post;
 }
 
 bool stacksSupport(const SceneSettings& scene) {

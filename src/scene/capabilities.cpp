@@ -41,6 +41,11 @@ constexpr MethodTraits kMethodTraits[]{
      .sources = true,
      .directions = true,
      .allAround = true},
+    {.method = Method::coneRays,
+     .meaning = "rays towards the light from each sample, slow, to compare the others with",
+     .sources = true,
+     .directions = true,
+     .allAround = true},
 };
 
 constexpr ModeTraits kModeTraits[]{
@@ -70,6 +75,11 @@ const MethodTraits& traitsOf(Method method) {
 std::optional<Method> occlusionMethod(const SceneSettings& scene) {
   if (!traitsOf(scene.model).occlusion) return std::nullopt;
   return scene.method;
+}
+
+void refuseConeRays(const SceneSettings& scene, std::string_view other) {
+  if (occlusionMethod(scene) == Method::coneRays)
+    throw InvalidArgument("method: cone-rays is of media by rays on the CPU, not of " + std::string(other));
 }
 
 void requireClassification(const SceneSettings& scene) {

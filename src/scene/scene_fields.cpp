@@ -108,6 +108,10 @@ const std::vector<SceneField>& table() {
        "of --gradient-opacity: grid (value per world unit, as of 2D transfer functions) or percent (of the volume's "
        "largest gradient)",
        [](Scene& s) -> FieldPlace { return Choice(s.gradientUnit, kGradientUnits); }},
+      {"gradients", "gradients", "Medium",
+       "of --gradient-opacity, 2D transfer functions and Phong's model: central (differences of the voxels beside) or "
+       "bspline (of a tricubic B-spline: smoother, less noise, softer edges)",
+       [](Scene& s) -> FieldPlace { return Choice(s.gradients, kGradientFilters); }},
 
       {"mode", "mode", "Mode", modes, [](Scene& s) -> FieldPlace { return Choice(s.mode, kModes); }},
       {"shading.kind", "shading", "Mode",
@@ -153,7 +157,8 @@ const std::vector<SceneField>& table() {
       {"model", "model", "Light", models, [](Scene& s) -> FieldPlace { return Choice(s.model, kModels); }},
       {"method", "method", "Light",
        "of the models cone (dos, ordinates or light-volume), lights (ordinates or light-volume) and ambient "
-       "(light-volume)",
+       "(light-volume); or cone-rays of all three: rays towards the light from each sample, by rays on the CPU, slow, "
+       "to compare the others with",
        [](Scene& s) -> FieldPlace { return Choice(s.method, kMethods); }},
       {"technique", "technique", "Sampling",
        "how the picture is computed: slices (across the view, on OpenGL), stacks (across the axes of the volume, on "
@@ -264,10 +269,10 @@ const std::vector<SceneField>& table() {
       {"occlusion.directions",
        "directions",
        "Light",
-       "of ordinates and light-volume, K: about so many over the cone or the lights",
+       "of ordinates, light-volume and cone-rays, K: about so many over the cone or the lights",
        [](Scene& s) -> FieldPlace { return &s.occlusion.ordinates.directions; },
        {.low = 1, .high = 1024},
-       {Method::ordinates, Method::lightVolume}},
+       {Method::ordinates, Method::lightVolume, Method::coneRays}},
       {"occlusion.scale",
        "occlusion-scale",
        "Light",

@@ -13,6 +13,7 @@ namespace umbrick {
 void setPhongConstants(ShaderConstants& constants, const ResolvedScene& scene) {
   const bool shaded = isShaded(scene);
   constants["kShaded"] = shaded;
+  constants["kBspline"] = scene.gradients == GradientFilter::bspline;
   constants["kShadingLights"] = shaded ? static_cast<int>(shadingLights(scene).size()) : 0;
 }
 

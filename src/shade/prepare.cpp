@@ -54,6 +54,7 @@ BrickOptions requiredBricks(const ResolvedScene& scene, const glm::dmat4& indexT
   if (isShaded(scene)) options.apron = std::max(options.apron, kGradientApron);
   if (traitsOf(scene.mode).surfaces) options.apron = std::max(options.apron, surfaceApron(scene));
   options.gradients = scene.transfer.is2d();
+  options.gradientFilter = scene.gradients;
   return options;
 }
 

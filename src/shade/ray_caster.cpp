@@ -24,6 +24,7 @@ void checkScene(const ResolvedScene& scene, const ResidentVolume& resident) {
   if (!supports(Method::lightVolume, scene.model))
     throw InvalidArgument("model: " + modelName(scene.model) +
                           " is integrated by the reference alone; rays render emission, cone, ambient and lights");
+  refuseConeRays(scene, "rays on OpenGL");
   if (occlusionMethod(scene).value_or(Method::lightVolume) != Method::lightVolume)
     throw InvalidArgument("method: " + methodName(scene.method) +
                           " is one of slices; rays take light from a light volume");

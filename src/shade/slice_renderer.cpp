@@ -239,6 +239,7 @@ class SliceRenderer::Implementation {
  private:
   void checkScene(const ResolvedScene& scene) const {
     const std::optional<Method> method = occlusionMethod(scene);
+    refuseConeRays(scene, scene.technique == Technique::stacks ? "stacks" : "slices");
     if (scene.technique == Technique::stacks && method && *method != Method::lightVolume)
       throw InvalidArgument("method: " + methodName(*method) +
                             " takes light from slice to slice across the view; stacks read a light volume");

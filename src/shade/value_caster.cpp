@@ -49,7 +49,8 @@ void ValueCaster::update(const ResolvedScene& next) {
   if (wanted.surfaces) {
     checkSurfaces(next, resident_.volume().value, resident_.volume().layout.apron);
     if (isShaded(next)) shadingLights(next);  // says whether there is light
-    checkSurfaceLight(next, resident_.volume().hasGradients);
+    checkSurfaceLight(next);
+    if (occlusionMethod(next) && next.transfer.is2d()) requireGradients(resident_.volume(), next.gradients);
     wanted.lit = occlusionMethod(next).has_value();
     for (const SceneSurface& surface : next.surfaces) wanted.values.push_back(surface.value);
   }

@@ -37,8 +37,7 @@ void checkOnGl(const ResolvedScene& scene, const ResidentVolume& resident) {
   if (scene.sampling.classification == Classification::pre)
     throw InvalidArgument(
         "sampling.classification: pre is rendered on the CPU, by rays and by shear-warp, and without occlusion");
-  if (scene.transfer.is2d() && !resident.volume().hasGradients)
-    throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
+  if (scene.transfer.is2d()) requireGradients(resident.volume(), scene.gradients);
   checkSize(scene, resident.context());
 }
 

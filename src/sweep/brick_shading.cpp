@@ -59,6 +59,7 @@ bool isGrey(const glm::dvec3& colour) { return colour.r == colour.g && colour.g 
 
 int BrickShading::begin(const ResolvedScene& scene, const BrickLight* light) {
   shading_ = scene.shading;
+  gradients_ = scene.gradients;
   camera_ = scene.camera;
   light_ = light;
   lights_ = shadingLights(scene);
@@ -118,9 +119,8 @@ void BrickShading::shade(VoxelBrick& brick, const BrickVoxels& voxels, const Vie
                                    static_cast<float>(z) * alongZ);
         glm::vec3 normal = viewer;
         if (!values.empty()) {
-          const float* const v = values.data() + at;
           const glm::vec3 gradient =
-              view.gradientToWorld * glm::vec3(v[1] - v[-1], v[strideY] - v[-strideY], v[strideZ] - v[-strideZ]);
+              view.gradientToWorld * glm::vec3(differencesAt(values.data() + at, strideY, strideZ, gradients_));
           const float square = glm::dot(gradient, gradient);
           if (square > 0) normal = gradient * ((glm::dot(gradient, viewer) < 0 ? -1.0f : 1.0f) / std::sqrt(square));
         }

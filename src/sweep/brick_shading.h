@@ -14,9 +14,9 @@ namespace umbrick {
 
 /// Computes for each voxel what share of the lights a medium sends to the eye,
 ///   ambient + V sum over lights of radiance (diffuse N.L + specular (R.V)^shininess)
-/// with the normal from central differences, and keeps it with the bricks in 16 bits a voxel and channel. V is the
-/// share of the light that reaches the voxel, see umbrick/scene/surface_light.h. Rays interpolate it as they do light.
-/// A voxel without a gradient faces the viewer.
+/// with the normal from the scene's kind of gradients, and keeps it with the bricks in 16 bits a voxel and channel. V
+/// is the share of the light that reaches the voxel, see umbrick/scene/surface_light.h. Rays interpolate it as they do
+/// light. A voxel without a gradient faces the viewer.
 class BrickShading {
  public:
   /// Takes the scene of a picture. @param light  null: all of it arrives; else outlives the picture
@@ -41,6 +41,7 @@ class BrickShading {
   glm::vec3 reflected(const glm::vec3& normal, const glm::vec3& viewer) const;
 
   ShadingOptions shading_;
+  GradientFilter gradients_ = GradientFilter::central;
   Camera camera_;
   const BrickLight* light_ = nullptr;
   std::vector<ShadingLightRay> lights_;

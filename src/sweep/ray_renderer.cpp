@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "sweep/cone_march.h"
 #include "sweep/packet_march.h"
 #include "sweep/swept_scene.h"
 #include "sweep/value_rays.h"
@@ -75,7 +76,8 @@ RowSpan rowsOf(const Brick& brick, const IndexView& view, const glm::ivec3& inte
 }  // namespace
 
 bool raysSupport(const SceneSettings& scene) {
-  return supportsMode(scene, Technique::rays) && (traitsOf(scene.mode).projection || sweptSupports(scene));
+  return supportsMode(scene, Technique::rays) &&
+         (traitsOf(scene.mode).projection || sweptSupports(scene, Technique::rays));
 }
 
 int raySamplesPerVoxel(const ResolvedScene& scene, const Bricks& volume) {
@@ -85,7 +87,7 @@ int raySamplesPerVoxel(const ResolvedScene& scene, const Bricks& volume) {
 class RayRenderer::Implementation {
  public:
   Implementation(const Bricks& volume, const RenderOptions& options, std::optional<int> perVoxel)
-      : options_(options), perVoxel_(perVoxel), scene_(volume, "rays") {}
+      : options_(options), perVoxel_(perVoxel), scene_(volume, Technique::rays) {}
 
   void update(const ResolvedScene& next) {
     requireMode(next, Technique::rays);
@@ -142,7 +144,13 @@ class RayRenderer::Implementation {
     scene_.drawInBands(
         medium, medium.camera.height, kPacketEdge,
         [&](const Brick& brick) { return rowsOf(brick, scene_.view(), scene_.volume().layout.interior); },
-        [&](int begin, int end) { march(medium, frameOf(medium), starts, ends, begin, end, picture); }, picture.stats);
+        [&](int begin, int end) {
+          if (occlusionMethod(medium) == Method::coneRays)
+            marchCones(medium, ends, picture);
+          else
+            march(medium, frameOf(medium), starts, ends, begin, end, picture);
+        },
+        picture.stats);
     if (through) showThrough(scene, picture);
     picture.stats.sweepMs = sweep.elapsedMs();
     picture.stats.bufferBytes = picture.colour.pixels.size() * sizeof(float);
@@ -155,11 +163,59 @@ class RayRenderer::Implementation {
   }
 
  private:
-  PacketFrame frameOf(const ResolvedScene& scene) {
-    if (!bricks_ || generation_ != scene_.voxels().generation()) {
-      bricks_.emplace(scene_.voxels());
-      generation_ = scene_.voxels().generation();
+  void updateBricks() {
+    if (bricks_ && generation_ == scene_.voxels().generation()) return;
+    bricks_.emplace(scene_.voxels());
+    generation_ = scene_.voxels().generation();
+  }
+
+  // Fills a picture whose light is found by rays of its own. @param ends  depths at which rays end; null: nowhere
+  void marchCones(const ResolvedScene& scene, const Image* ends, Picture& picture) {
+    if (scene_.isEmpty()) {
+      for (std::size_t at = 0; at < picture.colour.pixels.size() / 4; ++at)
+        scene_.storePixel(scene, at, glm::vec4(0), glm::vec2(0), picture);
+      return;
     }
+    updateBricks();
+    ConeFrame frame;
+    frame.voxels = &scene_.voxels();
+    frame.bricks = &*bricks_;
+    frame.table = &scene_.table();
+    frame.directions = scene_.coneDirections();
+    frame.planes = scene_.planes();
+    frame.lightPlanes = scene_.lightPlanes();
+    frame.visible = scene_.visibleBox();
+    for (std::vector<glm::dvec4>* planes : {&frame.planes, &frame.lightPlanes})
+      for (const ClipPlane& plane : boxPlanes(frame.visible)) planes->push_back(plane);
+    frame.longest = scene.sampling.spacing / scene.sampling.segments;
+    frame.saturation = scene.sampling.saturation;
+    const int width = scene.camera.width, height = scene.camera.height;
+    const IndexView& view = scene_.view();
+    tbb::enumerable_thread_specific<ConeMarch> marches([&] { return ConeMarch(frame); });
+    std::atomic<int> done{0};
+    const auto caller = std::this_thread::get_id();
+    tbb::parallel_for(tbb::blocked_range<int>(0, height, 1), [&](const auto& range) {
+      ConeMarch& march = marches.local();
+      for (int y = range.begin(); y != range.end(); ++y)
+        for (int x = 0; x < width; ++x) {
+          const glm::dvec2 screen =
+              view.centre + view.halfExtent * (2.0 * (glm::dvec2(x, y) + 0.5) / glm::dvec2(width, height) - 1.0);
+          const ConeMarch::Pixel pixel =
+              march.march(valueRay(view, screen),
+                          ends ? static_cast<double>(*ends->at(x, y)) : std::numeric_limits<double>::infinity());
+          const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+          scene_.storePixel(scene, at, glm::vec4(pixel.colour, pixel.opacity), glm::vec2(pixel.visibility, pixel.depth),
+                            picture);
+        }
+      const int finished = done += static_cast<int>(range.size());
+      if (options_.progress && std::this_thread::get_id() == caller)
+        options_.progress(static_cast<double>(finished) / height);
+    });
+    for (const ConeMarch& march : marches) picture.stats.fragments += march.segments();
+  }
+
+  PacketFrame frameOf(const ResolvedScene& scene) {
+    updateBricks();
     PacketFrame frame;
     static_cast<SweptFrame&>(frame) = scene_.frame(scene, options_.visibilityAndDepth);
     frame.bricks = &*bricks_;

@@ -68,7 +68,7 @@ RowSpan rowsOf(const Brick& brick, const RayLattice& lattice, const glm::ivec3& 
 }  // namespace
 
 bool shearWarpSupports(const SceneSettings& scene) {
-  return supportsMode(scene, Technique::shearWarp) && sweptSupports(scene);
+  return supportsMode(scene, Technique::shearWarp) && sweptSupports(scene, Technique::shearWarp);
 }
 
 ShearWarpSampling shearWarpSampling(const ResolvedScene& scene, const Bricks& volume) {
@@ -83,7 +83,7 @@ ShearWarpSampling shearWarpSampling(const ResolvedScene& scene, const Bricks& vo
 class ShearWarpRenderer::Implementation {
  public:
   Implementation(const Bricks& volume, const RenderOptions& options, std::optional<ShearWarpSampling> sampling)
-      : options_(options), sampling_(sampling), scene_(volume, "shear-warp") {}
+      : options_(options), sampling_(sampling), scene_(volume, Technique::shearWarp) {}
 
   void update(const ResolvedScene& next, const ResolvedScene* before) {
     requireMode(next, Technique::shearWarp);

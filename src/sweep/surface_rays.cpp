@@ -5,43 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "sweep/lattice_walk.h"
+#include "umbrick/optics/bspline.h"
+
 namespace umbrick {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Calls visit(cell, enter, leave) for the boxes of a lattice that a ray meets, in order, until it returns false.
-// @param low    corner of the box 0 0 0
-// @param count  boxes along each axis
-template <class Count, class Visit>
-bool walkLattice(const glm::dvec3& low, const glm::dvec3& edge, const Count& count, const ValueRay& ray,
-                 const glm::dvec3& inverse, double enter, double leave, const Visit& visit) {
-  const glm::dvec3 start = (ray.at(enter) - low) / edge;
-  Count cell, step(0);
-  glm::dvec3 next(kInfinity), width(0);
-  for (int axis = 0; axis < 3; ++axis) {
-    using Number = std::decay_t<decltype(cell[axis])>;
-    cell[axis] = static_cast<Number>(std::clamp(std::floor(start[axis]), 0.0, static_cast<double>(count[axis] - 1)));
-    const double along = ray.direction[axis];
-    if (along == 0) continue;
-    step[axis] = along > 0 ? 1 : -1;
-    width[axis] = edge[axis] * std::abs(inverse[axis]);
-    const double face = low[axis] + edge[axis] * static_cast<double>(cell[axis] + (along > 0 ? 1 : 0));
-    next[axis] = (face - ray.origin[axis]) * inverse[axis];
-  }
-  for (double t = enter; t < leave;) {
-    const int axis = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
-    const double to = std::min(next[axis], leave);
-    if (to > t) {
-      if (!visit(cell, t, to)) return false;
-      t = to;
-    }
-    cell[axis] += step[axis];
-    if (cell[axis] < 0 || cell[axis] >= count[axis]) return true;
-    next[axis] += width[axis];
-  }
-  return true;
-}
 
 template <class Code>
 CellCorners cornersOf(const Code* first, std::ptrdiff_t strideY, std::ptrdiff_t strideZ, double offset) {
@@ -57,8 +25,8 @@ CellCorners cornersOf(const Code* first, std::ptrdiff_t strideY, std::ptrdiff_t 
 }  // namespace
 
 SurfaceRays::SurfaceRays(const BrickVoxels& voxels, const BrickTable& table, const IndexBox& box,
-                         std::span<const SceneSurface> surfaces)
-    : voxels_(voxels), table_(table), box_(box) {
+                         std::span<const SceneSurface> surfaces, GradientFilter gradients)
+    : voxels_(voxels), table_(table), box_(box), gradients_(gradients) {
   for (const SceneSurface& surface : surfaces) values_.push_back(surface.value);
   const auto [low, high] = std::ranges::minmax_element(values_);
   if (!values_.empty()) {
@@ -77,7 +45,7 @@ void SurfaceRays::trace(const ValueRay& ray, const std::function<bool(const Surf
   inverse_ = 1.0 / ray.direction;
   visit_ = &visit;
   std::ranges::fill(sides_, Side::unknown);
-  reached_ = -kInfinity;
+  reached_ = -std::numeric_limits<double>::infinity();
   std::array<std::int64_t, 3> first;
   glm::dvec3 low;
   glm::i64vec3 count;
@@ -178,6 +146,7 @@ bool SurfaceRays::tell(const Place& place, double t, std::size_t surface) {
 // The difference of the values a voxel away on both sides. Values between voxels are sums of those at voxels, so that
 // this is the central difference at voxels, interpolated.
 glm::dvec3 SurfaceRays::gradientAt(const Place& place, const glm::dvec3& p) const {
+  if (gradients_ == GradientFilter::bspline) return splineGradientAt(place, p);
   const std::ptrdiff_t strides[3]{1, strideY_, strideZ_};
   const auto valueAt = [&](std::ptrdiff_t index) {
     const CellCorners v = cornersAt(*place.entry->brick, index);
@@ -188,6 +157,32 @@ glm::dvec3 SurfaceRays::gradientAt(const Place& place, const glm::dvec3& p) cons
   glm::dvec3 gradient;
   for (int axis = 0; axis < 3; ++axis)
     gradient[axis] = 0.5 * (valueAt(place.index + strides[axis]) - valueAt(place.index - strides[axis]));
+  return gradient;
+}
+
+// The gradient of the tricubic B-spline, of the 4 x 4 x 4 voxels around the cell: the corners of the eight cells that
+// begin at every second one of them.
+glm::dvec3 SurfaceRays::splineGradientAt(const Place& place, const glm::dvec3& p) const {
+  const double here = cornersAt(*place.entry->brick, place.index)[0];  // differences from it have more digits
+  std::array<glm::dvec4, 3> weights, slopes;
+  for (int axis = 0; axis < 3; ++axis) {
+    weights[static_cast<std::size_t>(axis)] = bsplineWeights(static_cast<float>(p[axis]));
+    slopes[static_cast<std::size_t>(axis)] = bsplineSlopes(static_cast<float>(p[axis]));
+  }
+  glm::dvec3 gradient(0);
+  for (int k = 0; k < 4; k += 2)
+    for (int j = 0; j < 4; j += 2)
+      for (int i = 0; i < 4; i += 2) {
+        const CellCorners corners =
+            cornersAt(*place.entry->brick, place.index + (k - 1) * strideZ_ + (j - 1) * strideY_ + i - 1);
+        for (int corner = 0; corner < 8; ++corner) {
+          const int x = i + (corner & 1), y = j + (corner >> 1 & 1), z = k + (corner >> 2);
+          gradient +=
+              (corners[static_cast<std::size_t>(corner)] - here) *
+              glm::dvec3(slopes[0][x] * weights[1][y] * weights[2][z], weights[0][x] * slopes[1][y] * weights[2][z],
+                         weights[0][x] * weights[1][y] * slopes[2][z]);
+        }
+      }
   return gradient;
 }
 

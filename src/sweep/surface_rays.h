@@ -11,6 +11,7 @@
 #include "sweep/cell_cubic.h"
 #include "sweep/value_ray.h"
 #include "umbrick/core/box.h"
+#include "umbrick/optics/gradient_filter.h"
 #include "umbrick/scene/mode.h"
 
 namespace umbrick {
@@ -19,21 +20,21 @@ namespace umbrick {
 struct SurfaceHit {
   double t = 0;             // along the ray
   std::size_t surface = 0;  // its number
-  glm::dvec3 gradient{0};   // of the value, per voxel: central differences, interpolated as values are
+  glm::dvec3 gradient{0};   // of the value, per voxel
   const VoxelBrick* brick = nullptr;
   glm::dvec3 at{0};  // in the brick, voxels from its first owned one
 };
 
 /// Takes rays through bricks, groups of cells and cells, and through no cell whose voxels do not lie on both sides of
 /// a surface. In a cell the value along the ray is a cubic, all of whose crossings are found: no feature is lost,
-/// however thin. A voxel is inside of a surface where its value is larger. Each thread has one. Source of the walk:
-/// Amanatides and Woo 1987.
+/// however thin. A voxel is inside of a surface where its value is larger. Each thread has one.
 class SurfaceRays {
  public:
   /// Bricks need an apron of kGradientApron. @param box  of the voxels between which there is a value that is not the
   /// background
+  /// @param gradients  how those of hits are found
   SurfaceRays(const BrickVoxels& voxels, const BrickTable& table, const IndexBox& box,
-              std::span<const SceneSurface> surfaces);
+              std::span<const SceneSurface> surfaces, GradientFilter gradients);
 
   /// Calls visit(hit) for the crossings of a ray, in order, until it returns false.
   void trace(const ValueRay& ray, const std::function<bool(const SurfaceHit&)>& visit);
@@ -51,12 +52,14 @@ class SurfaceRays {
   CellCorners cornersAt(const VoxelBrick& brick, std::ptrdiff_t index) const;
   bool tell(const Place& place, double t, std::size_t surface);
   glm::dvec3 gradientAt(const Place& place, const glm::dvec3& point) const;
+  glm::dvec3 splineGradientAt(const Place& place, const glm::dvec3& point) const;
 
   const BrickVoxels& voxels_;
   const BrickTable& table_;
   IndexBox box_;
   std::vector<double> values_;
   double lowest_ = 0, highest_ = 0;  // of them
+  GradientFilter gradients_;
   std::ptrdiff_t strideY_ = 0, strideZ_ = 0;
   // Of the present ray:
   ValueRay ray_;

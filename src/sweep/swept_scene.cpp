@@ -26,30 +26,41 @@ double longestVoxelEdge(const glm::dmat4& indexToWorld) {
 
 }  // namespace
 
-bool sweptSupports(const SceneSettings& scene) {
+bool sweptSupports(const SceneSettings& scene, Technique technique) {
   if (scene.sampling.classification == Classification::pre && traitsOf(scene.model).occlusion) return false;
-  return supports(Method::lightVolume, scene.model) &&
-         occlusionMethod(scene).value_or(Method::lightVolume) == Method::lightVolume;
+  if (!supports(Method::lightVolume, scene.model)) return false;
+  const Method method = occlusionMethod(scene).value_or(Method::lightVolume);
+  return method == Method::lightVolume ||
+         (method == Method::coneRays && technique == Technique::rays && !traitsOf(scene.mode).surfaces);
 }
 
-SweptScene::SweptScene(const Bricks& volume, std::string technique)
-    : technique_(std::move(technique)), voxels_(volume), light_(volume) {}
+SweptScene::SweptScene(const Bricks& volume, Technique technique)
+    : technique_(technique), voxels_(volume), light_(volume) {}
+
+void SweptScene::checkConeRays(const ResolvedScene& next) const {
+  if (technique_ != Technique::rays) refuseConeRays(next, techniqueName(technique_));
+  if (next.mode == Mode::hybrid) refuseConeRays(next, "surfaces");
+  if (occlusionMethod(next) != Method::coneRays) return;
+  if (isShaded(next)) throw InvalidArgument("shading.kind: phong takes light from a light volume, not from cone-rays");
+  if (next.transfer.is2d())
+    throw InvalidArgument("method: cone-rays takes transfer functions of the value alone, without a gradient");
+}
 
 void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) {
   if (!supports(Method::lightVolume, next.model))
-    throw InvalidArgument("model: " + modelName(next.model) + " is integrated by the reference alone; " + technique_ +
-                          " renders emission, cone, ambient and lights");
+    throw InvalidArgument("model: " + modelName(next.model) + " is integrated by the reference alone; " +
+                          techniqueName(technique_) + " renders emission, cone, ambient and lights");
   requireClassification(next);
-  if (!sweptSupports(next))
-    throw InvalidArgument("method: " + methodName(next.method) + " is one of slices; " + technique_ +
+  checkConeRays(next);
+  if (!sweptSupports(next, technique_))
+    throw InvalidArgument("method: " + methodName(next.method) + " is one of slices; " + techniqueName(technique_) +
                           " takes light from a light volume");
   if (isShaded(next)) checkShading(next, volume().layout.apron);
-  if (next.transfer.is2d() && !volume().hasGradients)
-    throw InvalidArgument("render: a 2D transfer function needs bricks with gradients");
+  if (next.transfer.is2d()) requireGradients(volume(), next.gradients);
   constexpr std::size_t kMostVoxels = std::size_t{1} << 29;  // of a brick, whose places are 32-bit numbers of bytes
   if (volume().layout.voxels() > kMostVoxels)
     throw InvalidArgument("bricks: one brick has " + std::to_string(volume().layout.voxels()) + " voxels, " +
-                          technique_ + " reads up to " + std::to_string(kMostVoxels));
+                          techniqueName(technique_) + " reads up to " + std::to_string(kMostVoxels));
   const bool classified = next.sampling.classification == Classification::pre;
   const bool transfer =
       !before || before->transfer != next.transfer || before->sampling.classification != next.sampling.classification;
@@ -108,6 +119,15 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
     light_.addTo(stats);
     lights_ = light_.channels();
     whole_ = glm::vec3(light_.whole());
+  }
+  coneDirections_.clear();
+  if (occlusionMethod(scene) == Method::coneRays) {
+    if (inBands_)
+      throw InvalidArgument("bricks.budgetMiB: cone-rays need all visible bricks at once, which take more than " +
+                            std::to_string(scene.bricks.budgetMiB) + " MiB");
+    coneDirections_ = lightsOf(scene, sample);
+    lightPlanes_ = planes_;
+    stats.directions = static_cast<int>(coneDirections_.size());
   }
   if (isShaded(scene)) {
     const Stopwatch shading;

@@ -17,19 +17,19 @@
 #include "sweep/swept_frame.h"
 #include "umbrick/core/box.h"
 #include "umbrick/draw/renderer.h"
+#include "umbrick/scene/lights.h"
 #include "umbrick/slice/proxy_slices.h"
 
 namespace umbrick {
 
-/// Tells whether techniques on the CPU render a scene: the models emission, cone and lights, the last two with light
-/// volumes.
-bool sweptSupports(const SceneSettings& scene);
+/// Tells whether techniques on the CPU render a scene: the models emission, cone, ambient and lights, the last three
+/// with light volumes, or by rays with cone rays.
+bool sweptSupports(const SceneSettings& scene, Technique technique);
 
 /// Keeps what follows from a scene as long as the scene does.
 class SweptScene {
  public:
-  /// @param technique  what messages call it
-  SweptScene(const Bricks& volume, std::string technique);
+  SweptScene(const Bricks& volume, Technique technique);
 
   /// Takes another scene. @param before  null: this is the first one
   /// @throw InvalidArgument  one that techniques on the CPU do not render; a brick exceeds its memory budget
@@ -46,6 +46,10 @@ class SweptScene {
                    const std::function<RowSpan(const Brick& brick)>& rowsOf,
                    const std::function<void(int begin, int end)>& draw, RenderStats& stats);
   bool isEmpty() const { return visible_.empty(); }
+  /// Directions in which cone rays look for the prepared picture's light, and half-spaces of what they meet.
+  const std::vector<LightDirection>& coneDirections() const { return coneDirections_; }
+  const std::vector<glm::dvec4>& lightPlanes() const { return lightPlanes_; }
+  const MediumTable& table() const { return *table_; }
 
   const BrickVoxels& voxels() const { return voxels_; }
   /// What all rays of the prepared picture share. @param aux  also light and depth
@@ -66,7 +70,9 @@ class SweptScene {
   void shade();
   std::uint64_t mediaBytes(bool classified) const;
 
-  std::string technique_;
+  void checkConeRays(const ResolvedScene& next) const;
+
+  Technique technique_;
   BrickVoxels voxels_;
   BrickLight light_;
   BrickShading shading_;
@@ -77,7 +83,8 @@ class SweptScene {
   double loadMs_ = 0;         // of bricks since the last picture
   std::uint64_t loaded_ = 0;  // their number
   IndexView view_;
-  std::vector<glm::dvec4> planes_;
+  std::vector<glm::dvec4> planes_, lightPlanes_;
+  std::vector<LightDirection> coneDirections_;
   int lights_ = 0;      // channels of light beside the voxels; 0 where all is lit alike
   glm::vec3 whole_{1};  // light that arrives where nothing is in the way
 };

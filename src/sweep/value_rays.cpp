@@ -59,7 +59,8 @@ void ValueRays::update(const ResolvedScene& next) {
   if (surfaces) {
     checkSurfaces(next, voxels_.volume().value, voxels_.volume().layout.apron);
     SurfaceShader(next, voxels_.volume().indexToWorld);  // says whether there is light
-    checkSurfaceLight(next, voxels_.volume().hasGradients);
+    checkSurfaceLight(next);
+    if (occlusionMethod(next) && next.transfer.is2d()) requireGradients(voxels_.volume(), next.gradients);
   }
   const std::vector<double> values = surfaces ? valuesOf(next) : std::vector<double>();
   if (selected_ && all_ == !surfaces && values_ == values && budgetMiB_ == next.bricks.budgetMiB &&
@@ -190,7 +191,7 @@ void ValueRays::drawSurfaces(const ResolvedScene& scene, const Image* ends, Pict
   const std::vector<glm::dvec4> planes = within(volume.domain, 0, planes_);
   const double full = 1 - scene.sampling.saturation;
   tbb::enumerable_thread_specific<SurfaceRays> tracers(
-      [&] { return SurfaceRays(voxels_, *table_, volume.domain, scene.surfaces); });
+      [&] { return SurfaceRays(voxels_, *table_, volume.domain, scene.surfaces, scene.gradients); });
   eachRow(height, [&](int y) {
     SurfaceRays& tracer = tracers.local();
     for (int x = 0; x < width; ++x) {

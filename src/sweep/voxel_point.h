@@ -26,6 +26,25 @@ inline double voxelValue(const BrickVoxels& voxels, const VoxelBrick& brick, std
   return voxels.offset() + static_cast<double>(BrickVoxels::codes<float>(brick)[index]);
 }
 
+/// Returns the value in a cell of a brick with voxels. @param cell  of its array, the apron included
+/// @param share  from the cell's first voxel, in [0, 1]
+inline double valueInCell(const BrickVoxels& voxels, const VoxelBrick& brick, const glm::i64vec3& cell,
+                          const glm::dvec3& share) {
+  const glm::ivec3 edge = voxels.volume().layout.edge();
+  const std::ptrdiff_t strideY = edge.x, strideZ = strideY * edge.y;
+  const std::ptrdiff_t first = (cell.z * edge.y + cell.y) * edge.x + cell.x;
+  const auto alongX = [&](std::ptrdiff_t at) {
+    const double a = voxelValue(voxels, brick, at), b = voxelValue(voxels, brick, at + 1);
+    return a + share.x * (b - a);
+  };
+  const auto alongY = [&](std::ptrdiff_t at) {
+    const double a = alongX(at), b = alongX(at + strideY);
+    return a + share.y * (b - a);
+  };
+  const double a = alongY(first), b = alongY(first + strideZ);
+  return a + share.z * (b - a);
+}
+
 /// Finds the brick in whose cells a point lies, and interpolates there.
 class VoxelPoint {
  public:
@@ -51,22 +70,8 @@ class VoxelPoint {
   double value() const {
     const VoxelBrick* const brick = entry_ ? entry_->brick : nullptr;
     if (!brick || !brick->voxels) return range().min;
-    const BrickLayout& layout = voxels_.volume().layout;
-    const glm::ivec3 edge = layout.edge();
-    const std::ptrdiff_t strideY = edge.x, strideZ = strideY * edge.y;
-    std::ptrdiff_t place[3];
-    for (int axis = 0; axis < 3; ++axis) place[axis] = whole_[axis] - entry_->origin[axis] + layout.apron;
-    const std::ptrdiff_t first = (place[2] * edge.y + place[1]) * edge.x + place[0];
-    const auto alongX = [&](std::ptrdiff_t at) {
-      const double a = voxelValue(voxels_, *brick, at), b = voxelValue(voxels_, *brick, at + 1);
-      return a + share_.x * (b - a);
-    };
-    const auto alongY = [&](std::ptrdiff_t at) {
-      const double a = alongX(at), b = alongX(at + strideY);
-      return a + share_.y * (b - a);
-    };
-    const double a = alongY(first), b = alongY(first + strideZ);
-    return a + share_.z * (b - a);
+    const std::int64_t apron = voxels_.volume().layout.apron;
+    return valueInCell(voxels_, *brick, whole_ - glm::i64vec3(entry_->origin) + apron, share_);
   }
 
  private:

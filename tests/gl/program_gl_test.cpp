@@ -100,6 +100,7 @@ TEST_CASE("Every shader that is not an include compiles by itself, or says where
                                           {"kWindows", 17},
                                           {"kColoured", perspective},
                                           {"kShaded", perspective},
+                                          {"kBspline", planes > 0},
                                           {"kStarts", perspective},
                                           {"kEnds", perspective},
                                           {"kShadingLights", planes > 0 ? 2 : 0},

@@ -32,10 +32,11 @@ TEST_CASE("Every model and every method has the traits that it is asked for", "[
   }
 }
 
-TEST_CASE("Light from everywhere is for light volumes", "[scene]") {
+TEST_CASE("Light from everywhere is for light volumes and cone rays", "[scene]") {
   for (const auto& [name, method] : kMethods) {
     CAPTURE(name);
-    CHECK(supports(method, Model::ambient) == (method == Method::lightVolume));
+    const bool allAround = method == Method::lightVolume || method == Method::coneRays;
+    CHECK(supports(method, Model::ambient) == allAround);
     CHECK_FALSE(supports(method, Model::coneRay));
     SceneSettings scene;
     scene.method = method;
@@ -44,7 +45,7 @@ TEST_CASE("Light from everywhere is for light volumes", "[scene]") {
       CHECK_FALSE(lightComesFromBehind(scene));
     }
     scene.model = Model::lights;
-    CHECK(lightComesFromBehind(scene) == (method == Method::lightVolume));
+    CHECK(lightComesFromBehind(scene) == allAround);
     scene.model = Model::ambient;
     CHECK(lightComesFromBehind(scene));
   }
@@ -63,11 +64,13 @@ TEST_CASE("Light sources are for methods of directions", "[scene]") {
   }
 }
 
-TEST_CASE("A method supports the models that the slice renderer accepts with it", "[scene]") {
+TEST_CASE("A method supports the models that its renderers accept with it", "[scene]") {
   const std::set<std::pair<Method, Model>> accepted{
-      {Method::dos, Model::emission},     {Method::dos, Model::cone},           {Method::ordinates, Model::emission},
-      {Method::ordinates, Model::cone},   {Method::ordinates, Model::lights},   {Method::lightVolume, Model::emission},
-      {Method::lightVolume, Model::cone}, {Method::lightVolume, Model::lights}, {Method::lightVolume, Model::ambient}};
+      {Method::dos, Model::emission},      {Method::dos, Model::cone},           {Method::ordinates, Model::emission},
+      {Method::ordinates, Model::cone},    {Method::ordinates, Model::lights},   {Method::lightVolume, Model::emission},
+      {Method::lightVolume, Model::cone},  {Method::lightVolume, Model::lights}, {Method::lightVolume, Model::ambient},
+      {Method::coneRays, Model::emission}, {Method::coneRays, Model::cone},      {Method::coneRays, Model::lights},
+      {Method::coneRays, Model::ambient}};
   for (const auto& [methodName, method] : kMethods)
     for (const auto& [modelName, model] : kModels) {
       CAPTURE(methodName, modelName);

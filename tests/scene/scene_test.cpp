@@ -67,6 +67,7 @@ Scene randomScene(std::mt19937& random) {
   const double gradient = number(0, 9);
   scene.gradientOpacity = {gradient, gradient + number(0.1, 9)};
   scene.gradientUnit = GradientUnit::percent;
+  scene.gradients = GradientFilter::bspline;
   scene.occlusion = {number(0, 1.57), 16, {5, 2, 2, false}, {7, number(0, 4)}};
   scene.clipPlanes = {ClipPlane(vector(-1, 1), number(-9, 9)), ClipPlane(vector(-1, 1), number(-9, 9))};
   scene.clipBox = Box{vector(-9, -1), vector(0, 9)};

@@ -14,6 +14,7 @@ inline std::unique_ptr<Bricks> bricksFor(const ScalarGrid& grid, const ResolvedS
   options.interior = scene.bricks.interior;
   options.apron = requiredApron(scene, grid.indexToWorld());
   options.gradients = scene.transfer.is2d();
+  options.gradientFilter = scene.gradients;
   return brickGrid(grid, options);
 }
 

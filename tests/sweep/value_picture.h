@@ -29,6 +29,7 @@ inline std::unique_ptr<Bricks> valueBricks(const ScalarGrid& grid, const Resolve
   bricks.interior = scene.bricks.interior;
   bricks.apron = traitsOf(scene.mode).surfaces ? surfaceApron(scene) : isShaded(scene) ? kGradientApron : 1;
   bricks.gradients = scene.transfer.is2d();
+  bricks.gradientFilter = scene.gradients;
   return cutGrid(grid, bricks, scene.bricks.bricked);
 }
 

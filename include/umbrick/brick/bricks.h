@@ -10,6 +10,7 @@
 
 #include "umbrick/core/box.h"
 #include "umbrick/core/range.h"
+#include "umbrick/optics/gradient_filter.h"
 
 namespace umbrick {
 
@@ -30,6 +31,7 @@ struct BrickOptions {
   int interior = kDefaultInterior;  // owned voxels along each edge, 8 to 256, a multiple of 8 (whole leaves)
   int apron = 1;                    // ghost voxels; a sample may lie up to apron - 1/2 voxels outside the brick
   bool gradients = false;           // for 2D transfer functions
+  GradientFilter gradientFilter = GradientFilter::central;  // by which they are found
 };
 
 /// The brick at lattice cell c owns voxels [origin, origin + interior) and the space [origin - 1/2, origin + interior -
@@ -68,6 +70,7 @@ class Bricks {
   // around 101 325); else 0. Single precision has more digits for distances from it than for the values themselves.
   float anchor = 0;
   bool hasGradients = false;
+  GradientFilter gradientFilter = GradientFilter::central;
   VoxelFormat exactFormat = VoxelFormat::float32;
   std::uint64_t nonFiniteVoxels = 0;  // active NaN or infinite voxels, which read as background
   // The cells whose interior or apron holds anything but background, or a gradient; ascending in z, then y, then x.
@@ -83,11 +86,15 @@ class Bricks {
   /// Reads the voxels of the cell whose first owned voxel is `origin`, which may be any lattice cell, also one that is
   /// not in `bricks`. They are x fastest, edge() voxels along each axis, beginning at origin - apron. Several threads
   /// may call this at the same time.
-  /// @param gradients  empty, or receives the gradient magnitude of each voxel: central differences of neighbouring
-  ///                   voxels, in grid units per world unit
+  /// @param gradients  empty, or receives the gradient magnitude of each voxel by gradientFilter, in grid units per
+  ///                   world unit
   /// @throw InvalidArgument  a span of the wrong size, or gradients without hasGradients
   virtual void read(const glm::ivec3& origin, std::span<float> values, std::span<float> gradients = {}) const = 0;
 };
+
+/// Checks that bricks have the gradients that 2D transfer functions ask for, found by the filter.
+/// @throw InvalidArgument
+void requireGradients(const Bricks& bricks, GradientFilter filter);
 
 /// Returns the cells of the lattice that meet reach() and are not in `bricks`. They must be drawn when the
 /// background is visible.

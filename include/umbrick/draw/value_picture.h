@@ -13,8 +13,8 @@ namespace umbrick {
 /// Tells whether a mode looks at values. All but hybrid look at no medium then.
 bool showsValues(Mode mode);
 
-/// Bricks need an apron of this for surfaces, and for a medium that reflects light: central differences of a cell's
-/// corners look one voxel beyond them.
+/// Bricks need an apron of this for surfaces, and for a medium that reflects light: gradients look one voxel beyond a
+/// cell's corners, by whichever filter.
 inline constexpr int kGradientApron = 2;
 
 /// Returns the apron that the surfaces of a scene need, which is more where light reaches them.
@@ -26,9 +26,8 @@ int surfaceApron(const SceneSettings& scene);
 void checkSurfaces(const ResolvedScene& scene, const Range& values, int apron);
 
 /// Checks whether the light that reaches surfaces can be computed, see umbrick/scene/surface_light.h.
-/// @param gradients  whether bricks have them
 /// @throw InvalidArgument  it cannot: the model or the method is none of light volumes
-void checkSurfaceLight(const ResolvedScene& scene, bool gradients);
+void checkSurfaceLight(const ResolvedScene& scene);
 
 /// Checks what a medium that reflects light asks for. @param apron  of bricks
 /// @throw InvalidArgument  as shadingLights; the apron is too small

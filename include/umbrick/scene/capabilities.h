@@ -37,6 +37,11 @@ const MethodTraits& traitsOf(Method method);
 /// Returns the method that computes a scene's occlusion; none where the scene's model has no occlusion.
 std::optional<Method> occlusionMethod(const SceneSettings& scene);
 
+/// Refuses a scene whose occlusion is found by rays from each sample, which only rays on the CPU do, in media.
+/// @param other  what does not: "slices"
+/// @throw InvalidArgument
+void refuseConeRays(const SceneSettings& scene, std::string_view other);
+
 /// Refuses a scene that interpolates media where its model has occlusion, whose light knows values alone.
 /// @throw InvalidArgument
 void requireClassification(const SceneSettings& scene);

@@ -15,6 +15,7 @@
 #include "umbrick/core/axis.h"
 #include "umbrick/core/camera.h"
 #include "umbrick/core/names.h"
+#include "umbrick/optics/gradient_filter.h"
 #include "umbrick/optics/transfer_function.h"
 #include "umbrick/scene/light_source.h"
 #include "umbrick/scene/mode.h"
@@ -40,10 +41,14 @@ inline std::string modelName(Model model) { return std::string(nameOf(kModels, m
 /// How the share V is computed. `dos` is directional occlusion shading, Schott et al. 2009,
 /// doi:10.1111/j.1467-8659.2009.01464.x. `ordinates` is a set of directions, each with a transmittance of its own that
 /// is carried along its paths through the slices. `light-volume` takes the same directions through the voxels instead,
-/// before the picture is drawn, so that slices read how much light reaches a voxel.
-enum class Method { dos, ordinates, lightVolume };
-inline constexpr Name<Method> kMethods[]{
-    {"dos", Method::dos}, {"ordinates", Method::ordinates}, {"light-volume", Method::lightVolume}};
+/// before the picture is drawn, so that slices read how much light reaches a voxel. `cone-rays` takes them through the
+/// voxels from each sample of each view ray anew: by far the slowest, to compare the others with, for it neither blurs
+/// nor interpolates light.
+enum class Method { dos, ordinates, lightVolume, coneRays };
+inline constexpr Name<Method> kMethods[]{{"dos", Method::dos},
+                                         {"ordinates", Method::ordinates},
+                                         {"light-volume", Method::lightVolume},
+                                         {"cone-rays", Method::coneRays}};
 inline std::string methodName(Method method) { return std::string(nameOf(kMethods, method)); }
 
 /// How a slab between two slices is integrated.
@@ -87,7 +92,7 @@ struct DosOptions {
   bool operator==(const DosOptions&) const = default;
 };
 
-/// Options of the methods `ordinates` and `light-volume`.
+/// Options of the methods `ordinates`, `light-volume` and `cone-rays`.
 struct OrdinatesOptions {
   int directions = 16;  // K: about so many over the cone or over the lights
   /// Of ordinates: window texels per voxel edge. 0 stands for texels as large as the larger of slab and voxel, or as
@@ -145,7 +150,7 @@ inline constexpr Name<SpacingUnit> kSpacingUnits[]{{"voxel", SpacingUnit::voxel}
 /// The unit of gradientOpacity.
 enum class GradientUnit {
   grid,     // grid units per world unit, as of 2D transfer functions
-  percent,  // of the largest gradient magnitude of the volume's active voxels
+  percent,  // of the largest gradient magnitude of the volume's active voxels, by central differences
 };
 inline constexpr Name<GradientUnit> kGradientUnits[]{{"grid", GradientUnit::grid}, {"percent", GradientUnit::percent}};
 
@@ -226,6 +231,8 @@ struct SceneSettings {
   /// Gradient magnitudes from which and up to which a medium appears: sigma_t is scaled from 0 at the first one to 1 at
   /// the second one. Of a Scene in its gradientUnit, else grid units per world unit. Both 0: the medium stays as it is.
   glm::dvec2 gradientOpacity{0};
+  /// Of which Phong's model, gradientOpacity and 2D transfer functions make something.
+  GradientFilter gradients = GradientFilter::central;
   glm::dvec3 ambient{1};                 // L_a, radiance from every direction
   std::optional<glm::dvec3> background;  // L_b; when it is set the picture is opaque (alpha 1)
   std::vector<LightSource> lights;       // for the model `lights`, which needs at least one
@@ -260,9 +267,10 @@ struct Scene : SceneSettings {
 ///   transfer   name of a preset, name of a file, the function itself (also ParaView's array), or "auto", as without it
 ///   window [low, high], sigmaScale    applied to it
 ///   model      "emission", "cone", "cone-ray", "ambient", "lights"
-///   method     "dos", "ordinates", "light-volume"
+///   method     "dos", "ordinates", "light-volume", "cone-rays"
 ///   technique  "auto", "slices", "rays", "shear-warp"
 ///   gradientOpacity [low, high], gradientUnit ("grid", "percent")    applied to the transfer function
+///   gradients  "central", "bspline"
 ///   mode       "integrate", "mip", "minip", "average", "xray", "isosurface", "hybrid"
 ///   surfaces   [{value, colour [r, g, b], opacity}, ...]
 ///   mesh       file (PLY, OBJ, STL), colour [r, g, b]

@@ -14,6 +14,7 @@ inline BrickOptions sweptBricks(const ResolvedScene& scene) {
   BrickOptions options;
   if (scene.bricks.interior > 0) options.interior = scene.bricks.interior;
   options.gradients = scene.transfer.is2d();
+  options.gradientFilter = scene.gradients;
   // Central differences of a cell's corners look one voxel beyond them.
   if (isShaded(scene)) options.apron = kGradientApron;
   if (traitsOf(scene.mode).surfaces) options.apron = surfaceApron(scene);
