@@ -22,6 +22,7 @@
 #include "study_page/page.h"
 #include "study_page/pictures.h"
 #include "umbrick/core/error.h"
+#include "umbrick/scene/capabilities.h"
 #include "validators.h"
 
 namespace umbrick::tools {
@@ -57,8 +58,8 @@ void apply(const std::vector<T>& option, std::vector<T>& field) {
   if (!option.empty()) field = option;
 }
 
-StudySettings makeSettings(const StudyCommand& command) {
-  StudySettings settings = command.techniques ? techniqueSettings(command.quick)
+StudySettings makeSettings(const StudyCommand& command, bool surfaces) {
+  StudySettings settings = command.techniques ? techniqueSettings(command.quick, surfaces)
                            : command.quick    ? quickStudySettings()
                                               : StudySettings{};
   // The values of a quick study belong to its own methods.
@@ -101,9 +102,12 @@ void checkFolder(const StudyCommand& command) {
 
 int study(const StudyCommand& command) {
   checkFolder(command);
-  StudySettings settings = makeSettings(command);
   refuseBackdrop(*command.scene);
   const Scene unopened = makeScene(*command.scene);
+  const bool surfaces = traitsOf(unopened.mode).surfaces || !unopened.surfaces.empty();
+  StudySettings settings = makeSettings(command, surfaces);
+  if (command.techniques && command.methods.empty() && !surfaces)
+    std::cerr << "--techniques: without --mode isosurface --iso V there are no pictures of isosurface and hybrid\n";
   if (command.techniques && settings.thetas.empty()) settings.thetas = {unopened.occlusion.aperture};
   planStudy(settings, unopened.occlusion.aperture);  // refuses wrong settings before a volume is loaded
   StopRequest stop;
@@ -111,7 +115,8 @@ int study(const StudyCommand& command) {
   const OpenedScene opened =
       openScene(*command.scene, unopened, showShare(bar, stop, "interrupted before anything was measured"));
   bar.clear();
-  const Scene& scene = opened.scene;
+  Scene scene = opened.scene;
+  showAs(StudyLook::medium, scene);  // methods say what they show
   const Volume& volume = *opened.volume;
   const ResolvedScene resolved = volume.resolve(scene);
   const auto context = createContext(command.backend);
@@ -266,7 +271,9 @@ Command addStudy(CLI::App& app) {
   addForceOption(*sub, command->force)->group("Output");
   sub->add_flag("--quick", command->quick, "a small study, about two minutes on two cores for the bundled CT");
   sub->add_flag("--techniques", command->techniques,
-                "all techniques beside each other: the page says which one is the fastest for which error");
+                "all techniques beside each other, in all modes (isosurface and hybrid with --mode isosurface --iso "
+                "V): the page says "
+                "which one is the fastest for which error");
   addSweeps(*sub, *command);
   addMeasuring(*sub, *command);
   return {sub, [command] { return study(*command); }};

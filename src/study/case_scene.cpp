@@ -22,6 +22,7 @@ ResolvedScene studyScene(const ResolvedScene& resolved, const StudyPlan& plan, d
   scene.model = Model::emission;
   scene.method = Method::dos;
   scene.technique = Technique::slices;
+  showAs(StudyLook::medium, scene);
   scene.sampling.classification = Classification::post;
   scene.sampling.spacing = SamplingOptions{}.spacing * voxelEdge;
   scene.sampling.segments = plan.settings.segments.front();
@@ -47,6 +48,7 @@ ResolvedScene caseScene(const ResolvedScene& scene, const StudyCase& what, const
     result.occlusion.aperture = what.theta;
     result.occlusion.ordinates.scale = what.scale;
   }
+  showAs(method.look, result);
   method.apply(what.detail, result);
   return result;
 }
@@ -55,6 +57,7 @@ ResolvedScene referenceScene(const ResolvedScene& scene, const StudyReference& w
   ResolvedScene result = scene;
   setSize(result.camera, what.size);
   result.model = what.model;
+  showAs(what.look, result);
   if (traitsOf(what.model).cone) result.occlusion.aperture = what.theta;
   return result;
 }

@@ -101,7 +101,9 @@ EarlierStudy readEarlierStudy(std::string_view text, const std::string& source, 
 
   EarlierStudy study{source, root.at("machine").at("version").string(), {}};
   std::vector<EarlierCase> left;
-  for (const JsonValue& value : root.at("cases").items()) left.push_back(readCase(value));
+  // Fronts are those of the medium.
+  for (const JsonValue& value : root.at("cases").items())
+    if (!value.find("look")) left.push_back(readCase(value));
   while (!left.empty()) {
     std::vector<EarlierCase> group, rest;
     for (const EarlierCase& one : left) (sameGroup(one, left.front()) ? group : rest).push_back(one);

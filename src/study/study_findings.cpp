@@ -34,10 +34,11 @@ std::vector<ComparableCases> comparableCases(const StudyRecord& record) {
     if (!result) continue;
     const StudyReference reference = record.plan.referenceOf(what);
     auto group = std::find_if(groups.begin(), groups.end(), [&](const ComparableCases& g) {
-      return g.model == reference.model && g.size == reference.size && g.theta == reference.theta;
+      return g.model == reference.model && g.size == reference.size && g.theta == reference.theta &&
+             g.look == reference.look;
     });
     if (group == groups.end())
-      group = groups.insert(groups.end(), {reference.model, reference.size, reference.theta, {}, {}});
+      group = groups.insert(groups.end(), {reference.model, reference.size, reference.theta, reference.look, {}, {}});
     group->all.push_back(result);
   }
   for (ComparableCases& group : groups) group.front = frontOf(group.all);
@@ -51,10 +52,11 @@ std::set<const CaseResult*> frontCases(const std::vector<ComparableCases>& group
   return front;
 }
 
-const ComparableCases* baseGroup(const std::vector<ComparableCases>& groups, const StudyPlan& plan, Model model) {
+const ComparableCases* baseGroup(const std::vector<ComparableCases>& groups, const StudyPlan& plan, Model model,
+                                 StudyLook look) {
   const double theta = !traitsOf(model).occlusion ? 0 : plan.baseTheta;
   const auto at = std::find_if(groups.begin(), groups.end(), [&](const ComparableCases& g) {
-    return g.model == model && g.size == plan.baseSize && g.theta == theta;
+    return g.model == model && g.size == plan.baseSize && g.theta == theta && g.look == look;
   });
   return at == groups.end() ? nullptr : &*at;
 }
@@ -64,7 +66,7 @@ std::vector<SliceSeries> sliceSeries(const StudyRecord& record, Model model) {
   std::vector<SliceSeries> all;
   for (const std::string& name : plan.settings.methods) {
     const StudyMethod& method = studyMethod(name);
-    if (method.model != model) continue;
+    if (method.model != model || method.look != StudyLook::medium) continue;
     const std::vector<int> none{0};
     const StudyCase& base = plan.bases.at(name);
     const bool hasDetail = !method.detail.name.empty();
@@ -149,6 +151,17 @@ std::vector<ErrorReached> errorsReached(const ComparableCases& group, bool withL
     all.push_back(std::move(reached));
   }
   return all;
+}
+
+std::vector<const CaseResult*> finestCases(const ComparableCases& group) {
+  std::vector<const CaseResult*> finest;
+  for (const StudyMethod& method : studyMethods()) {
+    const CaseResult* best = nullptr;
+    for (const CaseResult* one : group.all)
+      if (one->what.method == method.name && (!best || one->error.rmse < best->error.rmse)) best = one;
+    if (best) finest.push_back(best);
+  }
+  return finest;
 }
 
 double referenceError(const StudyRecord& record, const StudyReference& reference) {

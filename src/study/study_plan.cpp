@@ -235,12 +235,21 @@ StudySettings quickStudySettings() {
   return quick;
 }
 
-StudySettings techniqueSettings(bool quick) {
+void showAs(StudyLook look, SceneSettings& scene) {
+  static constexpr Mode kModesOfLooks[]{Mode::integrate, Mode::integrate, Mode::mip,        Mode::minip,
+                                        Mode::average,   Mode::xray,      Mode::isosurface, Mode::hybrid};
+  scene.mode = kModesOfLooks[static_cast<std::size_t>(look)];
+  scene.shading.kind = look == StudyLook::phong ? Shading::phong : Shading::automatic;
+}
+
+bool needsSurfaces(StudyLook look) { return look == StudyLook::isosurface || look == StudyLook::hybrid; }
+
+StudySettings techniqueSettings(bool quick, bool surfaces) {
   StudySettings settings = quick ? quickStudySettings() : StudySettings{};
   settings.methods.clear();
   settings.details.clear();
   for (const StudyMethod& method : studyMethods()) {
-    if (!method.compared) continue;
+    if (!method.compared || (needsSurfaces(method.look) && !surfaces)) continue;
     settings.methods.push_back(method.name);
     if (!method.detail.name.empty()) settings.details[method.detail.name] = {middleOf(method.detail.full)};
   }
@@ -265,14 +274,14 @@ std::string StudyCase::id() const {
 }
 
 std::string StudyReference::id() const {
-  std::string text = modelName(model) + "-s" + std::to_string(size);
+  std::string text = (look == StudyLook::medium ? modelName(model) : lookName(look)) + "-s" + std::to_string(size);
   if (traitsOf(model).cone) text += "-t" + jsonDegrees(theta);
   return text;
 }
 
 StudyReference StudyPlan::referenceOf(const StudyCase& one) const {
-  const Model model = studyMethod(one.method).model;
-  return {model, one.size, !traitsOf(model).occlusion ? 0 : one.theta};
+  const StudyMethod& method = studyMethod(one.method);
+  return {method.model, one.size, !traitsOf(method.model).occlusion ? 0 : one.theta, method.look};
 }
 
 StudyPlan planStudy(const StudySettings& settings, double aperture, int leastSlices) {
@@ -294,7 +303,7 @@ StudyPlan planStudy(const StudySettings& settings, double aperture, int leastSli
   // The model error compares the cone with the whole sphere, at the base size.
   const bool occlusion = std::any_of(plan.references.begin(), plan.references.end(),
                                      [](const StudyReference& r) { return traitsOf(r.model).cone; });
-  if (occlusion) appendReference(plan, {Model::ambient, plan.baseSize, 0});
+  if (occlusion) appendReference(plan, {Model::ambient, plan.baseSize, 0, StudyLook::medium});
   return plan;
 }
 

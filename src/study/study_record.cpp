@@ -75,6 +75,7 @@ void addCase(Json& json, const CaseResult& result) {
   json["size"] = what.size;
   if (traitsOf(method.model).occlusion) json["theta"] = degrees(what.theta);
   if (method.windows) json["window_scale"] = what.scale;
+  if (method.look != StudyLook::medium) json["look"] = lookName(method.look);
 }
 
 Json toJson(const CaseResult& result) {
@@ -102,13 +103,15 @@ Json toJson(const CaseResult& result) {
 }
 
 Json toJson(const ReferenceResult& result) {
-  return {{"id", result.what.id()},
-          {"model", modelName(result.what.model)},
-          {"size", result.what.size},
-          {"theta", degrees(result.what.theta)},
-          {"time_ratio", result.timeRatio},
-          {"integrate_ms", result.integrateMs},
-          {"difference_to_coarser", toJson(result.coarser)}};
+  Json json{{"id", result.what.id()},
+            {"model", modelName(result.what.model)},
+            {"size", result.what.size},
+            {"theta", degrees(result.what.theta)},
+            {"time_ratio", result.timeRatio},
+            {"integrate_ms", result.integrateMs},
+            {"difference_to_coarser", toJson(result.coarser)}};
+  if (result.what.look != StudyLook::medium) json["look"] = lookName(result.what.look);
+  return json;
 }
 
 Json toJson(const Machine& machine) {
@@ -148,7 +151,8 @@ Spread readSpread(const JsonValue& value) {
 }
 
 StudyReference readReference(const JsonValue& value) {
-  return {value.at("model").choice<Model>(kModels), value.at("size").integer(), value.at("theta").degrees()};
+  return {value.at("model").choice<Model>(kModels), value.at("size").integer(), value.at("theta").degrees(),
+          value.find("look") ? value.at("look").choice<StudyLook>(kLooks) : StudyLook::medium};
 }
 
 CaseResult readCase(const JsonValue& value, const StudyPlan& plan) {
@@ -298,7 +302,8 @@ void restoreRecord(StudyRecord& record, std::string_view text, const std::string
     restored.references.push_back(readReferenceResult(value));
   for (const JsonValue& value : root.at("model_errors").items())
     restored.modelErrors.push_back(
-        {{Model::cone, value.at("size").integer(), value.at("theta").degrees()}, readError(value.at("error"))});
+        {{Model::cone, value.at("size").integer(), value.at("theta").degrees(), StudyLook::medium},
+         readError(value.at("error"))});
   for (const JsonValue& value : root.at("cases").items()) restored.cases.push_back(readCase(value, record.plan));
   if (!restored.complete())
     refuseOther("unfinished on another machine",

@@ -166,7 +166,7 @@ bool StudyRun::report(const std::string& step, double share) {
 
 const Bricks& StudyRun::bricksFor(const ResolvedScene& scene) {
   const BrickOptions options = bricksOf(grid_, scene);
-  std::unique_ptr<Bricks>& bricks = bricks_[{options.interior, options.apron}];
+  std::unique_ptr<Bricks>& bricks = bricks_[{options.interior, options.apron, scene.bricks.bricked}];
   if (!bricks) bricks = cutGrid(grid_, options, scene.bricks.bricked);
   return *bricks;
 }
@@ -239,7 +239,7 @@ const Image& StudyRun::referenceImage(const StudyReference& what) {
 }
 
 void StudyRun::measureModelError(const StudyReference& cone) {
-  const StudyReference ambient{Model::ambient, cone.size, 0};
+  const StudyReference ambient{Model::ambient, cone.size, 0, StudyLook::medium};
   const Image &test = referenceImage(cone), &truth = referenceImage(ambient);
   record_.modelErrors.push_back({cone, measureError(test, truth)});
   show(cone.id(), cone.model, test, &truth);
@@ -251,8 +251,9 @@ void StudyRun::measureModelError(const StudyReference& cone) {
 StudyRun::CaseRenderer StudyRun::rendererFor(const ResolvedScene& scene, bool onCpu, const RenderOptions& options) {
   CaseRenderer made;
   if (onCpu) {
-    std::unique_ptr<Bricks>& bricks = bricks_[{scene.bricks.interior, 0}];
-    if (!bricks) bricks = cutGrid(grid_, sweptBricks(scene), scene.bricks.bricked);
+    const BrickOptions cut = sweptBricks(scene);
+    std::unique_ptr<Bricks>& bricks = bricks_[{cut.interior, -cut.apron, scene.bricks.bricked}];
+    if (!bricks) bricks = cutGrid(grid_, cut, scene.bricks.bricked);
     made.renderer = makeRenderer(*bricks, scene, options);
   } else {
     made.volume = residentFor(scene);
@@ -301,7 +302,8 @@ void StudyRun::measureCase(const StudyCase& what) {
   result.fragments = counted.fragments;
   result.passes = counted.passes;
   result.directions = counted.directions;
-  result.lightMs = counted.lightMs;
+  // What a medium reflects is computed for each picture and is in its time.
+  if (traitsOf(reference.model).occlusion) result.lightMs = counted.lightMs;
   result.windowTexel = counted.windowTexel;
   result.windowBytes = counted.windowBytes;
   result.windowUpdates = counted.windowUpdates;

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 
 #include "study/study_folder.h"
 #include "umbrick/atlas/resident_volume.h"
@@ -65,8 +66,9 @@ class StudyRun {
   StudyRecord& record_;
   const StudyFolder& folder_;
   const StudyOptions& options_;
-  // By interior and apron; those of techniques on the CPU have their own, by an apron of 0.
-  std::map<std::pair<int, int>, std::unique_ptr<Bricks>> bricks_;
+  // By interior, apron and whether there are several; those of techniques on the CPU have their own, by minus the
+  // apron.
+  std::map<std::tuple<int, int, bool>, std::unique_ptr<Bricks>> bricks_;
   ResidentVolumes resident_;                 // made of those bricks
   std::unique_ptr<Baseline> baseline_;       // baseline of the last size
   std::map<std::string, Image> references_;  // by id

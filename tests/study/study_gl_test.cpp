@@ -266,3 +266,27 @@ TEST_CASE("What a study cannot use is refused before anything is written", "[rep
   study.settings.sizes = {60000};
   CHECK_THAT(refusal(), Contains("sizes: 60000 x 60000 pixels are beyond the driver's limit of "));
 }
+
+TEST_CASE("A study of other modes compares each with the reference of its own", "[report]") {
+  const auto context = testContext();
+  if (!context) return;
+  SmallStudy study;
+  study.scene.surfaces = {SceneSurface{.value = 0.5}};
+  study.settings.methods = {"emission"};
+  study.settings.details.clear();
+  for (const StudyMethod& method : studyMethods())
+    if (method.look != StudyLook::medium) study.settings.methods.push_back(method.name);
+  study.settings.slices = {32};
+  study.settings.segments = {1};
+  const StudyRecord record = runStudy(*context, study.grid, study.resolved(), study.settings, study.report()).study;
+  REQUIRE(record.complete());
+  CHECK(record.references.size() == std::size(kLooks));
+  for (const CaseResult& result : record.cases) {
+    CAPTURE(result.what.id());
+    // 32 slices through a ball of 12 voxels; a picture of another mode is off by far more.
+    CHECK(result.error.rmse < 5e-3);
+    CHECK(result.timeRatio.median > 0);
+    CHECK(result.textureBytes > 0);
+    CHECK(result.lightMs == 0);
+  }
+}

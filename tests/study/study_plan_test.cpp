@@ -11,6 +11,7 @@
 #include "support/complaint.h"
 #include "support/test_scenes.h"
 #include "umbrick/core/error.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/study/case_scene.h"
 
 using namespace umbrick;
@@ -200,9 +201,10 @@ TEST_CASE("A plan refuses what cannot be swept", "[report]") {
 
 // A method that is neither compared nor listed here has been forgotten.
 TEST_CASE("A comparison of techniques has every method but variants of another", "[report]") {
-  const std::set<std::string> variants{"emission-full", "dos-2", "dos-two-pass", "rays-midpoint", "rays-pre"};
+  const std::set<std::string> variants{"emission-full", "dos-2",    "dos-two-pass",
+                                       "rays-midpoint", "rays-pre", "rays-gl-box"};
   for (const bool quick : {false, true}) {
-    const StudyPlan plan = planStudy(techniqueSettings(quick), 60 * kDegree);
+    const StudyPlan plan = planStudy(techniqueSettings(quick, true), 60 * kDegree);
     std::set<std::string> methods;
     for (const StudyCase& one : plan.cases) {
       methods.insert(one.method);
@@ -211,4 +213,38 @@ TEST_CASE("A comparison of techniques has every method but variants of another",
     for (const StudyMethod& method : studyMethods())
       CHECK(methods.contains(method.name) != variants.contains(method.name));
   }
+}
+
+TEST_CASE("Each look is drawn by every technique that has its mode, and compared with its own reference", "[report]") {
+  std::set<std::string> found;
+  for (const StudyMethod& method : studyMethods()) {
+    if (method.look == StudyLook::medium) continue;
+    CAPTURE(method.name);
+    found.insert(method.name);
+    StudySettings settings = small();
+    settings.methods = {method.name};
+    settings.details.clear();
+    const StudyPlan plan = planStudy(settings, 1);
+    const ResolvedScene medium = studyScene(smokeScene(), plan, 1);
+    const ResolvedScene made = caseScene(medium, plan.cases.front(), {10.0, 1.0});
+    CHECK(supportsMode(made, made.technique));
+    CHECK(isShaded(made) == (method.look == StudyLook::phong || needsSurfaces(method.look)));
+    REQUIRE(plan.references.size() == settings.sizes.size());
+    const ResolvedScene truth = referenceScene(medium, plan.referenceOf(plan.cases.front()));
+    CHECK(truth.mode == made.mode);
+    CHECK(truth.shading == made.shading);
+    CHECK(plan.references.front().id() == lookName(method.look) + "-s" + std::to_string(plan.references.front().size));
+    CHECK(medium.mode == Mode::integrate);
+  }
+  for (const ModeTraits& traits : modeTraits())
+    for (const char* technique : {"rays", "rays-gl"})
+      CHECK((traits.mode == Mode::integrate || found.contains(modeName(traits.mode) + "-" + technique)));
+  CHECK(found.contains("phong-shear-warp"));
+  CHECK(!found.contains("mip-shear-warp"));
+}
+
+TEST_CASE("Without surfaces there is nothing to compare of them", "[report]") {
+  for (const std::string& name : techniqueSettings(true, false).methods) CHECK(!needsSurfaces(studyMethod(name).look));
+  const std::vector<std::string> all = techniqueSettings(true, true).methods;
+  CHECK(std::find(all.begin(), all.end(), "hybrid-rays-gl") != all.end());
 }

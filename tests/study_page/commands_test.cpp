@@ -35,6 +35,13 @@ TEST_CASE("A command says what its method sets", "[study_page]") {
   CHECK_THAT(commandOf(record, "dos-two-pass", 3), Contains("--method dos --algorithm 3 --passes 2 --footprint 3"));
   CHECK_THAT(commandOf(record, "rays", 0), Contains("--model emission --technique rays --backend cpu --spacing"));
   CHECK_THAT(commandOf(record, "rays-gl", 0), Contains("--model emission --technique rays --backend osmesa --spacing"));
+  CHECK_THAT(commandOf(record, "rays-gl-box", 0),
+             Contains("--technique rays --backend osmesa --unbricked --no-culling --spacing"));
+  CHECK_THAT(commandOf(record, "mip-rays-gl", 0), Contains("--mode mip --technique rays --backend osmesa --spacing"));
+  CHECK_THAT(commandOf(record, "phong-shear-warp", 0),
+             Contains("--shading phong --technique shear-warp --backend cpu"));
+  CHECK(referenceCommand({Model::emission, 16, 0, StudyLook::average}, record.scene, record.plan.settings)
+            .find("--model emission --mode average") != std::string::npos);
   CHECK_THAT(commandOf(record, "ordinates", 8), Contains("--model cone --method ordinates --directions 8 --theta 60"));
 }
 

@@ -161,3 +161,45 @@ TEST_CASE("The page says which method is the fastest for an error", "[study_page
   CHECK_THAT(lit, Contains("cone, light computed for the picture") && Contains("cone, light kept from the picture"));
   CHECK_THAT(lit, Contains("<b>dos, Algorithm 3</b>") && Contains("<b>ordinates</b>"));
 }
+
+TEST_CASE("The page sets techniques beside each other in each mode", "[study_page]") {
+  StudySettings settings;
+  settings.methods = {"emission", "mip-rays", "mip-rays-gl", "phong-rays", "phong-shear-warp"};
+  settings.slices = {8, 16};
+  settings.sizes = {16};
+  settings.bits = {{32, 32}};
+  settings.segments = {1};
+  StudyRecord record = inventedStudy();
+  record.plan = planStudy(settings, 60 * kDegree);
+  record.scene = studyScene(smokeScene(), record.plan, 1);
+  const CaseResult any = record.cases.front();
+  record.cases.clear();
+  record.references.clear();
+  record.modelErrors.clear();
+  for (const StudyReference& what : record.plan.references) record.references.push_back({what, 10, 2, any.error});
+  for (const StudyCase& what : record.plan.cases) {
+    record.cases.push_back(any);
+    record.cases.back().what = what;
+    record.cases.back().error.rmse = what.slices == 16 ? 0.01 : 0.02;
+    record.cases.back().timeRatio.median = what.method == "mip-rays" ? 0.25 * what.slices : what.slices;
+  }
+  const TemporaryFolder folder;
+  const std::string page = pageOf(record, folder);
+  CHECK(xmlFault(page) == "");
+  CHECK_THAT(page, Contains("id=\"modes\"") && Contains("<h3>mip: the largest value") && Contains("<h3>Phong: ") &&
+                       !Contains("<h3>hybrid") && Contains("maximum by rays on the CPU") &&
+                       Contains("Phong by shear-warp on the CPU"));
+  const std::vector<ComparableCases> groups = comparableCases(record);
+  CHECK_THAT(modeSections(record, PageFolder(folder.path() / "report"), groups), Contains("<b>2</b>"));
+  // What shows something else is no part of the comparison of media.
+  CHECK(whichWhenTables(record, groups).empty());
+  const StudyRecord back = [&] {
+    StudyRecord restored{.plan = record.plan, .scene = record.scene};
+    restored.volume = record.volume;
+    restored.machine = record.machine;
+    restoreRecord(restored, printRecord(record), "study.json");
+    return restored;
+  }();
+  CHECK(back.references.size() == record.references.size());
+  CHECK(back.complete());
+}

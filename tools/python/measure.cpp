@@ -11,6 +11,7 @@
 #include "keywords.h"
 #include "scene_keywords.h"
 #include "umbrick/check/invariants.h"
+#include "umbrick/scene/capabilities.h"
 #include "umbrick/study/study.h"
 #include "volume.h"
 
@@ -98,9 +99,9 @@ py::dict check(const VolumeHandle& handle, const py::object& sceneGiven, const p
   return out;
 }
 
-StudySettings studySettings(const Keywords& keywords) {
+StudySettings studySettings(const Keywords& keywords, bool surfaces) {
   const bool quick = keywords.get<bool>("quick", kTruth).value_or(false);
-  StudySettings settings = keywords.get<bool>("techniques", kTruth).value_or(false) ? techniqueSettings(quick)
+  StudySettings settings = keywords.get<bool>("techniques", kTruth).value_or(false) ? techniqueSettings(quick, surfaces)
                            : quick                                                  ? quickStudySettings()
                                                                                     : StudySettings{};
   if (keywords.has("methods")) {
@@ -142,7 +143,7 @@ std::string study(const VolumeHandle& handle, const std::filesystem::path& folde
                           handle.volume->name() + "; save it before");
   const ScenePlea plea = readScenePlea(sceneGiven, sceneKeywords);
   Scene asked = askedScene(plea, plea.given);
-  StudySettings settings = studySettings(keywords);
+  StudySettings settings = studySettings(keywords, traitsOf(asked.mode).surfaces || !asked.surfaces.empty());
   if (keywords.get<bool>("techniques", kTruth).value_or(false) && settings.thetas.empty())
     settings.thetas = {asked.occlusion.aperture};
   planStudy(settings, asked.occlusion.aperture);  // refuses wrong settings before anything is drawn

@@ -11,11 +11,19 @@ std::string sizeOption(const ResolvedScene& scene) {
   return " --size " + std::to_string(scene.camera.width) + "x" + std::to_string(scene.camera.height);
 }
 
+// Returns what makes a scene of the medium one of a look.
+std::string lookOptions(StudyLook look) {
+  if (look == StudyLook::medium) return {};
+  return look == StudyLook::phong ? " --shading phong" : " --mode " + lookName(look);
+}
+
 // Returns what a method sets in the scene of the study, as options.
 std::string methodOptions(const StudyMethod& method, const ResolvedScene& scene, const ResolvedScene& ofCase) {
-  std::string text;
+  std::string text = lookOptions(method.look);
   if (ofCase.technique != scene.technique)
     text += " --technique " + techniqueName(ofCase.technique) + " --backend " + (method.onCpu ? "cpu" : "osmesa");
+  if (scene.bricks.bricked && !ofCase.bricks.bricked) text += " --unbricked";
+  if (scene.bricks.culling && !ofCase.bricks.culling) text += " --no-culling";
   if (ofCase.sampling.quadrature != scene.sampling.quadrature)
     text += " --quadrature " + std::string(nameOf(kQuadratures, ofCase.sampling.quadrature));
   if (ofCase.sampling.classification != scene.sampling.classification)
@@ -49,6 +57,7 @@ std::string renderCommand(const StudyCase& what, const ResolvedScene& scene, con
 
 std::string referenceCommand(const StudyReference& what, const ResolvedScene& scene, const StudySettings& settings) {
   std::string text = "umbrick reference scene.json --model " + modelName(what.model);
+  text += lookOptions(what.look);
   if (traitsOf(what.model).cone) text += " --theta " + jsonDegrees(what.theta);
   return text + " --directions " + std::to_string(settings.directions) + " --tolerance " +
          jsonNumber(settings.tolerance) + sizeOption(referenceScene(scene, what)) + " -o references/" + what.id() +

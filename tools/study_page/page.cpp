@@ -186,6 +186,7 @@ std::string assembled(const StudyRecord& record, const PageFolder& folder) {
   };
   const Part parts[]{
       {"when", "Which one when", whichWhenTables(record, groups) + methodPictures(record, folder, groups)},
+      {"modes", "Other modes", modeSections(record, folder, groups)},
       {"comparison", "Ordinates beside dos", comparisonTables(record, groups)},
       {"base", "Around the base point", aroundBaseTable(record)},
       {"model", "Model error", modelErrorTable(record) + modelPictures(record, folder)},

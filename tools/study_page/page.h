@@ -34,6 +34,10 @@ std::string comparisonTables(const StudyRecord& record, const std::vector<Compar
 std::string windowTable(const StudyRecord& record);
 /// Says which method is the fastest for which error, and what it takes in memory. Empty for fewer than two methods.
 std::string whichWhenTables(const StudyRecord& record, const std::vector<ComparableCases>& groups);
+/// Shows the looks other than that of the medium: a table of the techniques that have it, with time, error and memory,
+/// and their pictures. Empty where a study has none of them.
+std::string modeSections(const StudyRecord& record, const PageFolder& folder,
+                         const std::vector<ComparableCases>& groups);
 std::string caseTable(const StudyRecord& record, const std::vector<ComparableCases>& groups);
 std::string referenceTable(const StudyRecord& record);
 
@@ -44,6 +48,9 @@ std::string modelPictures(const StudyRecord& record, const PageFolder& folder);
 /// Returns reference, picture and error of each method of the base groups, at one error that most of them reach.
 std::string methodPictures(const StudyRecord& record, const PageFolder& folder,
                            const std::vector<ComparableCases>& groups);
+
+/// Returns reference, picture and error of the finest case of each method of a group.
+std::string lookPictures(const StudyRecord& record, const PageFolder& folder, const ComparableCases& group);
 
 std::string commandList(const StudyRecord& record);
 

@@ -91,12 +91,22 @@ std::string methodPictures(const StudyRecord& record, const PageFolder& folder,
   return html;
 }
 
+std::string lookPictures(const StudyRecord& record, const PageFolder& folder, const ComparableCases& group) {
+  std::string html =
+      scaleBar(errorScale(group.model)) + "<div class=\"pictures\">\n" + heads("reference", "finest picture", "error");
+  for (const CaseResult* result : finestCases(group))
+    html += row(folder, record.plan.referenceOf(result->what).id(), result->what.id(),
+                "<b>" + escapeHtml(describeCase(result->what, record.plan)) + "</b><br/>" +
+                    printShort(result->timeRatio.median) + " times the baseline<br/>" + errorText(result->error));
+  return html + "</div>\n";
+}
+
 std::string modelPictures(const StudyRecord& record, const PageFolder& folder) {
   if (record.modelErrors.empty()) return {};
   std::string html =
       scaleBar(errorScale(Model::cone)) + "<div class=\"pictures\">\n" + heads("whole sphere", "cone", "model error");
   for (const ModelError& error : record.modelErrors)
-    html += row(folder, StudyReference{Model::ambient, error.cone.size, 0}.id(), error.cone.id(),
+    html += row(folder, StudyReference{Model::ambient, error.cone.size, 0, StudyLook::medium}.id(), error.cone.id(),
                 "<b>theta " + jsonDegrees(error.cone.theta) + " degrees</b><br/>" + errorText(error.error));
   return html + "</div>\n";
 }

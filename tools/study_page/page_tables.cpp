@@ -276,10 +276,11 @@ std::string referenceTable(const StudyRecord& record) {
   HtmlTable table;
   table.head = heads(withErrorHeads({"reference", "size", "theta", "time"}), 1);
   for (const ReferenceResult& result : record.references) {
-    HtmlTable::Row row{{words(modelName(result.what.model)),
-                        {std::to_string(result.what.size)},
-                        {traitsOf(result.what.model).cone ? jsonDegrees(result.what.theta) : ""},
-                        numberCell(result.timeRatio)}};
+    HtmlTable::Row row{
+        {words(result.what.look == StudyLook::medium ? modelName(result.what.model) : lookName(result.what.look)),
+         {std::to_string(result.what.size)},
+         {traitsOf(result.what.model).cone ? jsonDegrees(result.what.theta) : ""},
+         numberCell(result.timeRatio)}};
     appendError(row.cells, result.coarser);
     table.rows.push_back(row);
   }

@@ -11,11 +11,12 @@
 
 namespace umbrick {
 
-/// The cases of one model, size and theta, which are comparable in time and error.
+/// The cases of one model, size, theta and look, which are comparable in time and error.
 struct ComparableCases {
   Model model = Model::emission;
   int size = 0;      // height of the picture, pixels
   double theta = 0;  // rad; 0 for emission
+  StudyLook look = StudyLook::medium;
   std::vector<const CaseResult*> all;
   std::vector<const CaseResult*> front;  // Pareto front of time ratio and RMSE, cheapest first
 };
@@ -26,8 +27,9 @@ std::vector<ComparableCases> comparableCases(const StudyRecord& record);
 /// Returns all cases that are on the front of their group, except cases that are alone in their group.
 std::set<const CaseResult*> frontCases(const std::vector<ComparableCases>& groups);
 
-/// Returns the group of a model at the base size (and theta); null when none of its cases is measured.
-const ComparableCases* baseGroup(const std::vector<ComparableCases>& groups, const StudyPlan& plan, Model model);
+/// Returns the group of a model and a look at the base size (and theta); null when none of its cases is measured.
+const ComparableCases* baseGroup(const std::vector<ComparableCases>& groups, const StudyPlan& plan, Model model,
+                                 StudyLook look = StudyLook::medium);
 
 /// Cases of one method and detail that differ in their slices alone, coarsest first.
 struct SliceSeries {
@@ -39,7 +41,8 @@ struct SliceSeries {
   std::optional<double> order;
 };
 
-/// Returns the series of all methods of a model, at the base of everything except slices and detail.
+/// Returns the series of all methods of a model that show the medium, at the base of everything except slices and
+/// detail.
 std::vector<SliceSeries> sliceSeries(const StudyRecord& record, Model model);
 
 /// A case of a method with light windows beside one without, of the same model, size and theta.
@@ -78,6 +81,9 @@ struct ErrorReached {
 /// of their cases. Where `withLight`, each picture has its light computed for it, as after a change of the transfer
 /// function or where light turns with the camera; else it is there already.
 std::vector<ErrorReached> errorsReached(const ComparableCases& group, bool withLight);
+
+/// Returns the case of least error of each method of a group, in the order of studyMethods().
+std::vector<const CaseResult*> finestCases(const ComparableCases& group);
 
 /// Returns the RMSE between the reference and its coarser self; 0: not measured.
 double referenceError(const StudyRecord& record, const StudyReference& reference);

@@ -7,9 +7,23 @@
 #include <string_view>
 #include <vector>
 
+#include "umbrick/core/names.h"
 #include "umbrick/scene/resolve.h"
 
 namespace umbrick {
+
+/// What pictures show: a medium, or one that reflects light by Phong's model, or what another mode shows. Pictures of
+/// one look are comparable.
+enum class StudyLook { medium, phong, mip, minip, average, xray, isosurface, hybrid };
+inline constexpr Name<StudyLook> kLooks[]{
+    {"medium", StudyLook::medium},         {"phong", StudyLook::phong},     {"mip", StudyLook::mip},
+    {"minip", StudyLook::minip},           {"average", StudyLook::average}, {"xray", StudyLook::xray},
+    {"isosurface", StudyLook::isosurface}, {"hybrid", StudyLook::hybrid}};
+inline std::string lookName(StudyLook look) { return std::string(nameOf(kLooks, look)); }
+/// Makes a scene of the medium one of a look. All looks but `medium` are without occlusion.
+void showAs(StudyLook look, SceneSettings& scene);
+/// Tells whether a look needs the scene's surfaces.
+bool needsSurfaces(StudyLook look);
 
 /// A way to compute a picture. Its entry in studyMethods() is all that a study needs to know of it.
 struct StudyMethod {
@@ -30,10 +44,11 @@ struct StudyMethod {
   std::vector<int> slices, quickSlices;             // worth using; swept unless the user gives others
   bool usual = true;                                // whether it is part of a study unless the user says otherwise
   bool quick = false;                               // whether it is also part of a quick study
-  bool fineSegments = false;  // at the base: kAutomaticSegments per slab, else the fewest that are swept
-  bool windows = false;       // whether it carries light in light windows, whose scale is swept
-  bool onCpu = false;         // where it is drawn; else on OpenGL
-  bool compared = false;      // whether it is part of a comparison of techniques
+  bool fineSegments = false;           // at the base: kAutomaticSegments per slab, else the fewest that are swept
+  bool windows = false;                // whether it carries light in light windows, whose scale is swept
+  bool onCpu = false;                  // where it is drawn; else on OpenGL
+  bool compared = false;               // whether it is part of a comparison of techniques
+  StudyLook look = StudyLook::medium;  // the reference of this look is the truth
 };
 
 /// Stands for as many segments as segmentsOf() says.
@@ -53,6 +68,10 @@ inline constexpr int kAutomaticSegments = 0;
 ///   rays-midpoint  rays with the medium at the middle of each segment, not the integral over its values
 ///   rays-pre       rays through media that were interpolated between classified voxels
 ///   rays-gl, rays-gl-light-volume                 rays on OpenGL, of the slices' segments
+///   cone-rays      rays towards the light from each sample of rays on the CPU
+///   rays-gl-box    the same by the simple set-up: through the box of the volume, one texture, without skipping
+///   LOOK-TECHNIQUE  each other look by each technique that has it: mip-rays, mip-rays-gl, phong-shear-warp, ...; how
+///                   finely isosurfaces are drawn depends on no slices
 const std::vector<StudyMethod>& studyMethods();
 /// Returns the method of a name. @throw InvalidArgument  there is no such method; the message lists those there are
 const StudyMethod& studyMethod(std::string_view name);
@@ -89,7 +108,8 @@ StudySettings quickStudySettings();
 
 /// Returns the settings of a comparison of all techniques, each in a few numbers of slices at one size and theta: where
 /// it is quick, at a smaller size against coarser references.
-StudySettings techniqueSettings(bool quick);
+/// @param surfaces  whether the scene has surfaces, without which there are no pictures of them
+StudySettings techniqueSettings(bool quick, bool surfaces);
 
 /// One picture that is timed and compared.
 struct StudyCase {
@@ -110,7 +130,8 @@ struct StudyReference {
   Model model = Model::emission;
   int size = 0;
   double theta = 0;  // rad; 0 for emission and ambient
-  /// Returns "cone-s256-t60"; also the name of its file.
+  StudyLook look = StudyLook::medium;
+  /// Returns "cone-s256-t60", of other looks "mip-s256"; also the name of its file.
   std::string id() const;
   bool operator==(const StudyReference&) const = default;
 };
