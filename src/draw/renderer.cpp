@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/draw/renderer.h"
 
-#include <glm/common.hpp>
-
 #include "draw/added_work.h"
-#include "umbrick/core/pixel_points.h"
-#include "umbrick/draw/picture_mean.h"
+#include "umbrick/draw/pixel_samples.h"
 
 namespace umbrick {
 
@@ -68,26 +65,15 @@ void Renderer::setSampling(const SamplingOptions& sampling) {
 }
 
 Picture Renderer::render(const RenderSample& sample, const std::function<void(std::size_t)>& beforeEach) {
-  const std::vector<glm::dvec2> points = pixelPoints(scene().sampling.pixelSamples);
-  if (points.size() == 1) {
-    if (beforeEach) beforeEach(0);
-    draw(sample);
-    return read();
-  }
-  PictureMean mean;
-  Picture picture;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  const auto samples = static_cast<std::size_t>(scene().sampling.pixelSamples);
+  const auto drawOne = [&](std::size_t i) {
     if (beforeEach) beforeEach(i);
-    RenderSample moved = sample;
-    moved.pixel = glm::fract(points[i] + (sample.pixel - 0.5));
-    draw(moved);
-    const RenderStats before = picture.stats;
-    picture = read();
-    addWork(picture.stats, before);
-    mean.add(picture);
-  }
-  mean.store(picture);
-  return picture;
+    return renderPixelSample(*this, i, sample);
+  };
+  if (samples == 1) return drawOne(0);
+  PixelSampleMean mean;
+  for (std::size_t i = 0; i < samples; ++i) mean.add(drawOne(i));
+  return mean.mean();
 }
 
 }  // namespace umbrick

@@ -9,18 +9,25 @@
 
 namespace umbrick {
 
-VolumeFrames::VolumeFrames(std::vector<VolumeReference> files, Cut cut)
-    : files_(std::move(files)), cut_(std::move(cut)), kept_(keepStream()) {
-  begin();
+VolumeFrames::VolumeFrames(std::vector<VolumeReference> files, Cut cut, Pick pick)
+    : files_(std::move(files)), cut_(std::move(cut)), pick_(std::move(pick)), kept_(keepStream()) {
+  if (!pick_) pick_ = [this](bool) { return done() ? std::nullopt : std::optional(given_); };
+  begin(false);
 }
 
 VolumeFrames::~VolumeFrames() {
   ends_ = true;  // for which the future waits
 }
 
-void VolumeFrames::begin() {
-  if (done()) return;
-  reading_ = std::async(std::launch::async, [this, index = given_] {
+std::optional<std::size_t> VolumeFrames::upcoming() {
+  if (!upcoming_) begin(false);
+  return upcoming_;
+}
+
+void VolumeFrames::begin(bool ahead) {
+  upcoming_ = pick_(ahead);
+  if (!upcoming_) return;
+  reading_ = std::async(std::launch::async, [this, index = *upcoming_] {
     const VolumeReference& file = files_[index];
     VolumeFrame frame;
     // Only frames of one file go on where the one before ended.
@@ -41,11 +48,12 @@ void VolumeFrames::begin() {
 }
 
 VolumeFrame VolumeFrames::next(const std::function<void()>& waiting) {
+  upcoming();
   while (reading_.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready)
     if (waiting) waiting();
   std::future<VolumeFrame> ready = std::move(reading_);
   ++given_;
-  begin();
+  begin(true);
   return ready.get();
 }
 
