@@ -9,6 +9,8 @@
 
 namespace umbrick::tools {
 
+class Ranks;
+
 /// Does the work of a sub-command once its options are parsed; returns the exit status.
 using Run = std::function<int()>;
 
@@ -23,7 +25,8 @@ Command addConvert(CLI::App& app);
 Command addInfo(CLI::App& app);
 Command addManual(CLI::App& app);
 Command addReference(CLI::App& app);
-Command addRender(CLI::App& app);
+/// @param ranks  share the work; outlive the command
+Command addRender(CLI::App& app, Ranks& ranks);
 Command addStudy(CLI::App& app);
 Command addTf(CLI::App& app);
 Command addView(CLI::App& app);

@@ -87,8 +87,17 @@ void requireFilmEncoder(const fs::path& film) {
               "out_%04d.png, need no other program");
 }
 
+std::string filmPixels(const Image& shown) {
+  std::string bytes;
+  bytes.reserve(shown.pixels.size());
+  for (int y = shown.height - 1; y >= 0; --y)
+    for (int x = 0; x < shown.width; ++x)
+      for (int channel = 0; channel < 3; ++channel) bytes += byteOf(shown.at(x, y)[channel]);
+  return bytes;
+}
+
 Film::Film(const fs::path& path, int width, int height, const FilmOptions& options)
-    : path_(path), file_(path, PendingFile::Naming::named), width_(width), height_(height) {
+    : path_(path), file_(path, PendingFile::Naming::named) {
   if (width < 2 || height < 2)
     throw InvalidArgument(path.string() + ": expected a film of at least 2 x 2 pixels, found " + std::to_string(width) +
                           " x " + std::to_string(height));
@@ -151,13 +160,9 @@ std::string Film::complaint() const {
   return line.empty() ? "it ended early" : line;
 }
 
-void Film::add(const Image& shown) {
-  bytes_.clear();
-  for (int y = height_ - 1; y >= 0; --y)
-    for (int x = 0; x < width_; ++x)
-      for (int channel = 0; channel < 3; ++channel) bytes_.push_back(byteOf(shown.at(x, y)[channel]));
+void Film::add(std::string_view pixels) {
   try {
-    writeAll(pictures_.number(), bytes_.data(), bytes_.size(), path_.string());
+    writeAll(pictures_.number(), pixels.data(), pixels.size(), path_.string());
   } catch (const PipeClosed&) {
     wait();
     throw IoError(path_.string() + ": ffmpeg: " + complaint());

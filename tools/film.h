@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/descriptor.h"
@@ -25,6 +26,10 @@ bool isFilm(const std::filesystem::path& path);
 /// Checks that ffmpeg is installed, before pictures are made for it. @throw Error  names the film and what to do
 void requireFilmEncoder(const std::filesystem::path& film);
 
+/// Returns what a film gets of a picture: 8-bit sRGB, from the top row on.
+/// @param shown  linear display values, premultiplied: what is transparent is black
+std::string filmPixels(const Image& shown);
+
 /// Pipes pictures to ffmpeg, as raw 8-bit sRGB. The film appears whole or not at all: it takes its name by finish(),
 /// and without that what was encoded goes with this object.
 class Film {
@@ -38,9 +43,9 @@ class Film {
   Film& operator=(const Film&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Adds a picture. @param shown  linear display values, premultiplied: what is transparent is black
+  /// Adds a picture. @param pixels  as filmPixels() makes them, of the film's size
   /// @throw IoError  ffmpeg has ended; the message has what it says
-  void add(const Image& shown);
+  void add(std::string_view pixels);
   /// Waits for ffmpeg and puts the film in its place. @throw IoError
   void finish();
 
@@ -51,10 +56,8 @@ class Film {
 
   std::filesystem::path path_;
   PendingFile file_;
-  int width_, height_;
   pid_t encoder_ = -1;
   Descriptor pictures_, messages_;
-  std::vector<char> bytes_;
 };
 
 }  // namespace umbrick::tools

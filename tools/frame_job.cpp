@@ -107,6 +107,9 @@ void placeOutputs(const RenderCommand& command, FrameJob& job) {
     }
     pictureFormat(file, output.format);
     if (isStream(file)) {
+      if (!command.ranks->isAlone())
+        throw UsageError(file.string() + ": the frames of " + std::to_string(command.ranks->count()) +
+                         " ranks have no order on a stream; numbered files and films do");
       prepareOutput(file, output.force);
       streams = true;
     } else if (!isFramePattern(file)) {
@@ -135,7 +138,7 @@ void placeOutputs(const RenderCommand& command, FrameJob& job) {
   all.insert(all.end(), {job.stats, job.frames.front().stats});
   checkApart(all);
   for (fs::path film : job.films) {
-    requireFilmEncoder(film);
+    if (command.ranks->isFirst()) requireFilmEncoder(film);
     prepareOutput(film, output.force);
   }
 }

@@ -4,11 +4,13 @@
 #include <csignal>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "command.h"
+#include "dist/ranks.h"
 #include "foreign_messages.h"
 #include "label_words.h"
 #include "option_words.h"
@@ -49,7 +51,7 @@ std::string jobOf(const CLI::App& command) {
 }
 
 // Returns the exit status: 0 success, 1 a failed job or comparison, 2 wrong usage.
-int runProgram(int argc, char** argv) {
+int runProgram(int argc, char** argv, Ranks& ranks) {
   if (argc <= 1) {
     std::cerr << kGreeting;
     return 2;
@@ -61,8 +63,8 @@ int runProgram(int argc, char** argv) {
   app.failure_message(
       [](const CLI::App*, const CLI::Error& error) { return std::string("umbrick: ") + error.what() + "\n"; });
   const std::vector<Command> commands{
-      addConvert(app), addInfo(app), addRender(app), addReference(app),  addCompare(app), addCheck(app),
-      addStudy(app),   addTf(app),   addView(app),   addCompletion(app), addManual(app),
+      addConvert(app), addInfo(app), addRender(app, ranks), addReference(app),  addCompare(app), addCheck(app),
+      addStudy(app),   addTf(app),   addView(app),          addCompletion(app), addManual(app),
   };
   try {
     std::vector<std::string> arguments(argv + 1, argv + argc);
@@ -76,6 +78,9 @@ int runProgram(int argc, char** argv) {
   for (const auto& [command, run] : commands)
     if (command->parsed()) {
       nameJob(jobOf(*command));
+      if (!ranks.isAlone() && command->get_name() != "render")
+        throw UsageError(command->get_name() + ": is for one process, found " + std::to_string(ranks.count()) +
+                         " ranks of mpirun, which share the work of umbrick render");
       return run();
     }
   return 2;
@@ -92,14 +97,21 @@ int endByClosedPipe() {
 int runAndTell(int argc, char** argv) {
   StandardOutput out;
   ForeignMessages foreign;
+  std::unique_ptr<Ranks> ranks;
   const auto complain = [&](const std::string& message, int exitStatus) {
-    std::cerr << "umbrick: " << umbrick::printable(message) << foreign.take() << '\n';
+    if (!ranks || ranks->isFirst())
+      std::cerr << "umbrick: " << umbrick::printable(message) << foreign.take() << '\n';
+    else if (stopRequested())
+      ranks->stop();  // as all ranks do, of which the first one says it
+    else
+      ranks->fail(umbrick::printable(message) + foreign.take());
     return exitStatus;
   };
   int status = 0;
   try {
     try {
-      status = umbrick::withinMemory(jobName, [&] { return runProgram(argc, argv); });
+      ranks = joinRanks(messageDescriptor());
+      status = umbrick::withinMemory(jobName, [&] { return runProgram(argc, argv, *ranks); });
     } catch (const umbrick::PipeClosed&) {
       throw;
     } catch (const UsageError& error) {
@@ -113,7 +125,13 @@ int runAndTell(int argc, char** argv) {
   } catch (const umbrick::IoError& error) {
     return complain(error.what(), std::max(status, 1));
   }
-  return status;
+  if (!ranks || ranks->isAlone()) return status;
+  // Ranks leave together, after the last one has done.
+  if (stopRequested()) endsByItself();
+  const bool first = ranks->isFirst();
+  ranks.reset();
+  foreign.take();             // what MPI says as it ends
+  return first ? status : 0;  // of the others mpirun would take it for a reason to end all
 }
 
 }  // namespace

@@ -159,12 +159,19 @@ ProgressivePicture renderPasses(const RenderCommand& command, const MakeRenderer
 
 int render(const RenderCommand& command) {
   const Scene scene = askedScene(command);
+  if (!command.ranks->isAlone())
+    if (const std::optional<std::string> note = idleCoresNote()) std::cerr << *note << '\n';
   if (const std::optional<int> several = renderFrames(command, scene)) return *several;
   tellFrameShown(*command.scene, scene);
-  checkOutputs(*command.output);
+  Ranks& ranks = *command.ranks;
+  if (ranks.isFirst()) checkOutputs(*command.output);
   const PictureOutput& output = *command.output;
   const bool progressive = command.progressive();
   if (progressive && command.repeat > 1) throw UsageError("--repeat and --progressive exclude each other");
+  if (!ranks.isAlone() && (progressive || command.repeat > 1))
+    throw UsageError(std::string(progressive ? "--progressive, --max-seconds and --target-error are" : "--repeat is") +
+                     " for one process, found " + std::to_string(ranks.count()) +
+                     " ranks; these share frames, and the --samples of one picture");
   RenderWatch watch;
   const std::string nothing = "interrupted; nothing was written";
   watch.bar.begin("loading " + scene.volume.file.filename().string());
@@ -194,6 +201,24 @@ int render(const RenderCommand& command) {
     passes = renderPasses(command, make, loaded.scene, engine.description, options, watch, framesMs);
     picture = passes->picture;
     loaded.scene = passes->scene;
+  } else if (!ranks.isAlone()) {
+    const int samples = loaded.scene.sampling.pixelSamples;
+    if (samples == 1)
+      std::cerr << "one picture of one sample is drawn by one rank of " << ranks.count()
+                << "; the --samples of a picture and the frames of a sequence are shared\n";
+    const auto show = showShare(watch.bar, watch.stop, nothing);
+    options.progress = [&](double share) {
+      const WorkDone done = ranks.show(share);
+      show((static_cast<double>(done.items) + done.shares) / samples);
+    };
+    const std::unique_ptr<Renderer> renderer = make(options);
+    watch.bar.begin("rendering");
+    const Stopwatch frame;
+    std::optional<Picture> together = renderTogether(*renderer, ranks, show);
+    if (!together) return 0;
+    picture = std::move(*together);
+    framesMs.push_back(frame.elapsedMs());
+    watch.bar.clear();
   } else {
     const auto show = showShare(watch.bar, watch.stop, nothing);
     // A frame is drawn once for each sample of the area of a pixel, each of which begins at 0.
@@ -222,6 +247,7 @@ int render(const RenderCommand& command) {
   if (!output.stats.empty()) {
     auto stats = printStats(loaded, picture, framesMs, engine.description, write.elapsedMs(), command.timePasses);
     if (passes) stats["progressive"] = printPasses(*passes, command.seed);
+    if (!ranks.isAlone()) stats["ranks"] = ranks.count();
     writeTextFile(output.stats, stats.dump(2) + "\n");
   }
   const auto empty = describeEmptyPicture(picture.colour, loaded.scene, *loaded.volume, *command.scene);
@@ -234,8 +260,9 @@ int render(const RenderCommand& command) {
 
 }  // namespace
 
-Command addRender(CLI::App& app) {
+Command addRender(CLI::App& app, Ranks& ranks) {
   const auto command = std::make_shared<RenderCommand>();
+  command->ranks = &ranks;
   CLI::App* sub = app.add_subcommand("render", "Make a picture of a volume.");
   command->scene = addSceneOptions(*sub);
   command->output =

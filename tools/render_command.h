@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "dist/ranks.h"
 #include "opened_scene.h"
 #include "picture_output.h"
 #include "scene_options.h"
@@ -27,6 +29,7 @@ struct FrameOptions {
 };
 
 struct RenderCommand {
+  Ranks* ranks = nullptr;  // share the work; outlive the command
   std::shared_ptr<SceneOptions> scene;
   std::shared_ptr<PictureOutput> output;
   FrameOptions frames;
@@ -68,6 +71,12 @@ nlohmann::ordered_json printStats(const LoadedScene& loaded, const Picture& pict
 void writePicture(const PictureOutput& output, const Picture& picture, const ResolvedScene& scene,
                   const std::string& engine, const std::string& progressive = {},
                   PictureState state = PictureState::done);
+
+/// Draws the samples of a picture (--samples) together with the other ranks.
+/// @param show  is called now and then with the share of the picture that is done; what it throws ends the picture
+/// @return the picture that one rank would make alone, to the bit; on ranks other than the first nothing
+/// @throw Interrupted  another rank was stopped
+std::optional<Picture> renderTogether(Renderer& renderer, Ranks& ranks, const std::function<void(double)>& show);
 
 /// Makes pictures of a sequence or of a camera that moves, where the command asks for several.
 /// @param scene  as askedScene() makes it

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <iostream>
 #include <set>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "command.h"
 #include "film.h"
 #include "frame_job.h"
+#include "frame_outcome.h"
 #include "frame_samples.h"
 #include "frame_scenes.h"
 #include "frame_words.h"
@@ -54,18 +56,24 @@ class FrameRun {
  private:
   void open(const Scene& scene);
   Picture taken(const FrameJob::Frame& frame);
-  void drawOne(const FrameJob::Frame& frame, VolumeFrame read);
+  FrameOutcome drawOne(const FrameJob::Frame& frame, VolumeFrame read);
   void makeRenderer();
   std::unique_ptr<Bricks> cut(const Volume& volume, const FrameJob::Frame& frame);
   std::unique_ptr<Bricks> cut(const Volume& volume, const ResolvedScene& scene) const;
-  void write(const FrameJob::Frame& frame, const Picture& picture, double drawMs, bool holdsSomething);
-  void skip(const FrameJob::Frame& frame, const std::string& why);
+  FrameOutcome write(const FrameJob::Frame& frame, const Picture& picture, double drawMs, bool holdsSomething);
+  FrameOutcome skip(const FrameJob::Frame& frame, const std::string& why);
+  bool drawAll(const std::vector<const FrameJob::Frame*>& left);
+  void hand(std::size_t item, const FrameOutcome& outcome, const std::vector<const FrameJob::Frame*>& left);
+  void collect(const std::vector<const FrameJob::Frame*>& left);
+  void keep(const FrameJob::Frame& frame, const FrameOutcome& outcome);
   void say(const std::string& line);
   void show(double share);
+  void tellStopping();
   void tellInterrupted() const;
   void tellOtherScene() const;
 
   const RenderCommand& command_;
+  Ranks& ranks_;
   FrameJob job_;
   StopRequest stop_;
   ProgressBar bar_{"rendering"};
@@ -85,12 +93,14 @@ class FrameRun {
   double drawn_ = 0, lastShare_ = 0;  // samples of the picture at hand
   Stopwatch work_;
   bool chosenSaid_ = false, strictFailed_ = false;
+  std::optional<Stopwatch> stopping_;  // since the user wants the job to stop, where ranks share it
+  bool stopTold_ = false;
   std::string beyond_;  // the first frame that shows more than the camera was placed for, once it is known
   std::atomic<bool> beyondKnown_ = false;
 };
 
 FrameRun::FrameRun(const RenderCommand& command, FrameJob job, const Scene& scene)
-    : command_(command), job_(std::move(job)) {
+    : command_(command), ranks_(*command.ranks), job_(std::move(job)), chosenSaid_(!ranks_.isFirst()) {
   wanted_ = static_cast<std::size_t>(
       std::count_if(job_.frames.begin(), job_.frames.end(), [](const auto& frame) { return !frame.finished; }));
   if (wanted_ > 0) open(scene);
@@ -110,6 +120,7 @@ void FrameRun::open(const Scene& scene) {
                                         .units = unitsOf(opened_.volume->grid())};
   prepareLook(*command_.output, command_.scene->backdrop, shown_->scene, shown_->units);
   for (const std::filesystem::path& film : job_.films) {
+    if (!ranks_.isFirst()) break;
     const Camera& camera = shown_->scene.camera;
     if (camera.width % 2 != 0 || camera.height % 2 != 0)
       std::cerr << film.string() << ": the film is " << camera.width / 2 * 2 << " x " << camera.height / 2 * 2
@@ -174,9 +185,27 @@ void FrameRun::say(const std::string& line) {
 
 void FrameRun::show(double share) {
   const double seconds = work_.elapsedMs() / 1000;
-  std::string step = std::to_string(done_) + " of " + std::to_string(wanted_) + " frames";
-  if (done_ > 0) step += ", " + shortNumber(seconds / static_cast<double>(done_), 3) + " s each";
-  bar_.show((static_cast<double>(done_) + share) / static_cast<double>(wanted_), step);
+  WorkDone done{done_, share};
+  if (!ranks_.isAlone()) {
+    done = ranks_.show(share);
+    tellStopping();
+  }
+  std::string step = std::to_string(done.items) + " of " + std::to_string(wanted_) + " frames";
+  if (done.items > 0) step += ", " + shortNumber(seconds / static_cast<double>(done.items), 3) + " s each";
+  if (!ranks_.isAlone()) step += ", " + std::to_string(ranks_.count()) + " ranks";
+  bar_.show((static_cast<double>(done.items) + done.shares) / static_cast<double>(wanted_), step);
+}
+
+// mpirun ends its ranks a second after it has asked them to stop, unless it is told to wait longer: what there is to
+// say is said before that.
+void FrameRun::tellStopping() {
+  constexpr double kLatestMs = 500;
+  if (!ranks_.isFirst() || !stop_.requested()) return;
+  if (!stopping_) stopping_.emplace();
+  if (stopping_->elapsedMs() < kLatestMs || std::exchange(stopTold_, true)) return;
+  bar_.clear();
+  std::cerr << "umbrick: interrupted after " << done_ << " of " << wanted_
+            << " frames; those at hand are finished as far as mpirun waits for them, and the same command goes on\n";
 }
 
 void FrameRun::makeRenderer() {
@@ -208,7 +237,7 @@ Picture FrameRun::taken(const FrameJob::Frame& frame) {
   });
 }
 
-void FrameRun::drawOne(const FrameJob::Frame& frame, VolumeFrame read) {
+FrameOutcome FrameRun::drawOne(const FrameJob::Frame& frame, VolumeFrame read) {
   const Stopwatch draw;
   if (!job_.oneVolume) {
     // A renderer points to the bricks, and these to their volume.
@@ -223,8 +252,7 @@ void FrameRun::drawOne(const FrameJob::Frame& frame, VolumeFrame read) {
   drawn_ = lastShare_ = 0;
   if (!shown_->bricks) {
     say(frame.volume.file.string() + ": frame " + std::to_string(frame.number) + " holds nothing and is drawn empty");
-    write(frame, blankPicture(shown_->scene, command_.output->layers), draw.elapsedMs(), false);
-    return;
+    return write(frame, blankPicture(shown_->scene, command_.output->layers), draw.elapsedMs(), false);
   }
   // What bricks must have may change with the scene's keys.
   if (renderer_ && scenes_->haveKeys() &&
@@ -245,21 +273,21 @@ void FrameRun::drawOne(const FrameJob::Frame& frame, VolumeFrame read) {
     named.volume = frame.volume;
     warnOfNonFinite(named, shown_->bricks->nonFiniteVoxels);
   }
-  if (command_.strict && describeEmptyPicture(picture.colour, shown_->scene, *shown_->volume, *command_.scene))
-    strictFailed_ = true;
-  write(frame, picture, draw.elapsedMs(), true);
+  FrameOutcome outcome = write(frame, picture, draw.elapsedMs(), true);
+  outcome.shows =
+      !command_.strict || !describeEmptyPicture(picture.colour, shown_->scene, *shown_->volume, *command_.scene);
+  return outcome;
 }
 
-void FrameRun::write(const FrameJob::Frame& frame, const Picture& picture, double drawMs, bool holdsSomething) {
+FrameOutcome FrameRun::write(const FrameJob::Frame& frame, const Picture& picture, double drawMs, bool holdsSomething) {
   const Stopwatch writing;
   PictureOutput output = *command_.output;
   output.files = frame.pictures;
   if (output.annotations) output.annotations = annotationsFor(output, shown_->scene, shown_->units);
   bar_.clear();
   writePicture(output, picture, shown_->scene, engine_.description);
-  for (const std::unique_ptr<Film>& film : films_) film->add(shownPicture(output, picture.colour));
-  printOutputs(output);
-  std::cout.flush();
+  FrameOutcome outcome{.drawn = true};
+  if (!job_.films.empty()) outcome.film = filmPixels(shownPicture(output, picture.colour));
   if (!frame.stats.empty() || !job_.stats.empty()) {
     nlohmann::ordered_json stats{{"frame", frame.number}};
     if (holdsSomething)
@@ -268,21 +296,56 @@ void FrameRun::write(const FrameJob::Frame& frame, const Picture& picture, doubl
     else
       stats["empty"] = true;
     if (!frame.stats.empty()) writeTextFile(frame.stats, stats.dump(2) + "\n");
-    if (!job_.stats.empty()) stats_.push_back(std::move(stats));
+    if (!job_.stats.empty()) outcome.stats = std::move(stats);
   }
-  written_.push_back(frame.number);
-  ++done_;
+  return outcome;
 }
 
 // Goes on without a frame, or ends the job.
-void FrameRun::skip(const FrameJob::Frame& frame, const std::string& why) {
+FrameOutcome FrameRun::skip(const FrameJob::Frame& frame, const std::string& why) {
   const std::string line = "frame " + std::to_string(frame.number) + ": " + why;
   if (!command_.frames.skipMissing) throw Error(line + "; --skip-missing goes on without it");
   say(line + "; left out");
+  return {};
+}
+
+// Does what is left to do with a frame. It is called in the order of frames, by the first rank alone.
+void FrameRun::keep(const FrameJob::Frame& frame, const FrameOutcome& outcome) {
   ++done_;
+  if (!outcome.beyond.empty() && said_.insert("beyond").second) {
+    bar_.clear();
+    std::cerr << printable(outcome.beyond)
+              << ": shows something outside of the box that the camera was placed for by the first, the middle and the "
+                 "last frame; --zoom or --eye shows more\n";
+  }
+  if (!outcome.drawn) return;
+  for (const std::unique_ptr<Film>& film : films_) film->add(outcome.film);
+  PictureOutput output = *command_.output;
+  output.files = frame.pictures;
+  bar_.clear();
+  printOutputs(output);
+  std::cout.flush();
+  if (!outcome.stats.is_null()) stats_.push_back(outcome.stats);
+  if (!outcome.shows) strictFailed_ = true;
+  written_.push_back(frame.number);
+}
+
+void FrameRun::hand(std::size_t item, const FrameOutcome& outcome, const std::vector<const FrameJob::Frame*>& left) {
+  if (ranks_.isAlone()) return keep(*left[item], outcome);
+  ranks_.put(item, bytesOf(outcome));
+  collect(left);
+}
+
+void FrameRun::collect(const std::vector<const FrameJob::Frame*>& left) {
+  while (const std::optional<ItemResult> result = ranks_.collect()) {
+    std::istringstream said(result->said);
+    for (std::string line; std::getline(said, line);) say(line);
+    keep(*left[result->item], outcomeOf(result->bytes));
+  }
 }
 
 void FrameRun::tellInterrupted() const {
+  if (stopTold_) return;
   std::vector<std::int64_t> there = written_;
   for (const FrameJob::Frame& frame : job_.frames)
     if (frame.finished) there.push_back(frame.number);
@@ -295,62 +358,85 @@ void FrameRun::tellInterrupted() const {
   std::cerr << '\n';
 }
 
+// Draws frames as long as there are any, and takes turns with other ranks. @return whether the user has stopped it
+bool FrameRun::drawAll(const std::vector<const FrameJob::Frame*>& left) {
+  // Results that wait for their turn are kept in memory, those for films as pictures.
+  ranks_.begin(left.size(), 4 * static_cast<std::size_t>(ranks_.count()));
+  const auto stopAll = [this] {
+    if (stop_.requested()) ranks_.stop();
+  };
+  const auto pick = [&](bool ahead) {
+    return ranks_.take(ahead ? Ranks::When::ahead : Ranks::When::now, [&] {
+      stopAll();
+      collect(left);
+      show(0);
+    });
+  };
+  std::optional<VolumeFrames> reader;
+  if (!job_.oneVolume) {
+    std::vector<VolumeReference> files;
+    for (const FrameJob::Frame* frame : left) files.push_back(frame->volume);
+    reader.emplace(
+        std::move(files), [&](const Volume& volume, std::size_t index) { return cut(volume, *left[index]); }, pick);
+  }
+  const auto drawNext = [&](const FrameJob::Frame& frame) {
+    VolumeFrame read;
+    if (reader) {
+      // What was drawn last is let go of, so that no more than two frames are in memory.
+      renderer_.reset();
+      resident_.reset();
+      shown_->bricks.reset();
+      shown_->volume.reset();
+      try {
+        read = reader->next([this] {
+          if (stop_.requested()) throw Interrupted("");
+          show(0);
+        });
+      } catch (const Interrupted&) {
+        throw;
+      } catch (const Error& error) {
+        return skip(frame, error.what());
+      }
+    }
+    return drawOne(frame, std::move(read));
+  };
+  bool stopped = false;
+  try {
+    while (!stopped) {
+      const std::optional<std::size_t> item = reader ? reader->upcoming() : pick(false);
+      if (!item) break;
+      FrameOutcome outcome = drawNext(*left[*item]);
+      if (beyondKnown_) outcome.beyond = beyond_;
+      hand(*item, outcome, left);
+      stopped = stop_.requested();
+    }
+  } catch (const Interrupted&) {
+    stopped = true;
+  }
+  stopAll();
+  ranks_.rest();
+  while (!ranks_.allRest()) {
+    stopAll();
+    collect(left);
+    show(0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  collect(left);
+  return (stopped || ranks_.stopped()) && done_ < wanted_;
+}
+
 int FrameRun::run() {
   if (wanted_ == 0) return 0;
   stop_.keepParts();
   const StopWatcher watcher(stop_);
-  std::vector<VolumeReference> files;
   std::vector<const FrameJob::Frame*> left;
   for (const FrameJob::Frame& frame : job_.frames)
-    if (!frame.finished) {
-      files.push_back(frame.volume);
-      left.push_back(&frame);
-    }
-  std::optional<VolumeFrames> reader;
-  if (!job_.oneVolume)
-    reader.emplace(std::move(files),
-                   [&](const Volume& volume, std::size_t index) { return cut(volume, *left[index]); });
+    if (!frame.finished) left.push_back(&frame);
   bar_.begin("rendering");
   work_ = Stopwatch();
-  bool stopped = false;
-  for (const FrameJob::Frame& frame : job_.frames) {
-    if (frame.finished) continue;
-    try {
-      VolumeFrame read;
-      if (reader) {
-        // What was drawn last is let go of, so that no more than two frames are in memory.
-        renderer_.reset();
-        resident_.reset();
-        shown_->bricks.reset();
-        shown_->volume.reset();
-        try {
-          read = reader->next([this] {
-            if (stop_.requested()) throw Interrupted("");
-            show(0);
-          });
-        } catch (const Interrupted&) {
-          throw;
-        } catch (const Error& error) {
-          skip(frame, error.what());
-          continue;
-        }
-      }
-      drawOne(frame, std::move(read));
-    } catch (const Interrupted&) {
-      stopped = true;
-      break;
-    }
-    if (beyondKnown_ && said_.insert("beyond").second) {
-      bar_.clear();
-      std::cerr << printable(beyond_) << ": shows something outside of the box that the camera was placed for by the "
-                << "first, the middle and the last frame; --zoom or --eye shows more\n";
-    }
-    if (stop_.requested() && done_ < wanted_) {
-      stopped = true;
-      break;
-    }
-  }
+  const bool stopped = drawAll(left);
   bar_.clear();
+  if (!ranks_.isFirst()) return 0;
   if (!job_.stats.empty()) writeTextFile(job_.stats, stats_.dump(2) + "\n");
   if (stopped) {
     tellInterrupted();
@@ -363,11 +449,25 @@ int FrameRun::run() {
   return strictFailed_ ? 1 : 0;
 }
 
+// Lets all ranks have the frames of the first one, also where some of them are finished before all ranks have looked.
+void agreeOnFrames(Ranks& ranks, FrameJob& job) {
+  std::string own, finished;
+  for (const FrameJob::Frame& frame : job.frames) {
+    own += std::to_string(frame.number) + ' ';
+    finished += frame.finished ? '1' : '0';
+  }
+  const std::string agreed = ranks.agree(finished + own);
+  if (agreed.substr(std::min(agreed.size(), job.frames.size())) != own)
+    throw Error("finds other frames here than the first rank does");
+  for (std::size_t i = 0; i < job.frames.size(); ++i) job.frames[i].finished = agreed[i] == '1';
+}
+
 }  // namespace
 
 std::optional<int> renderFrames(const RenderCommand& command, const Scene& scene) {
   std::optional<FrameJob> job = findFrameJob(command, scene);
   if (!job) return {};
+  agreeOnFrames(*command.ranks, *job);
   return FrameRun(command, std::move(*job), scene).run();
 }
 

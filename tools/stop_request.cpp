@@ -88,7 +88,7 @@ SignalWatch::SignalWatch() {
   } catch (const std::system_error&) {
     return;  // without a thread to watch them, signals end the program as they always do
   }
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) {
     struct sigaction action {};
     sigaction(number, nullptr, &action);
     if (action.sa_handler == SIG_IGN) continue;
@@ -118,6 +118,8 @@ bool StopRequest::requested() const {
 }
 
 bool stopRequested() { return lastSignal != 0; }
+
+void endsByItself() { programLeaves = true; }
 
 void leaveIfStopped(int status) {
   if (!stopRequested()) return;

@@ -5,7 +5,8 @@
 
 namespace umbrick::tools {
 
-/// While the object of this class lives, which is in main, SIGINT, SIGTERM and SIGHUP ask the job to stop. If it has
+/// While the object of this class lives, which is in main, SIGINT, SIGTERM and SIGHUP ask the job to stop, and so does
+/// SIGUSR1, which mpirun and Slurm pass on to the ranks of a job. If it has
 /// not ended most of a second later, temporary files are removed and the program ends by the signal, whatever it is
 /// about: it may wait for a pipe, or for a library. A second signal does so at once. A signal that the program was told
 /// to ignore, as nohup does, stays ignored. A pipe without a reader and a file that is too large (SIGPIPE, SIGXFSZ) are
@@ -35,6 +36,10 @@ class StopRequest {
 
 /// Whether a signal has asked for the end of the program. A job asks its StopRequest instead.
 bool stopRequested();
+
+/// The job has ended by itself and said what there is to say: what is left to do is not cut short by a signal that came
+/// before.
+void endsByItself();
 
 /// Ends the program with this status if a signal has asked for that, once all that is to be written is. OpenGL, threads
 /// and memory are left to the system: to tear them down takes long on a busy machine.

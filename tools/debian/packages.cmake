@@ -85,9 +85,9 @@ ${about}.
 This package has the program umbrick, its manual, completion for bash, zsh and
 fish, and two volumes as examples.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libumbrick${soversion} ${same_version}")
-# Plots of studies; films; the viewer's page.
+# Plots of studies; films; the viewer's page; mpirun.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "ffmpeg, www-browser")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "ffmpeg, www-browser, openmpi-bin")
 
 # --- libumbrick0.1: the shared library ---
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libumbrick${soversion})
