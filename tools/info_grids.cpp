@@ -126,6 +126,7 @@ void printGridInfo(const fs::path& path, const std::vector<std::string>& only, i
   std::cout << printable(path.string()) << ": " << file.fileBytes << " bytes, file version " << file.version
             << ", written by " << (file.libraryVersion.starts_with("NanoVDB") ? "" : "OpenVDB ")
             << file.libraryVersion.substr(0, file.libraryVersion.find('/')) << '\n';
+  printSource(file.metadata);
   for (const GridSummary& grid : file.grids) print(grid);
   if (file.grids.empty()) std::cout << "no grids\n";
 }

@@ -12,7 +12,7 @@ namespace umbrick::tools {
 namespace {
 
 constexpr const char* kUsualSources[] = {"source_format", "source_file", "modality", "series_description",
-                                         "space",         "length_unit", "rescale",  "value_unit"};
+                                         "space",         "length_unit", "rescale",  "value_unit", "frame", "time", "time_step", "time_unit", "cycle"};
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "convert/grid_job.h"
+#include "convert/grid_names.h"
 #include "convert/part_jobs.h"
 #include "convert/settle_options.h"
 #include "convert/volume_job.h"
@@ -84,6 +85,7 @@ void convertVolumeFrames(const std::vector<FrameFiles>& frames, const ConvertOpt
         const auto source = ahead.next();
         VolumeJob& job = *opened[i * plans.size() + plan];
         buildVolume(*source, job);
+        for (const JobGrid& built : job.grids) numberGrid(*built.grid, frames[i].number);
         jobs.push_back(std::move(job));
       }
       return writeVolumes(jobs, frames[i].output);
@@ -107,6 +109,7 @@ void convertGridFrames(const std::vector<FrameFiles>& frames, const ConvertOptio
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const ConvertReport report = naming(frames[i], [&] {
       GridJob job = next.get();
+      job.frame = frames[i].number;
       if (i + 1 < frames.size()) next = read(i + 1);
       return writeGridJob(job, frames[i].output);
     });

@@ -7,6 +7,7 @@
 
 #include "convert/background.h"
 #include "convert/check_verified.h"
+#include "convert/grid_names.h"
 #include "convert/pass.h"
 #include "convert/replace_by_isosurface.h"
 #include "convert/target_grid.h"
@@ -181,6 +182,8 @@ ConvertReport writeGridJob(GridJob& job, const fs::path& output) {
   std::vector<openvdb::FloatGrid::Ptr> built;
   for (std::size_t i = 0; i < job.report.grids.size(); ++i) built.push_back(buildJobGrid(job, i, options));
   const std::vector<std::optional<ValueMap>> maps = prepareForTarget(job, built);
+  for (const openvdb::FloatGrid::Ptr& grid : built)
+    if (job.frame) numberGrid(*grid, *job.frame);
   const std::vector<openvdb::FloatGrid::ConstPtr> grids(built.begin(), built.end());
   const NanoCheck check = [&](const fs::path& written, const std::vector<QuantiseError>& quantised) {
     for (std::size_t i = 0; i < grids.size(); ++i) {

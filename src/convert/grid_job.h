@@ -15,6 +15,7 @@ namespace umbrick {
 
 /// A file and its grids.
 struct GridJob {
+  std::optional<std::int64_t> frame;  // of a sequence: its number, which the grids keep
   std::filesystem::path input;
   ConvertOptions options;
   GridListing listing;

@@ -47,4 +47,8 @@ std::vector<std::string> gridUnits(std::size_t inputs, const std::vector<std::st
   return given;
 }
 
+void numberGrid(openvdb::GridBase& grid, std::int64_t number) {
+  if (!grid["frame"]) grid.insertMeta("frame", openvdb::StringMetadata(std::to_string(number)));
+}
+
 }  // namespace umbrick

@@ -19,6 +19,7 @@ struct Axis {
   hsize_t length = 1;
   std::string name;  // in lower case; empty where the file has none
   bool time = false, unlimited = false;
+  VolumeTimes times = {};
 };
 
 template <std::size_t n>
@@ -59,6 +60,19 @@ std::string baseName(std::string path) {
   return lower(path);
 }
 
+// Reads the numbers of a scale that counts times.
+VolumeTimes scaleTimes(hid_t scale, hsize_t length, const Hdf5Attributes& says) {
+  constexpr hsize_t kMostTimes = 10'000'000;
+  const Hdf5Handle space(H5Dget_space(scale), H5Sclose), type(H5Dget_type(scale), H5Tclose);
+  const H5T_class_t kind = H5Tget_class(type.get());
+  if (length > kMostTimes || (kind != H5T_FLOAT && kind != H5T_INTEGER) ||
+      H5Sget_simple_extent_npoints(space.get()) != static_cast<hssize_t>(length))
+    return {};
+  VolumeTimes times{.each = std::vector<double>(length), .unit = says.string("units")};
+  if (H5Dread(scale, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times.each.data()) < 0) return {};
+  return times;
+}
+
 // The attribute holds the references of the scales of each axis, of which netCDF has one.
 void readScales(hid_t dataset, std::vector<Axis>& axes) {
   if (H5Aexists(dataset, "DIMENSION_LIST") <= 0) return;
@@ -81,6 +95,8 @@ void readScales(hid_t dataset, std::vector<Axis>& axes) {
     const Hdf5Attributes says(scale.get(), name);
     axes[i].time = lower(says.string("axis")) == "t" || lower(says.string("standard_name")) == "time" ||
                    lower(says.string("units")).find(" since ") != std::string::npos;
+    if ((axes[i].time || namesTime(axes[i].name)) && H5Iget_type(scale.get()) == H5I_DATASET)
+      axes[i].times = scaleTimes(scale.get(), axes[i].length, says);
   }
   H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, lists.data());
 }
@@ -168,6 +184,7 @@ class Sorting {
 
   void takeFrames() {
     const auto timed = std::find_if(left_.begin(), left_.end(), [&](std::size_t i) { return axes_[i].time; });
+    if (timed != left_.end() && (left_.size() > 3 || axes_[*timed].length == 1)) out_.times = axes_[*timed].times;
     if (timed != left_.end() && left_.size() <= 3) {
       if (left_.size() == 3 && axes_[*timed].length > 1)
         out_.notes.push_back(axisText(*timed) + " is taken for one of space, since there are three axes");

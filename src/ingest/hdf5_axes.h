@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "ingest/volume_time.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
@@ -22,6 +23,7 @@ struct Hdf5Axes {
   std::vector<std::size_t> space;  // places in the shape: z, y and x, or y and x
   std::optional<std::size_t> frames = {}, components = {};
   VoxelMeaning meaning = VoxelMeaning::scalar;  // of the components, where the name of their axis says it
+  VolumeTimes times = {};                       // of frames, or of the only one, from the scale of their axis
   std::vector<std::string> notes = {};          // why an axis was taken for what it is, a line each
   bool isVolume() const { return space.size() == 2 || space.size() == 3; }
   bool isPlain() const { return space.size() == 3 && !frames && !components; }

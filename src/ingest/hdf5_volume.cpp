@@ -17,6 +17,7 @@
 #include "ingest/parts.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
+#include "ingest/volume_time.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -312,6 +313,7 @@ std::unique_ptr<VoxelSource> openHdf5(const fs::path& path, const PartChoice& pa
   describeShape(dataset.get(), axes, info);
   addProvenance(info, place.file, "HDF5");
   info.metadata["source_dataset"] = place.dataset;
+  stateTime(info, axes.times, parts.frame);
   if (chosen) info.notes.push_back(std::move(why));
   info.notes.insert(info.notes.end(), axes.notes.begin(), axes.notes.end());
   guessMeaning(info);

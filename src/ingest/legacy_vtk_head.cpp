@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingest/legacy_vtk_head.h"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -195,7 +199,42 @@ class LegacyHeadReader {
                  values.type;
     if (passed_.size() > 200) passed_.resize(200);
     if (count_) keepSeveral(values);
+    if (!count_ && values.tuples == 1 && values.components == 1 && type && takeTime(values, *type)) return;
     skipValues(values);
+  }
+
+  // Keeps the time and the number of a step. Their names are those of VisIt (TIME, CYCLE) and of ParaView (TimeValue).
+  bool takeTime(const Values& values, VoxelType type) {
+    const bool cycle = values.name == "CYCLE";
+    if (!cycle && values.name != "TIME" && values.name != "TimeValue") return false;
+    const auto begin = in_.tellg();
+    skipValues(values);
+    const auto end = in_.tellg();
+    std::string bytes(static_cast<std::size_t>(end - begin), '\0');
+    in_.seekg(begin);
+    in_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    in_.seekg(end);
+    const auto value = head_.ascii ? number(trimmed(bytes)) : binaryNumber(bytes, type);
+    if (!value || !std::isfinite(*value)) return true;
+    if (cycle)
+      head_.cycle = static_cast<std::int64_t>(std::clamp(*value, -1e15, 1e15));
+    else
+      head_.time = *value;
+    return true;
+  }
+
+  static std::optional<double> binaryNumber(const std::string& bytes, VoxelType type) {
+    std::string native(bytes.rbegin(), bytes.rend());  // the file is big-endian
+    if constexpr (std::endian::native == std::endian::big) native = bytes;
+    const auto as = [&]<class T>(T value) -> std::optional<double> {
+      if (native.size() != sizeof value) return {};
+      std::memcpy(&value, native.data(), sizeof value);
+      return static_cast<double>(value);
+    };
+    if (type == VoxelType::f64) return as(0.0);
+    if (type == VoxelType::f32) return as(0.0f);
+    if (type == VoxelType::i32) return as(std::int32_t(0));
+    return {};
   }
 
   bool scalarsAtVoxels(const std::vector<std::string>& parts) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,9 @@ struct LegacyHead {
   std::string array;
   std::int64_t components = 1;
   VoxelMeaning meaning = VoxelMeaning::scalar;
-  std::int64_t bytes = 0;  // where the voxels begin
+  std::int64_t bytes = 0;             // where the voxels begin
+  std::optional<double> time;         // of a field of the whole, which stands before the voxels
+  std::optional<std::int64_t> cycle;  // the same: the number of the step
 };
 
 /// Reads up to the first array of one number for each point or cell, or to that of the name. What lies behind it is

@@ -9,6 +9,7 @@
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
 #include "ingest/streams/text_stream.h"
+#include "ingest/volume_time.h"
 #include "umbrick/core/error.h"
 // Own code for legacy VTK files, since VTK's vtkStructuredPointsReader reads whole arrays and not slabs.
 #include "umbrick/ingest/vtk_volume.h"
@@ -39,6 +40,8 @@ std::unique_ptr<VoxelSource> openLegacyVtk(const fs::path& named, const PartChoi
   checkPlace(info, "ORIGIN and SPACING");
   addProvenance(info, path, "VTK structured points");
   if (!head.array.empty()) info.metadata["array_name"] = head.array;
+  stateTime(info, {.first = head.time}, {});
+  if (head.cycle) info.metadata["cycle"] = std::to_string(*head.cycle);
   VoxelLayout layout;
   layout.type = info.type;
   layout.endian = head.ascii ? std::endian::native : std::endian::big;

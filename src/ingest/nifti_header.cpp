@@ -56,6 +56,8 @@ NiftiHeader version1(const Fields& fields) {
   header.slope = fields.get<float>(112);
   header.inter = fields.get<float>(116);
   header.spaceUnit = fields.get<std::uint8_t>(123) & 7;
+  header.timeUnit = fields.get<std::uint8_t>(123) & 56;
+  header.timeOffset = fields.get<float>(136);
   header.qformCode = fields.get<std::int16_t>(252);
   header.sformCode = fields.get<std::int16_t>(254);
   fields.get<float>(256, header.quatern);
@@ -81,6 +83,8 @@ NiftiHeader version2(const Fields& fields) {
   fields.get<double>(376, header.qoffset);
   fields.get<double>(400, header.srow);
   header.spaceUnit = fields.get<std::int32_t>(500) & 7;
+  header.timeUnit = fields.get<std::int32_t>(500) & 56;
+  header.timeOffset = fields.get<double>(216);
   return header;
 }
 

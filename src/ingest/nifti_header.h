@@ -23,7 +23,9 @@ struct NiftiHeader {
   int intent = 0;  // intent_code: 1006 and 1007 vectors, 2003 and 2004 colours, 1002 labels
   std::int64_t voxOffset = 0;
   double slope = 0, inter = 0;
-  int spaceUnit = 0;  // code of xyzt_units: 1 metres, 2 millimetres, 3 microns
+  int spaceUnit = 0;      // code of xyzt_units: 1 metres, 2 millimetres, 3 microns
+  int timeUnit = 0;       // the same: 8 seconds, 16 milliseconds, 24 microseconds; others are no times
+  double timeOffset = 0;  // toffset, of the first volume
   int qformCode = 0, sformCode = 0;
   std::array<double, 3> quatern{}, qoffset{};
   std::array<double, 12> srow{};  // three rows of four

@@ -17,6 +17,7 @@
 #include "ingest/place.h"
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
+#include "ingest/volume_time.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -150,6 +151,16 @@ void place(const NiftiHeader& header, VolumeInfo& info) {
     useLengthUnit(info, header.spaceUnit == 1 ? 1000 : header.spaceUnit == 3 ? 1e-3 : 1);
 }
 
+// Volumes of one file are pixdim[4] apart, in the unit of xyzt_units.
+VolumeTimes niftiTimes(const NiftiHeader& header, const VolumeInfo& info) {
+  static constexpr std::array<const char*, 4> kUnits{"", "s", "ms", "us"};
+  const int unit = header.timeUnit / 8;
+  if (info.frames == 1 || unit < 1 || unit > 3 || !(header.pixdim[4] > 0)) return {};
+  VolumeTimes times{
+      .first = header.timeOffset, .step = header.pixdim[4], .unit = kUnits[static_cast<std::size_t>(unit)]};
+  return times;
+}
+
 }  // namespace
 
 std::unique_ptr<VoxelSource> openNifti(const fs::path& path, const PartChoice& parts, bool besideOnly, bool strict) {
@@ -197,6 +208,7 @@ std::unique_ptr<VoxelSource> openNifti(const fs::path& path, const PartChoice& p
   const bool nifti = header.kind != NiftiHeader::Kind::analyze;
   addProvenance(info, path, nifti ? "NIfTI" : "Analyze");
   place(header, info);
+  stateTime(info, niftiTimes(header, info), parts.frame);
   if (!trimmed(header.description).empty()) info.metadata["nifti_description"] = header.description;
   VoxelLayout layout{info.type, header.endian};
   const bool colours = header.datatype == 128 || header.datatype == 2304;  // which the standard never scales

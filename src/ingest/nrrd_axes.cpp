@@ -26,6 +26,7 @@ struct Axis {
   PartAxis part = PartAxis::unknown;
   VoxelMeaning meaning = VoxelMeaning::scalar;  // of components
   double spacing = 1;
+  bool spaced = false;  // the file states the spacing
   std::optional<double> min;
   bool cell = false;                    // cell-centred: `min` is the edge of the first voxel
   std::optional<glm::dvec3> direction;  // of space
@@ -143,6 +144,9 @@ class NrrdAxesReader {
       const int place = static_cast<int>(space.size());
       if (part == PartAxis::frames) {
         header_.frames = axis.size;
+        header_.times.first = axis.min;
+        if (axis.spaced) header_.times.step = axis.spacing;
+        header_.times.unit = axis.unit == "none" || axis.unit == "???" ? "" : axis.unit;
         header_.parts.frames = place;
         header_.parts.framesFirst = !components;
       } else {
@@ -175,6 +179,7 @@ class NrrdAxesReader {
       const auto spacing = known("spacings", text);
       if (spacing && !(*spacing > 0)) failNumber("spacings");
       axis.spacing = spacing.value_or(1);
+      axis.spaced = spacing.has_value();
     });
     eachAxis("axismins", axes, [&](Axis& axis, const std::string& text) { axis.min = known("axismins", text); });
     eachAxis("centers", axes, [](Axis& axis, const std::string& text) { axis.cell = lower(text) == "cell"; });

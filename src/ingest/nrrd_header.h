@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ingest/parts.h"
+#include "ingest/volume_time.h"
 #include "umbrick/ingest/voxel_source.h"
 
 namespace umbrick {
@@ -32,6 +33,7 @@ struct NrrdHeader {
   std::int64_t bytes = 0;                        // size of the header with its closing blank line
   glm::dmat4 indexToWorld{1};                    // in the unit of the file
   std::optional<glm::dvec3> millimetres;         // of that unit along each axis of the world, where it is known
+  VolumeTimes times;                             // of frames
   std::map<std::string, std::string> metadata;   // fields that do not change voxels, and the key/value pairs
 };
 

@@ -78,6 +78,7 @@ std::unique_ptr<VoxelSource> openNrrd(const fs::path& path, bool strict, const P
   info.vectorToWorld = header->measurementFrame;
   info.notes = header->notes;
   info.metadata = header->metadata;
+  stateTime(info, header->times, parts.frame);
   if (header->millimetres) useLengthUnit(info, *header->millimetres);
   info.labels = slicerSegments(info.metadata);
   if (info.labels.empty()) guessMeaning(info);

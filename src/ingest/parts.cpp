@@ -10,6 +10,7 @@
 
 #include "ingest/header_text.h"
 #include "ingest/streams/dense_source.h"
+#include "ingest/volume_time.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -288,6 +289,7 @@ OpenArray openOnceMore(std::unique_ptr<ByteStream> first, OpenArray again) {
 std::unique_ptr<VoxelSource> openParts(VolumeInfo info, const PartAxes& axes, const VoxelLayout& layout,
                                        const PartChoice& choice, const OpenArray& open, const std::string& hint) {
   checkChoice(info, choice);
+  stateTime(info, {}, choice.frame);
   if (info.components == 1 && info.frames == 1)
     return std::make_unique<DenseSource>(std::move(info), layout, open(), hint);
   const std::int64_t width = voxelBytes(info.type), frame = choice.frame.value_or(0);

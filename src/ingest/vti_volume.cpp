@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -19,6 +20,7 @@
 #include "ingest/provenance.h"
 #include "ingest/streams/dense_source.h"
 #include "ingest/streams/text_stream.h"
+#include "ingest/volume_time.h"
 #include "ingest/vtk_blocks.h"
 #include "umbrick/core/error.h"
 // Expat parses the XML; what it says and the blocks of the arrays are read by own code. VTK's vtkXMLImageDataReader can
@@ -47,6 +49,7 @@ struct VtiHead {
   Attributes file, image;
   std::vector<Attributes> pieces;
   std::vector<VtiArray> arrays;
+  std::optional<VtiArray> time;        // the number TimeValue of the whole
   std::string scalars[2], vectors[2];  // names of the scalars and vectors of points and cells
   std::optional<std::int64_t> appended;
   bool appendedIsRaw = false;
@@ -95,6 +98,9 @@ class VtiHeadReader {
     }
     if (name == "DataArray" && section_ && !get(attributes, "type").empty())
       head_.arrays.push_back({std::move(attributes), *section_ == 1, behind, behind});
+    else if (name == "DataArray" && fieldData_ && get(attributes, "Name") == "TimeValue")
+      head_.time = VtiArray{std::move(attributes), false, behind, behind};
+    if (name == "FieldData") fieldData_ = true;
     if (name == "AppendedData") {
       head_.appended = behind;
       head_.appendedIsRaw = get(attributes, "encoding") == "raw";
@@ -104,6 +110,9 @@ class VtiHeadReader {
 
   void end(const std::string& name) {
     if (name == "DataArray" && section_ && !head_.arrays.empty()) head_.arrays.back().end = here();
+    if (name == "DataArray" && fieldData_ && head_.time && head_.time->end == head_.time->begin)
+      head_.time->end = here();
+    if (name == "FieldData") fieldData_ = false;
     if (name == "PointData" || name == "CellData") section_.reset();
   }
 
@@ -114,6 +123,7 @@ class VtiHeadReader {
   std::unique_ptr<std::remove_pointer_t<XML_Parser>, Free> parser_{XML_ParserCreate(nullptr)};
   VtiHead head_;
   std::optional<std::size_t> section_;  // of point or cell data, when inside one
+  bool fieldData_ = false;
 };
 
 using enum VoxelType;
@@ -274,6 +284,29 @@ std::unique_ptr<ByteStream> voxelsOf(const fs::path& path, const VtiHead& head, 
   return vtkBlockStream(std::move(bytes), blocks, *arrayBytes(info), path.string());
 }
 
+// Reads TimeValue, which VTK's writers give to what they write of a step. The file is good without: where it cannot be
+// read, there is no time.
+VolumeTimes vtiTime(const fs::path& path, const VtiHead& head) {
+  if (!head.time) return {};
+  try {
+    VolumeInfo one;
+    one.dims = glm::i64vec3(1);
+    VoxelLayout layout;
+    layout.type = one.type = vtiTypeOf(path, get(head.time->attributes, "type"));
+    if (one.type != VoxelType::f64 && one.type != VoxelType::f32) return {};
+    std::array<std::byte, 8> bytes{};
+    const std::span<std::byte> stored(bytes.data(), static_cast<std::size_t>(voxelBytes(one.type)));
+    if (voxelsOf(path, head, *head.time, one, layout)->read(stored) < stored.size()) return {};
+    normaliseVoxels(layout, stored);
+    if (one.type == VoxelType::f64) return {.first = std::bit_cast<double>(bytes)};
+    std::array<std::byte, 4> half{};
+    std::copy(stored.begin(), stored.end(), half.begin());
+    return {.first = static_cast<double>(std::bit_cast<float>(half))};
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 std::vector<ArrayRow> listVtiArrays(const fs::path& path) {
@@ -311,6 +344,7 @@ std::unique_ptr<VoxelSource> openVti(const fs::path& named, const PartChoice& pa
               get(head.image, "WholeExtent"));
   placeImage(path, head, extent, array.cells, info);
   addProvenance(info, path, "VTK ImageData");
+  stateTime(info, vtiTime(path, head), {});
   if (const std::string name = get(array.attributes, "Name"); !name.empty()) info.metadata["array_name"] = name;
   if (info.components == 3 && head.vectors[array.cells ? 1 : 0] == get(array.attributes, "Name"))
     info.meaning = VoxelMeaning::vector;

@@ -60,6 +60,24 @@ TEST_CASE("Frames become what each is converted to alone, volumes and grids", "[
   CHECK(written == std::vector<std::int64_t>{1, 2, 5, 2, 5});
 }
 
+TEST_CASE("Grids of frames keep the number of their frame, as text, where they have none", "[convert]") {
+  const TemporaryFolder folder;
+  writeFrames(folder, {3, 12});
+  const auto frameOf = [&](const char* name) { return readScalarGrid(folder.path() / name).metadata("frame"); };
+  const auto ignore = [](const FrameFiles&, const ConvertReport&) {};
+  convertFrames(framesIn(folder).frames, noisyOptions(), ignore);
+  CHECK(frameOf("o3.vdb") == "3");
+  CHECK(frameOf("o12.vdb") == "12");
+  // Grids that have a number keep it; one that was converted alone has none.
+  std::filesystem::rename(folder.path() / "o3.vdb", folder.path() / "o5.vdb");
+  convert({folder.path() / "v3.raw"}, folder.path() / "o7.vdb", noisyOptions());
+  CHECK(frameOf("o7.vdb").empty());
+  convertFrames(findFrames(folder.path() / "o%d.vdb", folder.path() / "p%d.vdb", {}).frames, {}, ignore);
+  CHECK(frameOf("p5.vdb") == "3");
+  CHECK(frameOf("p7.vdb") == "7");
+  CHECK(frameOf("p12.vdb") == "12");
+}
+
 TEST_CASE("Frames that are missing are told as ranges of those wanted", "[convert]") {
   const TemporaryFolder folder;
   writeFrames(folder, {1, 2, 5, 9});

@@ -31,7 +31,8 @@ struct FrameSequence {
   std::vector<FrameRange> missing;  // numbers that are wanted, or else between the first and the last, and not there
 };
 
-/// Finds the frames of a sequence.
+/// Finds the frames of a sequence. Grids of converted frames have their number as metadata `frame`, unless they have
+/// one already.
 /// @param input   a pattern of numbered files: isFramePattern
 /// @param output  a pattern too; empty: the frames are not converted, and have no outputs
 /// @param wanted  where there is none, all frames there are

@@ -46,7 +46,10 @@ struct VolumeInfo {
   /// them, there are length_unit (mm, or um, nm or pm where OpenVDB cannot hold voxels that small in mm), modality,
   /// rescale (a slope and an intercept that are already applied) and space, which says which way the axes of the world
   /// point: "LPS" is towards left, posterior and superior of the patient, "RAS" towards right, anterior and superior.
-  /// Spaces are never converted. Other keys belong to one format.
+  /// Spaces are never converted. Of time there are, as far as the file tells: frame, the number of the volume in a file
+  /// of several, counted from 0, or its TemporalPositionIdentifier (DICOM); time, when the volume is, and time_step,
+  /// from one to the next, both in time_unit, as the file spells it; cycle, the number of the solver's step (legacy
+  /// VTK); acquisition_date and acquisition_time (DICOM). Other keys belong to one format.
   std::map<std::string, std::string> metadata;
   /// What a user should know of how the file was read: what was chosen, guessed or left out, a line each, without the
   /// name of the file.

@@ -21,6 +21,7 @@
 #include "ingest/provenance.h"
 #include "ingest/streams/byte_stream.h"
 #include "ingest/streams/dense_source.h"
+#include "ingest/volume_time.h"
 #include "umbrick/core/error.h"
 
 namespace umbrick {
@@ -179,6 +180,17 @@ void joinNotes(const std::vector<DicomFile>& files, std::vector<std::string>& no
   }
 }
 
+// Returns the text that all slices have for a tag; empty where they differ or one has none.
+std::string commonValue(const DicomStack& stack, std::uint32_t tag) {
+  const std::string* common = nullptr;
+  for (const DicomSlice& slice : stack.slices()) {
+    const std::string* value = valueOf(*slice.file, *slice.frame, tag);
+    if (!value || (common && *value != *common)) return {};
+    common = value;
+  }
+  return common ? std::string(trimmed(*common)) : std::string();
+}
+
 void describe(const DicomStack& stack, VolumeInfo& info) {
   const DicomFile& file = stack.files().front();
   info.metadata["space"] = "LPS";
@@ -189,6 +201,13 @@ void describe(const DicomStack& stack, VolumeInfo& info) {
   keep("modality", file.modality);
   keep("series_uid", file.seriesUid);
   keep("series_description", file.seriesDescription);
+  // DICOM PS3.3 C.7.6.17 and C.7.6.18.1: when in a cycle the volume is, and when it was acquired.
+  constexpr std::uint32_t kPosition = 0x00200100, kTrigger = 0x00181060, kDate = 0x00080022, kTime = 0x00080032;
+  keep("frame", commonValue(stack, kPosition));
+  if (const auto trigger = number(commonValue(stack, kTrigger)))
+    stateTime(info, {.first = *trigger, .unit = "ms"}, {});  // TriggerTime
+  keep("acquisition_date", commonValue(stack, kDate));
+  keep("acquisition_time", commonValue(stack, kTime));
   const bool grey = info.components == 1;
   keep("value_unit", !grey ? "" : file.valueUnit.empty() && file.modality == "CT" ? "HU" : file.valueUnit);
   if (!grey) keep("photometric", file.pixels.photometric);
