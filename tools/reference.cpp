@@ -78,7 +78,10 @@ int runReference(ReferenceCommand& command) {
   checkOutputs(output);
   StopRequest stop;
   ProgressBar bar("loading " + command.scene->input.filename().string());
-  const OpenedScene opened = openScene(*command.scene, makeScene(*command.scene, {.model = Model::cone}),
+  // Monte Carlo integrates no light of a grid, so that none is looked for.
+  const SceneDefaults defaults{.model = Model::cone,
+                               .emission = command.integrator == nameOf(kIntegrators, Integrator::quadrature)};
+  const OpenedScene opened = openScene(*command.scene, makeScene(*command.scene, defaults),
                                        showShare(bar, stop, "interrupted; nothing was written"));
   const Scene& scene = opened.scene;
   const Volume& volume = *opened.volume;

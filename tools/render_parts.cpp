@@ -14,7 +14,7 @@
 namespace umbrick::tools {
 
 Scene askedScene(const RenderCommand& command) {
-  Scene scene = makeScene(*command.scene, {.model = Model::cone}, true);
+  Scene scene = makeScene(*command.scene, {.model = Model::cone, .emission = true}, true);
   const AskedPicture picture{command.progressive(), command.targetError.has_value(), command.backend == "cpu"};
   asUsage([&] { fitToPicture(*command.scene, picture, scene); });
   return scene;

@@ -231,6 +231,24 @@ std::shared_ptr<SceneOptions> addSceneOptions(CLI::App& command, const OptionNam
   command.add_option("--sigma-scale", o.sigmaScale, "multiply the extinction [1]")->group(medium);
   addFieldOptions(command, o, medium);
 
+  const std::string emission = "Emission";
+  std::string names;
+  for (const std::string_view name : emissionGridNames()) names.append(names.empty() ? "" : ", ").append(name);
+  command
+      .add_option("--emission-grid", o.volume.emissionGrid,
+                  "of a file of grids: the one that emits light beside the one that is shown, none, or auto: the first "
+                  "that is above 0 somewhere of " +
+                      names + " [render, reference and view without a transfer function: auto; else none]")
+      ->group(emission);
+  command
+      .add_option(
+          "--emission-tf", o.emissionTransfer,
+          "what values of --emission-grid emit: a preset or a JSON file, whose albedo times sigma_t is radiance "
+          "per world unit; makes --emission-kind table")
+      ->type_name(kPresetOrPath)
+      ->group(emission);
+  addFieldOptions(command, o, emission);
+
   addFieldOptions(command, o, "Camera");
   command.add_flag("--orthographic", o.orthographic, "parallel view")->group("Camera");
   command

@@ -65,7 +65,7 @@ std::shared_ptr<const view::ViewSequence> sequenceOf(const FrameJob& job, const 
 // Opens a volume, or all frames of a sequence, of which the first one that holds something is shown first.
 view::OpenedVolume openAll(const SceneOptions& options, const FrameOptions& frames,
                            const std::function<void(double)>& progress) {
-  const Scene scene = makeScene(options, {.model = Model::cone});
+  const Scene scene = makeScene(options, {.model = Model::cone, .emission = true});
   refuseSeveralNumbers(scene.volume.file);
   const std::optional<FrameJob> job = findSequence(scene.volume, options.volume.frame.has_value(), frames);
   if (!job && !frames.range.empty())

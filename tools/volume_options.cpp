@@ -90,6 +90,8 @@ void addVolumeOptions(CLI::App& command, VolumeOptions& o) {
 
 namespace {
 
+constexpr const char* kNoGrid = "none";
+
 // The part that is shown stands behind the name of the grid: "v.x", or "[3].x" of a volume.
 void applyParts(const VolumeOptions& o, VolumeReference& volume) {
   if (o.frame && isFramePattern(volume.file))
@@ -106,6 +108,7 @@ void applyParts(const VolumeOptions& o, VolumeReference& volume) {
 void applyVolumeOptions(const VolumeOptions& o, VolumeReference& volume) {
   if (o.besideOnly) volume.besideOnly = true;
   if (o.grid) volume.grid = *o.grid;
+  if (o.emissionGrid) volume.emissionGrid = *o.emissionGrid == kNoGrid ? std::string() : *o.emissionGrid;
   applyParts(o, volume);
   if (!o.series.empty()) volume.series = o.series;
   if (!o.where.empty()) volume.where = o.where;

@@ -12,7 +12,7 @@
 namespace umbrick::tools {
 
 struct VolumeOptions {
-  std::optional<std::string> grid;
+  std::optional<std::string> grid, emissionGrid;
   std::vector<std::string> where;
   std::string component;              // of chooseComponent; empty: not given
   std::optional<std::int64_t> frame;  // of a file of several volumes, or the number of a file

@@ -18,6 +18,7 @@ const int kLightUnit = 6;              // light at voxels, beside the atlas
 const int kSlotsUnit = 7;              // slots of bricks by cell, see brick_walk.glsl
 const int kVisibilityUnit = 8;         // the light that arrives
 const int kVisibilityWeightUnit = 9;   // how much of that counts, see window_step.comp
+const int kEmissionUnit = 16;          // what a second grid emits, see glow.glsl
 const int kMoreAtlasUnit = 10;         // of rays: the second texture of the atlas, and those that follow
 const int kMoreLightUnit = 13;         // the same for light
 const int kBoundsUnit = 5;             // of projections: what values a cell may have

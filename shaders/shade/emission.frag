@@ -12,6 +12,7 @@ layout(location = 1) out vec4 aux;
 void main() {
   vec2 p = screenPoint();
   if (kStack == 2 && !liesInStack(p)) discard;
-  eye = evaluateSlab(slab_centre).eye;
+  Slab slab = evaluateSlab(slab_centre);
+  eye = vec4(withEmission(slab.eye.rgb, slab.emitted), slab.eye.a);
   if (kAux != 0) aux = vec4(eye.a, eye.a * viewDepth(slab_centre, p), 0.0, eye.a);
 }

@@ -37,9 +37,10 @@ void main() {
   vec3 front = slabMiddle(slab_centre, p) + kept.x * half_step;
   vec4 sum = vec4(0.0);
   float seen = 0.0;  // visibility, weighted by opacity
+  vec3 glow = vec3(0.0);
   End front_end = endAt(front);
   for (int i = 0; i < kSegments; ++i) {
-    Slab piece = Slab(vec4(0.0), 0.0);
+    Slab piece = emptySlab();
     vec3 middle = front + (float(i) + 0.5) * segment;
     if (kQuadrature == 1 || kQuadrature == 3) {
       addMiddle(piece, endAt(middle), ray);
@@ -52,7 +53,8 @@ void main() {
     float through = 1.0 - sum.a;
     sum += through * vec4(piece.eye.rgb * arriving.rgb, piece.eye.a);
     seen += through * piece.eye.a * arriving.a;
+    glow += through * piece.emitted;
   }
-  eye = vec4(sum.rgb * whole_light / brightest, sum.a);
+  eye = vec4(withEmission(sum.rgb * whole_light / brightest, glow), sum.a);
   if (kAux != 0) aux = vec4(seen, eye.a * viewDepth(slab_centre, p), 0.0, eye.a);
 }

@@ -24,7 +24,7 @@ float codeAt(ivec3 texel, int number) {
   for (int i = 1; i < kTextures; ++i)
     if (number == i) value = texelFetch(more_atlas[i - 1], texel, 0).rg;
   if (kQuadrature > 1) {
-    End end = endOf(value);
+    End end = endOf(vec3(value, 0.0));
     return mediumIn(cellAt(end.stretch), end.value).a * steps_per_code;
   }
   return kCodes > 0 ? roundEven(value.r * float(kCodes)) : value.r;

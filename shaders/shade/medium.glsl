@@ -5,7 +5,9 @@
 //               2  2D function; value and gradient magnitude run linearly from front to back
 //               3  2D function; the medium at the middle
 // SPDX-License-Identifier: Apache-2.0
+#include "optics/slab.glsl"
 #include "shade/atlas.glsl"
+#include "shade/glow.glsl"
 // RGBA32F, one column for each stretch of the values; the last stretch is repeated up to a power of two. Ends are in
 // texel units, and 1e38 stands for infinity:
 //   row 0     lower end, upper end; 1D: sigma_t at the lower end and at the upper one, 1/world unit
@@ -20,7 +22,10 @@ uniform vec3 empty_texel;    // x: what empty space is read as; y: what rounding
 struct Slab {
   vec4 eye;   // premultiplied colour for light of radiance 1, and opacity
   float tau;  // optical depth
+  vec3 emitted;  // radiance of a second grid that gets out, kEmission
 };
+
+Slab emptySlab() { return Slab(vec4(0.0), 0.0, vec3(0.0)); }
 
 void addPiece(inout Slab slab, vec3 albedo, float tau, float alpha) {
   slab.eye += (1.0 - slab.eye.a) * alpha * vec4(albedo, 1.0);
@@ -83,18 +88,20 @@ int valueStretchOf(float value) {
 struct End {
   vec2 value;    // value and gradient magnitude, texel units
   ivec2 stretch;
+  float glow;    // value of a second grid
 };
 
-End endOf(vec2 texel) {
+End endOf(vec3 texel) {
   End end;
-  end.value = texel;
+  end.value = texel.rg;
+  end.glow = kEmission != 0 ? texel.b : 0.0;
   end.value.r = clamp(snapped(end.value.r), -1e38, 1e38);
   end.stretch.x = valueStretchOf(end.value.r);
   end.stretch.y = kQuadrature > 1 ? stretchOf(end.value.g, 1, kGradientSteps) : 0;
   return end;
 }
 
-End endAt(vec3 point) { return endOf(textureLod(atlas, point, 0.0).rg); }
+End endAt(vec3 point) { return endOf(textureLod(atlas, point, 0.0).rgb); }
 
 // Adds a piece of length `ray` within one stretch, over which the value runs from `front` to `back`.
 void addStretch(inout Slab slab, Stretch stretch, float front, float back, float ray) {
@@ -173,20 +180,31 @@ void addPath(inout Slab slab, End front, End back, float ray) {
   }
 }
 
+// Adds what a segment emits, once its medium is added. What gets out of it is what a segment of the same optical depth
+// lets out that is the same all along.
+// @param before  the slab without the segment
+void addEmitted(inout Slab slab, Slab before, float from, float to, float ray) {
+  if (kEmission == 0) return;
+  slab.emitted += (1.0 - before.eye.a) * ray * slabFactor(slab.tau - before.tau) * meanEmission(from, to);
+}
+
 // Adds a segment of length `ray`, world units, between two points of which the ends are known.
 void addSegment(inout Slab slab, End front, End back, float ray) {
+  Slab before = slab;
   if (kQuadrature == 0)
     addRamp(slab, front, back, ray);
   else
     addPath(slab, front, back, ray);
+  addEmitted(slab, before, front.glow, back.glow, ray);
 }
 
 // Adds a segment whose medium is that at its middle.
 void addMiddle(inout Slab slab, End middle, float ray) {
+  Slab before = slab;
   if (kQuadrature == 1) {
     addStretch(slab, stretchAt(middle.stretch.x), middle.value.r, middle.value.r, ray);
   } else {
     vec4 medium = mediumIn(cellAt(middle.stretch), middle.value);
     addPiece(slab, medium.rgb, medium.a * ray, oneMinusExp(medium.a * ray));
-  }
+  }  addEmitted(slab, before, middle.glow, middle.glow, ray);
 }

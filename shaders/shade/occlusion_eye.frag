@@ -13,6 +13,6 @@ layout(location = 1) out vec4 aux;
 void main() {
   Slab slab = evaluateSlab(slab_centre);
   float seen = visibility(previousPoint());
-  eye = vec4(slab.eye.rgb * seen, slab.eye.a);
+  eye = vec4(withEmission(slab.eye.rgb * seen, slab.emitted), slab.eye.a);
   if (kAux != 0) aux = vec4(eye.a * seen, eye.a * slab_centre.w, 0.0, eye.a);
 }

@@ -16,7 +16,7 @@ void main() {
   Slab slab = evaluateSlab(slab_centre);
   vec2 uv = previousPoint();
   float seen = visibility(uv);
-  eye = vec4(slab.eye.rgb * seen, slab.eye.a);
+  eye = vec4(withEmission(slab.eye.rgb * seen, slab.emitted), slab.eye.a);
   occlusion = occlusionBehind(uv, slab.tau / rayStretch(screenPoint()), 2.0 * half_spacing);
   if (kAux != 0) aux = vec4(eye.a * seen, eye.a * slab_centre.w, 0.0, eye.a);
 }

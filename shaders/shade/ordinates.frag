@@ -33,6 +33,7 @@ void main() {
   float stretch = rayStretch(p);
   float path = weighted > 0.0 ? (share / weighted - 1.0) / stretch : 1.0;
   float self = selfShadow(slab.tau, path);
-  eye = vec4(slab.eye.rgb * self * (kColoured != 0 ? light.rgb : share * whole_light) / brightest, slab.eye.a);
+  vec3 scattered = slab.eye.rgb * self * (kColoured != 0 ? light.rgb : share * whole_light) / brightest;
+  eye = vec4(withEmission(scattered, slab.emitted), slab.eye.a);
   if (kAux != 0) aux = vec4(eye.a * self * share, eye.a * slab_centre.w, 0.0, eye.a);
 }

@@ -23,16 +23,16 @@ layout(location = 0) out vec4 eye;
 layout(location = 1) out float count;
 layout(location = 2) out vec4 aux;
 
-vec2 texelAt(vec3 point, int number) {
-  vec2 texel = textureLod(atlas, point, 0.0).rg;
+vec3 texelAt(vec3 point, int number) {
+  vec3 texel = textureLod(atlas, point, 0.0).rgb;
   for (int i = 1; i < kTextures; ++i)
-    if (number == i) texel = textureLod(more_atlas[i - 1], point, 0.0).rg;
+    if (number == i) texel = textureLod(more_atlas[i - 1], point, 0.0).rgb;
   return texel;
 }
 
-// Tells whether a segment between two values may hold any medium. Most segments of most volumes hold none.
+// Tells whether a segment between two values may hold any medium, or emit something. Most segments of most volumes hold none.
 bool shows(End front, End back) {
-  if (kQuadrature > 1 || front.stretch.x != back.stretch.x) return true;
+  if (kEmission != 0 || kQuadrature > 1 || front.stretch.x != back.stretch.x) return true;
   vec4 ends = stretchAt(front.stretch.x).ends;
   return max(ends.b, ends.a) > 0.0;
 }
@@ -47,6 +47,7 @@ void main() {
   float length_of_one = ray.stretch * segment_depth, full = 1.0 - saturation;
   vec4 sum = vec4(0.0);
   vec2 seen = vec2(0.0);  // visibility and depth, weighted by opacity
+  vec3 glow = vec3(0.0);
   float segments = 0.0, k = ray.segments.x, last = ray.segments.y;
   while (k < last) {
     uvec4 slot = slotOf(ray, k);
@@ -68,7 +69,7 @@ void main() {
       End back_end = endOf(texelAt(at + (kQuadrature == 1 || kQuadrature == 3 ? middle : back) * step, number));
       if (kQuadrature == 1 || kQuadrature == 3) front_end = back_end;
       if (shows(front_end, back_end)) {
-        Slab piece = Slab(vec4(0.0), 0.0);
+        Slab piece = emptySlab();
         if (kQuadrature == 1 || kQuadrature == 3)
           addMiddle(piece, back_end, length_of_this);
         else
@@ -80,6 +81,7 @@ void main() {
                                            arriving.rgb), 1.0);
         float through = 1.0 - sum.a;
         sum += through * vec4(piece.eye.rgb * arriving.rgb, piece.eye.a);
+        glow += through * piece.emitted;
         seen += through * piece.eye.a * vec2(arriving.a, first_depth + middle * segment_depth);
       }
       front = back;
@@ -90,6 +92,7 @@ void main() {
     }
   }
   eye = kLit != 0 && kShaded == 0 ? vec4(sum.rgb * whole_light, sum.a) : sum;
+  eye.rgb = withEmission(eye.rgb, glow);
   count = segments;
   if (kAux != 0) aux = vec4(seen, 0.0, sum.a);
 }

@@ -20,7 +20,7 @@ Slab evaluateSlab(vec4 slab_centre) {
   float ray = rayStretch(p) * halfDepth(p) * thickness / float(kSegments);  // world length of a segment
   vec3 segment = half_step * (thickness / float(kSegments));
   vec3 front = middle + kept.x * half_step;
-  Slab slab = Slab(vec4(0.0), 0.0);
+  Slab slab = emptySlab();
   if (kQuadrature == 1 || kQuadrature == 3) {
     for (int i = 0; i < kSegments; ++i) addMiddle(slab, endAt(front + (float(i) + 0.5) * segment), ray);
     return slab;

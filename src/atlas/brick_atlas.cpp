@@ -21,7 +21,9 @@
 namespace umbrick {
 namespace {
 
-bool isUniform(const Brick& brick) { return brick.uniform() && brick.gradient.min == brick.gradient.max; }
+bool isUniform(const Brick& brick) {
+  return brick.uniform() && brick.gradient.min == brick.gradient.max && brick.emission.min == brick.emission.max;
+}
 
 }  // namespace
 
@@ -41,9 +43,7 @@ BrickAtlas::BrickAtlas(const GlContext& context, const Bricks& volume, std::vect
   reserve(slotsForAll_);
 }
 
-std::uint64_t BrickAtlas::slotBytes() const {
-  return volume_.layout.voxels() * texelFormat(format_, volume_.hasGradients).bytes;
-}
+std::uint64_t BrickAtlas::slotBytes() const { return volume_.layout.voxels() * texelFormat(format_, volume_).bytes; }
 
 void BrickAtlas::checkLimits(int maxEdge) {
   const glm::ivec3 edge = volume_.layout.edge();
@@ -62,7 +62,7 @@ std::size_t BrickAtlas::slotsFor(std::span<const std::int32_t> bricks, SlotShari
   std::size_t slots = 0;
   for (const std::int32_t index : bricks) {
     const Brick& brick = bricks_[static_cast<std::size_t>(index)];
-    if (!isUniform(brick) || values.emplace(brick.value.min, brick.gradient.min).second) ++slots;
+    if (!isUniform(brick) || values.emplace(brick.value.min, brick.gradient.min, brick.emission.min).second) ++slots;
   }
   return slots;
 }
@@ -113,7 +113,7 @@ void BrickAtlas::reserve(std::size_t wanted) {
   if (!fitBoth(slots)) clear();
   const std::size_t kept = slots_;
   const Plan plan = planTextures(slots);
-  const TexelFormat texel = texelFormat(format_, volume_.hasGradients);
+  const TexelFormat texel = texelFormat(format_, volume_);
   std::vector<GlTexture> textures;
   const auto perTexture = static_cast<std::size_t>(plan.slotGrid.x * plan.slotGrid.y * plan.slotGrid.z);
   for (std::size_t held = 0; held < slots; held += perTexture)
@@ -166,7 +166,7 @@ BrickAtlas::Slot BrickAtlas::slot(std::int32_t brick) const {
 
 std::uint64_t BrickAtlas::textureBytes() const {
   return textures_.size() * std::uint64_t(plan_.size.x) * std::uint64_t(plan_.size.y) * std::uint64_t(plan_.size.z) *
-         texelFormat(format_, volume_.hasGradients).bytes;
+         texelFormat(format_, volume_).bytes;
 }
 
 bool BrickAtlas::mayShare(std::int32_t brick, SlotSharing sharing) const {
@@ -178,7 +178,7 @@ void BrickAtlas::setApart(std::int32_t brick) {
   const Brick& one = bricks_[static_cast<std::size_t>(brick)];
   if (!isUniform(one) || !isResident(brick)) return;
   if (users_[static_cast<std::size_t>(slotNumber(brick))] > 1) return release(brick);
-  const auto shared = uniform_.find({one.value.min, one.gradient.min});
+  const auto shared = uniform_.find({one.value.min, one.gradient.min, one.emission.min});
   if (shared != uniform_.end() && shared->second == slotNumber(brick)) uniform_.erase(shared);
 }
 
@@ -191,7 +191,7 @@ void BrickAtlas::require(std::span<const std::int32_t> bricks, SlotSharing shari
   std::size_t wanted = 0;
   for (const std::int32_t brick : bricks) {
     const Brick& one = bricks_[static_cast<std::size_t>(brick)];
-    const UniformKey key{one.value.min, one.gradient.min};
+    const UniformKey key{one.value.min, one.gradient.min, one.emission.min};
     const bool mayShareSlot = mayShare(brick, sharing);
     const auto shared = mayShareSlot ? uniform_.find(key) : uniform_.end();
     if (isResident(brick) || shared != uniform_.end()) {
@@ -207,7 +207,7 @@ void BrickAtlas::require(std::span<const std::int32_t> bricks, SlotSharing shari
   for (const std::int32_t brick : missing) {
     if (isResident(brick)) continue;  // listed twice
     const Brick& one = bricks_[static_cast<std::size_t>(brick)];
-    const UniformKey key{one.value.min, one.gradient.min};
+    const UniformKey key{one.value.min, one.gradient.min, one.emission.min};
     const bool mayShareSlot = mayShare(brick, sharing);
     const auto shared = mayShareSlot ? uniform_.find(key) : uniform_.end();
     std::int32_t slot;
@@ -255,7 +255,7 @@ void BrickAtlas::release(std::int32_t brick) {
   if (slot < 0) return;
   if (--users_[static_cast<std::size_t>(slot)] == 0) {
     const Brick& held = bricks_[static_cast<std::size_t>(brick)];
-    const auto shared = uniform_.find({held.value.min, held.gradient.min});
+    const auto shared = uniform_.find({held.value.min, held.gradient.min, held.emission.min});
     if (isUniform(held) && shared != uniform_.end() && shared->second == slot) uniform_.erase(shared);
     free_.push_back(slot);
   }
@@ -263,7 +263,7 @@ void BrickAtlas::release(std::int32_t brick) {
 }
 
 void BrickAtlas::upload(std::span<const std::pair<std::int32_t, std::int32_t>> brickAndSlot) {
-  const TexelFormat texel = texelFormat(format_, volume_.hasGradients);
+  const TexelFormat texel = texelFormat(format_, volume_);
   const std::size_t voxels = volume_.layout.voxels();
   const glm::ivec3 edge = volume_.layout.edge();
   // Bricks are read and encoded by all cores, some at a time to bound the memory. This thread then hands them
@@ -271,7 +271,7 @@ void BrickAtlas::upload(std::span<const std::pair<std::int32_t, std::int32_t>> b
   const std::size_t batch = std::clamp<std::size_t>((std::size_t{64} << 20) / (voxels * texel.bytes), 1, 256);
   std::vector<std::byte> staging(std::min(batch, brickAndSlot.size()) * voxels * texel.bytes);
   struct Scratch {
-    std::vector<float> values, gradients;
+    std::vector<float> values, gradients, emission;
     double error = 0;
   };
   tbb::enumerable_thread_specific<Scratch> scratches;
@@ -283,11 +283,13 @@ void BrickAtlas::upload(std::span<const std::pair<std::int32_t, std::int32_t>> b
       Scratch& scratch = scratches.local();
       scratch.values.resize(voxels);
       if (volume_.hasGradients) scratch.gradients.resize(voxels);
+      if (volume_.hasEmission) scratch.emission.resize(voxels);
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         const Brick& brick = bricks_[static_cast<std::size_t>(brickAndSlot[first + i].first)];
         volume_.read(brick.origin, scratch.values, scratch.gradients);
+        if (volume_.hasEmission) volume_.readEmission(brick.origin, scratch.emission);
         const double error = encodeTexels(scratch.values, scratch.gradients, valueScale_, format_,
-                                          staging.data() + i * voxels * texel.bytes);
+                                          staging.data() + i * voxels * texel.bytes, scratch.emission);
         scratch.error = std::max(scratch.error, error);
       }
     });

@@ -6,7 +6,10 @@
 
 namespace umbrick {
 
-TexelFormat texelFormat(VoxelFormat format, bool gradients) {
+TexelFormat texelFormat(VoxelFormat format, const Bricks& volume) {
+  // A second grid has the third channel, also where there are no gradients, which are 0 then.
+  if (volume.hasEmission) return {GL_RGB32F, GL_RGB, GL_FLOAT, 3 * sizeof(float)};
+  const bool gradients = volume.hasGradients;
   const GLenum layout = gradients ? GL_RG : GL_RED;
   const std::size_t channels = gradients ? 2 : 1;
   switch (format) {
@@ -24,14 +27,16 @@ TexelFormat texelFormat(VoxelFormat format, bool gradients) {
 
 VoxelFormat parseVoxelFormat(const std::string& name, const Bricks& volume) {
   if (name == "auto") {
-    // Gradient magnitudes are not whole numbers, so no smaller format holds them exactly.
-    if (volume.hasGradients) return VoxelFormat::float32;
+    // Gradient magnitudes are not whole numbers, nor are temperatures, so no smaller format holds them exactly.
+    if (volume.hasGradients || volume.hasEmission) return VoxelFormat::float32;
     // Software and hardware alike filter 8-bit texels with 8-bit weights, which keeps voxels exact but makes
     // steps between them.
     return volume.exactFormat == VoxelFormat::unorm8 ? VoxelFormat::unorm16 : volume.exactFormat;
   }
   for (const VoxelFormat format : {VoxelFormat::unorm8, VoxelFormat::unorm16, VoxelFormat::half, VoxelFormat::float32})
     if (name == voxelFormatName(format)) {
+      if (volume.hasEmission && format != VoxelFormat::float32)
+        throw InvalidArgument("format: " + name + " does not hold the values of a grid that emits light; use float32");
       if (volume.hasGradients && (format == VoxelFormat::unorm8 || format == VoxelFormat::unorm16))
         throw InvalidArgument("format: " + name +
                               " cannot hold gradient magnitudes of a 2D transfer function; use half or float32");

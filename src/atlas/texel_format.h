@@ -1,4 +1,4 @@
-// How voxels are stored in texels of one or two channels (value; value and gradient magnitude).
+// How voxels are stored in texels of one to three channels: value, gradient magnitude, value of a second grid.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -11,11 +11,11 @@ namespace umbrick {
 
 struct TexelFormat {
   GLenum internal;    // such as GL_R16
-  GLenum layout;      // GL_RED or GL_RG
+  GLenum layout;      // GL_RED, GL_RG or GL_RGB
   GLenum type;        // of one component
   std::size_t bytes;  // of one texel
 };
 
-TexelFormat texelFormat(VoxelFormat format, bool gradients);
+TexelFormat texelFormat(VoxelFormat format, const Bricks& volume);
 
 }  // namespace umbrick

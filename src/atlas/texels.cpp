@@ -4,6 +4,7 @@
 #include <Imath/half.h>
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "umbrick/atlas/brick_atlas.h"
 
@@ -78,7 +79,7 @@ double gradientTexelOf(float gradient, VoxelFormat format) {
 }
 
 double encodeTexels(std::span<const float> values, std::span<const float> gradients, const TexelScale& scale,
-                    VoxelFormat format, std::byte* texels) {
+                    VoxelFormat format, std::byte* texels, std::span<const float> emission) {
   const bool exact = scale.rounding == 0;
   double error = 0;
   const auto store = [&](auto codeOf, auto gradientCodeOf, auto valueOf) {
@@ -88,6 +89,11 @@ double encodeTexels(std::span<const float> values, std::span<const float> gradie
       const Code code = codeOf(values[i]);
       *out++ = code;
       if (!gradients.empty()) *out++ = gradientCodeOf(gradients[i]);
+      if constexpr (std::is_same_v<Code, float>)
+        if (!emission.empty()) {
+          if (gradients.empty()) *out++ = 0;
+          *out++ = emission[i];
+        }
       if (!exact) error = std::max(error, std::abs(valueOf(code) - static_cast<double>(values[i])));
     }
   };

@@ -7,9 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
+#include <iterator>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "brick/gradient.h"
 #include "brick/voxel_reader.h"
@@ -48,6 +52,7 @@ class GridBricks final : public Bricks {
       : grid_(grid.grid),
         name_(grid.name),
         reader_(grid_->tree(), finiteOrZero(grid_->background())),
+        emissionGrid_(grid.emission),
         worldGradient_(grid.indexToWorld(), options.gradientFilter) {
     layout.interior = glm::ivec3(options.interior);
     layout.apron = options.apron;
@@ -62,6 +67,7 @@ class GridBricks final : public Bricks {
     exactFormat = survey.exactFormat;
     nonFiniteVoxels = survey.nonFiniteVoxels;
     if (!survey.hasNonFinite) reader_.setAllFinite();
+    if (emissionGrid_) addEmission(survey);
     if (survey.extent.empty()) return;
     setDomain(survey.extent);
     collectBricks(survey.cells);
@@ -78,7 +84,15 @@ class GridBricks final : public Bricks {
                             " voxels, more than 2^31 = 2147483648");
     layout.interior = glm::ivec3(extent);
     // The brick begins and ends with a layer of background, so its ranges include all values and a gradient of zero.
-    bricks = {{box.min, value, gradient}};
+    bricks = {{box.min, value, gradient, emission}};
+  }
+
+  void readEmission(const glm::ivec3& origin, std::span<float> values) const override {
+    if (!emissionReader_) return Bricks::readEmission(origin, values);
+    if (values.size() != layout.voxels())
+      throw InvalidArgument("brick: " + std::to_string(values.size()) + " values of emission to fill, must be " +
+                            std::to_string(layout.voxels()));
+    withGridErrors([&] { emissionReader_->copy(brickBox(origin, layout.apron), values.data()); });
   }
 
   void read(const glm::ivec3& origin, std::span<float> values, std::span<float> gradients) const override {
@@ -114,6 +128,24 @@ class GridBricks final : public Bricks {
   }
 
  private:
+  // Takes the second grid, whose voxels are as much a reason for bricks as those of the first.
+  void addEmission(VoxelSurvey& survey) {
+    hasEmission = true;
+    emissionBackground = finiteOrZero(emissionGrid_->background());
+    emissionReader_.emplace(emissionGrid_->tree(), emissionBackground);
+    const VoxelSurvey second = surveyVoxels(emissionGrid_->tree(), emissionBackground, layout.interior.x, layout.apron);
+    if (!second.hasNonFinite) emissionReader_->setAllFinite();
+    emission = second.value;
+    nonFiniteVoxels += second.nonFiniteVoxels;
+    if (second.extent.empty()) return;
+    survey.extent = survey.extent.empty() ? second.extent
+                                          : IndexBox{glm::min(survey.extent.min, second.extent.min),
+                                                     glm::max(survey.extent.max, second.extent.max)};
+    std::vector<glm::ivec3> cells;
+    std::ranges::set_union(survey.cells, second.cells, std::back_inserter(cells), comesBefore);
+    survey.cells = std::move(cells);
+  }
+
   static float finiteOrZero(float value) { return std::isfinite(value) ? value : 0.0f; }
 
   CoordBBox brickBox(const glm::ivec3& origin, int margin) const {
@@ -146,8 +178,11 @@ class GridBricks final : public Bricks {
       std::vector<float>& slab = slabs.local();
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         const glm::ivec3 origin = cells[i] * layout.interior;
-        found[i] = {origin, reader_.range(brickBox(origin, layout.apron)), gradientRange(origin, slab)};
-        keep[i] = found[i].value != Range{background, background} || found[i].gradient.max > 0;
+        const CoordBBox box = brickBox(origin, layout.apron);
+        found[i] = {origin, reader_.range(box), gradientRange(origin, slab)};
+        if (emissionReader_) found[i].emission = emissionReader_->range(box);
+        keep[i] = found[i].value != Range{background, background} || found[i].gradient.max > 0 ||
+                  (emissionReader_ && found[i].emission != Range{emissionBackground, emissionBackground});
       }
     });
     bricks.reserve(static_cast<std::size_t>(std::count(keep.begin(), keep.end(), 1)));
@@ -195,6 +230,8 @@ class GridBricks final : public Bricks {
   openvdb::FloatGrid::ConstPtr grid_;
   std::string name_;
   VoxelReader reader_;
+  openvdb::FloatGrid::ConstPtr emissionGrid_;  // none: nothing emits
+  std::optional<VoxelReader> emissionReader_;
   WorldGradient worldGradient_;
 };
 

@@ -33,6 +33,10 @@ void requireGradients(const Bricks& bricks, GradientFilter filter) {
                           std::string(nameOf(kGradientFilters, bricks.gradientFilter)));
 }
 
+void Bricks::readEmission(const glm::ivec3&, std::span<float>) const {
+  throw InvalidArgument("brick: there is no second grid that emits light");
+}
+
 std::vector<Brick> backgroundBricks(const Bricks& bricks, std::size_t limit) {
   if (bricks.domain.empty()) return {};
   const IndexBox reach = bricks.reach();
@@ -61,7 +65,10 @@ std::vector<Brick> backgroundBricks(const Bricks& bricks, std::size_t limit) {
         if (next != bricks.bricks.end() && next->origin == origin)
           ++next;
         else
-          result.push_back({origin, {bricks.background, bricks.background}, {0, 0}});
+          result.push_back({origin,
+                            {bricks.background, bricks.background},
+                            {0, 0},
+                            {bricks.emissionBackground, bricks.emissionBackground}});
       }
   return result;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "umbrick/grid/scalar_grid.h"
 
+#include <cmath>
+
 #include "umbrick/core/error.h"
 #include "umbrick/core/transformed_box.h"
 #include "umbrick/grid/affine_matrix.h"
@@ -13,6 +15,11 @@ bool ScalarGrid::isLevelSet() const { return grid->getGridClass() == openvdb::GR
 std::string ScalarGrid::metadata(const std::string& key) const {
   const openvdb::Metadata::ConstPtr found = (*grid)[key];
   return found ? found->str() : std::string();
+}
+
+float ScalarGrid::emissionBackground() const {
+  const float background = emission->background();
+  return std::isfinite(background) ? background : 0.0f;
 }
 
 glm::dmat4 ScalarGrid::indexToWorld() const {

@@ -34,8 +34,9 @@ class CellMedia {
 // Goes through the cells of a ray from front to back.
 class Collector {
  public:
-  Collector(const Classifier& classifier, const EyeRayOptions& options, double begin, std::vector<Scatterer>& parts)
-      : classifier_(classifier), options_(options), begin_(begin), parts_(parts) {}
+  Collector(const Classifier& classifier, const EyeRayOptions& options, double begin, std::vector<Scatterer>& parts,
+            Emitted* emitted)
+      : classifier_(classifier), options_(options), begin_(begin), parts_(parts), emitted_(emitted) {}
 
   // The opacity comes from the sum of optical depths. Products of 1 - x would add up their roundings, which all
   // have one sign.
@@ -57,6 +58,15 @@ class Collector {
       classifier_.forEachPiece(value, gradient, [&](const CellPiece& piece) { addSteps(piece); });
   }
 
+  /// Adds what a cell, or part of one, emits: before its medium is added, which it still has to get through.
+  /// @param glow  values of the second grid along the ray
+  void emit(const Cubic& value, const Cubic& gradient, const Cubic& glow, double begin, double end) {
+    length_ = end - begin;
+    media_.clear();
+    classifier_.forEachPiece(value, gradient, [&](const CellPiece& piece) { media_.push_back(piece); });
+    emitted_->function.forEachPiece(glow, Cubic{}, [&](const CellPiece& piece) { emitOver(piece, glow); });
+  }
+
   /// Adds a cell, or part of one, whose media are interpolated. @param sigma_s  by colour
   void addClassified(const Cubic& sigma_t, const std::array<Cubic, 3>& sigma_s, double begin, double end) {
     sigma_s_ = &sigma_s;
@@ -67,6 +77,50 @@ class Collector {
   }
 
  private:
+  // The optical depth from the beginning of the cell up to s.
+  double depthUpTo(double s) const {
+    double tau = 0;
+    for (const CellPiece& piece : media_)
+      if (piece.begin < s) tau += length_ * std::max(0.0, piece.sigma_t.integral(piece.begin, std::min(piece.end, s)));
+    return tau;
+  }
+
+  // Cuts a piece of the emission where the medium has another one.
+  void emitOver(const CellPiece& piece, const Cubic& glow) {
+    double begin = piece.begin;
+    const auto upTo = [&](double s) {
+      if (!(s > begin)) return;
+      emitHalves(piece, glow, begin, std::min(s, piece.end), 40);
+      begin = std::min(s, piece.end);
+    };
+    for (const CellPiece& medium : media_) {
+      upTo(std::min(medium.begin, piece.end));
+      upTo(std::min(medium.end, piece.end));
+    }
+    upTo(piece.end);
+  }
+
+  // Halves a part until five Gauss nodes integrate what is left of its light: exp(-x) over 0.5 to 1e-12.
+  void emitHalves(const CellPiece& piece, const Cubic& glow, double begin, double end, int depth) {
+    const double before = depthUpTo(begin);
+    if (transmittance_ * std::exp(-before) < options_.darkest) return;
+    if (depthUpTo(end) - before > 0.5 && depth > 0) {
+      const double middle = 0.5 * (begin + end);
+      emitHalves(piece, glow, begin, middle, depth - 1);
+      emitHalves(piece, glow, middle, end, depth - 1);
+      return;
+    }
+    constexpr double nodes[]{0.046910077030668, 0.230765344947158, 0.5, 0.769234655052842, 0.953089922969332};
+    constexpr double weights[]{0.118463442528095, 0.239314335249683, 0.284444444444444, 0.239314335249683,
+                               0.118463442528095};
+    for (int i = 0; i < 5; ++i) {
+      const double s = begin + nodes[i] * (end - begin);
+      const double radiance = std::max(0.0, piece.sigma_t(s));
+      emitted_->light += weights[i] * (end - begin) * length_ * transmittance_ * std::exp(-depthUpTo(s)) * radiance *
+                         emitted_->function.albedo(piece, glow, Cubic{}, s);
+    }
+  }
+
   glm::dvec3 albedoAt(const CellPiece& piece, double s) const {
     if (!sigma_s_) return classifier_.albedo(piece, value_, gradient_, s);
     const double sigma_t = piece.sigma_t(s);
@@ -156,6 +210,8 @@ class Collector {
   const std::array<Cubic, 3>* sigma_s_ = nullptr;  // of classified voxels
   double cellBegin_ = 0, length_ = 0, tau_ = 0, transmittance_ = 1;
   std::int64_t stretch_ = 0;
+  Emitted* emitted_;              // null: nothing emits
+  std::vector<CellPiece> media_;  // of the cell that emits
 };
 
 }  // namespace
@@ -181,8 +237,8 @@ EyeRays::Ray EyeRays::through(int x, int y, const glm::dvec2& place) const {
 
 double collectScatterers(const Field& field, Field::Accessor& accessor, const Classifier& classifier,
                          const IndexRay& ray, const Interval& part, const EyeRayOptions& options,
-                         std::vector<Scatterer>& parts, std::uint64_t& cells) {
-  Collector collector(classifier, options, part.begin, parts);
+                         std::vector<Scatterer>& parts, std::uint64_t& cells, Emitted* emitted) {
+  Collector collector(classifier, options, part.begin, parts, emitted);
   field.walkBlocks(
       accessor, ray, part, [&](const FieldBlock& block, const glm::dvec3& origin, double begin, double end) {
         if (!block.values) {
@@ -204,7 +260,10 @@ double collectScatterers(const Field& field, Field::Accessor& accessor, const Cl
           Cubic gradient;
           if (block.gradients) gradient = TrilinearCell(block.gradients, cell).along(from, to);
           const std::uint8_t kind = block.kind(cell);
-          collector.add(TrilinearCell(block.values, cell).along(from, to), gradient, enter, leave,
+          const Cubic value = TrilinearCell(block.values, cell).along(from, to);
+          if (emitted && block.emissions)
+            collector.emit(value, gradient, TrilinearCell(block.emissions, cell).along(from, to), enter, leave);
+          collector.add(value, gradient, enter, leave,
                         kind == FieldBlock::kMixed ? nullptr : &classifier.stretch(kind - 1u));
           return !collector.isDark();
         });

@@ -43,6 +43,12 @@ struct Scatterer {
   std::int64_t stretch = 0;  // number of the step of given length in which the part lies
 };
 
+/// What the ray gathers beside what scatters.
+struct Emitted {
+  const Classifier& function;  // of the values of a second grid; sigma_s is what is emitted
+  glm::dvec3 light{0};         // Int T L_e ds
+};
+
 struct EyeRayOptions {
   double largestTau = 0.1;      // largest optical depth of one part
   double step = 0;              // world units: parts end at multiples of it from the beginning of the ray; 0: anywhere
@@ -51,10 +57,11 @@ struct EyeRayOptions {
 };
 
 /// Collects the parts of a ray that scatter.
-/// @param parts  the parts are appended to it, in order
+/// @param parts    the parts are appended to it, in order
+/// @param emitted  null: nothing emits
 /// @return the opacity of the ray; 1 once less than `darkest` gets through
 double collectScatterers(const Field& field, Field::Accessor& accessor, const Classifier& classifier,
                          const IndexRay& ray, const Interval& part, const EyeRayOptions& options,
-                         std::vector<Scatterer>& parts, std::uint64_t& cells);
+                         std::vector<Scatterer>& parts, std::uint64_t& cells, Emitted* emitted = nullptr);
 
 }  // namespace umbrick

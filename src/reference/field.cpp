@@ -52,14 +52,16 @@ CoordBBox blocksOf(const CoordBBox& box, int reach) {
 class BlockReader {
  public:
   BlockReader(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, float background, bool gradients,
-              GradientFilter filter)
+              GradientFilter filter, const openvdb::FloatTree* emission)
       : tree_(tree),
+        emission_(emission),
         covariant_(glm::transpose(glm::inverse(glm::dmat3(indexToWorld)))),
         background_(background),
         gradients_(gradients),
         filter_(filter) {}
 
-  // @param values  receives kBlockSize floats, and behind them as many gradients if there are any
+  // @param values  receives kBlockSize floats, and behind them as many gradients if there are any, and values of the
+  //   second grid
   void read(const Coord& block, float* values) {
     const int margin = gradients_ ? 1 : 0, edge = kVoxels + 2 * margin;
     const Coord first = Coord(block.x() * kCells, block.y() * kCells, block.z() * kCells).offsetBy(-margin);
@@ -76,6 +78,7 @@ class BlockReader {
           values[to] = scratch_[static_cast<std::size_t>(at)];
           if (gradients_) values[kBlockSize + to] = magnitude(scratch_.data() + at, edge);
         }
+    if (emission_) readEmission(first.offsetBy(margin), values + (gradients_ ? 2 : 1) * kBlockSize);
   }
 
  private:
@@ -87,7 +90,16 @@ class BlockReader {
     return static_cast<float>(std::min<double>(size, std::numeric_limits<float>::max()));
   }
 
+  void readEmission(const Coord& first, float* values) const {
+    openvdb::tools::Dense<float, openvdb::tools::LayoutXYZ> dense(CoordBBox::createCube(first, kVoxels), values);
+    openvdb::tools::copyToDense(*emission_, dense, true);
+    const float dark = std::isfinite(emission_->background()) ? emission_->background() : 0.0f;
+    for (float* value = values; value != values + kBlockSize; ++value)
+      if (!std::isfinite(*value)) *value = dark;
+  }
+
   const openvdb::FloatTree& tree_;
+  const openvdb::FloatTree* emission_;
   glm::dmat3 covariant_;
   float background_;
   bool gradients_;
@@ -108,7 +120,9 @@ std::uint8_t kindOf(const Classifier& classifier, const Range& values) {
 // Tells what each cell is and bounds sigma_t. Without skipping, cells are not looked at here but when a ray
 // comes to them.
 // @return false when there is nothing to see in the block
-bool survey(FieldBlock& block, const Classifier& classifier, bool skipEmpty) {
+bool survey(FieldBlock& block, const Classifier& classifier, bool skipEmpty, const Classifier* emission) {
+  const auto emits = [&](const Range& values) { return !emission->transfer().isTransparent(values); };
+  if (block.emissions && !emits(rangeOf(block.emissions, kBlockSize))) block.emissions = nullptr;
   const TransferFunction& transfer = classifier.transfer();
   const auto gradientsOf = [&](const auto& rangeOfPart) {
     return block.gradients ? rangeOfPart(block.gradients) : Range{0, 0};
@@ -120,7 +134,7 @@ bool survey(FieldBlock& block, const Classifier& classifier, bool skipEmpty) {
     block.kinds.fill(FieldBlock::kMixed);
     return true;
   }
-  if (transfer.isTransparent(all, allGradients)) return false;
+  if (!block.emissions && transfer.isTransparent(all, allGradients)) return false;
   bool seen = false;
   auto kind = block.kinds.begin();
   for (int z = 0; z < kCells; ++z)
@@ -129,30 +143,35 @@ bool survey(FieldBlock& block, const Classifier& classifier, bool skipEmpty) {
         const auto cell = [&](const float* v) { return rangeOfCell(v, {x, y, z}); };
         const Range values = cell(block.values);
         const bool transparent = transfer.isTransparent(values, gradientsOf(cell));
-        *kind = transparent ? FieldBlock::kTransparent : kindOf(classifier, values);
-        seen = seen || !transparent;
+        const bool dark = !block.emissions || !emits(cell(block.emissions));
+        *kind = transparent && dark ? FieldBlock::kTransparent : kindOf(classifier, values);
+        seen = seen || !transparent || !dark;
       }
   return seen;
 }
 
 }  // namespace
 
-Field::Field(const ScalarGrid& grid, const Classifier& classifier, GradientFilter filter, bool skipEmpty)
+Field::Field(const ScalarGrid& grid, const Classifier& classifier, GradientFilter filter, bool skipEmpty,
+             const Classifier* emission)
     : skipEmpty_(skipEmpty) {
   const TransferFunction& transfer = classifier.transfer();
   const openvdb::FloatTree& tree = grid.grid->tree();
   background_ = std::isfinite(tree.background()) ? tree.background() : 0.0f;
-  findDomain(tree);
+  findDomain(tree, emission ? &grid.emission->tree() : nullptr);
   const int background = skipEmpty && transfer.isTransparent({background_, background_}, {0, 0})
                              ? -1
                              : uniformBlock(background_, transfer);
   tree_ = std::make_unique<BlockTree>(background);
-  if (!domain_.empty()) addBlocks(tree, grid.indexToWorld(), classifier, filter);
+  if (!domain_.empty()) addBlocks(grid, classifier, filter, emission);
 }
 
 Field::~Field() = default;
 
-void Field::findDomain(const openvdb::FloatTree& tree) {
+namespace {
+
+// Looks at all that is active or differs from the background.
+Seen seenOf(const openvdb::FloatTree& tree, float background) {
   std::vector<const Leaf*> leaves;
   tree.getNodes(leaves);
   tbb::enumerable_thread_specific<Seen> seen;
@@ -162,18 +181,30 @@ void Field::findDomain(const openvdb::FloatTree& tree) {
       for (auto voxel = leaves[i]->cbeginValueAll(); voxel; ++voxel) {
         const bool finite = std::isfinite(*voxel);
         if (voxel.isValueOn() && !finite) ++mine.nonFinite;
-        if (voxel.isValueOn() || (finite && *voxel != background_)) mine.extent.expand(voxel.getCoord());
+        if (voxel.isValueOn() || (finite && *voxel != background)) mine.extent.expand(voxel.getCoord());
       }
   });
   Seen all;
   forEachTile(tree, [&](float value, bool active, const CoordBBox& box) {
     const bool finite = std::isfinite(value);
     if (active && !finite) all.nonFinite += box.volume();
-    if (active || (finite && value != background_)) all.extent.expand(box);
+    if (active || (finite && value != background)) all.extent.expand(box);
   });
   for (const Seen& mine : seen) {
     if (!mine.extent.empty()) all.extent.expand(mine.extent);
     all.nonFinite += mine.nonFinite;
+  }
+  return all;
+}
+
+}  // namespace
+
+void Field::findDomain(const openvdb::FloatTree& tree, const openvdb::FloatTree* emission) {
+  Seen all = seenOf(tree, background_);
+  if (emission) {
+    const Seen second = seenOf(*emission, std::isfinite(emission->background()) ? emission->background() : 0.0f);
+    if (!second.extent.empty()) all.extent.expand(second.extent);
+    all.nonFinite += second.nonFinite;
   }
   nonFinite_ = all.nonFinite;
   if (all.extent.empty()) return;
@@ -206,8 +237,35 @@ int Field::uniformBlock(float value, const TransferFunction& transfer) {
   return static_cast<int>(blocks_.size()) - 1;
 }
 
-void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, const Classifier& classifier,
-                      GradientFilter filter) {
+namespace {
+
+// Adds the blocks that may emit something. What lies in a tile of the second grid is taken block by block.
+void addEmitting(const openvdb::FloatTree& tree, const TransferFunction& emitted, std::set<Coord>& wanted) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 22;
+  std::uint64_t count = 0;
+  const auto add = [&](const CoordBBox& box) {
+    const CoordBBox touched = blocksOf(box, 0);
+    count += touched.volume();
+    if (count > kMost)
+      throw InvalidArgument("volume.emissionGrid: what emits fills " + std::to_string(count) +
+                            " blocks of 8 x 8 x 8 voxels or more, the reference takes " + std::to_string(kMost));
+    for (auto block = touched.begin(); block != touched.end(); ++block) wanted.insert(*block);
+  };
+  std::vector<const Leaf*> leaves;
+  tree.getNodes(leaves);
+  for (const Leaf* leaf : leaves) add(leaf->getNodeBoundingBox());
+  forEachTile(tree, [&](float value, bool, const CoordBBox& box) {
+    if (std::isfinite(value) && !emitted.isTransparent({value, value})) add(box);
+  });
+}
+
+}  // namespace
+
+void Field::addBlocks(const ScalarGrid& grid, const Classifier& classifier, GradientFilter filter,
+                      const Classifier* emission) {
+  const openvdb::FloatTree& tree = grid.grid->tree();
+  const openvdb::FloatTree* const second = emission ? &grid.emission->tree() : nullptr;
+  const glm::dmat4 indexToWorld = grid.indexToWorld();
   const TransferFunction& transfer = classifier.transfer();
   const bool gradients = transfer.is2d();
   const int reach = gradients ? 1 : 0;
@@ -236,10 +294,11 @@ void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToW
     const CoordBBox touched = blocksOf(leaf->getNodeBoundingBox(), reach);
     for (auto block = touched.begin(); block != touched.end(); ++block) wanted.insert(*block);
   }
+  if (second) addEmitting(*second, emission->transfer(), wanted);
   // Many blocks at the faces of tiles have the same voxels, which are kept only once. The blocks are taken in parts, so
   // that few are held at a time.
   std::unordered_map<std::string_view, int> looks;
-  const std::size_t size = kBlockSize * (gradients ? 2 : 1);
+  const std::size_t emissionAt = kBlockSize * (gradients ? 2 : 1), size = emissionAt + (second ? kBlockSize : 0);
   const std::vector<Coord> all(wanted.begin(), wanted.end());
   constexpr std::size_t part = 16384;
   for (std::size_t first = 0; first < all.size(); first += part) {
@@ -247,13 +306,14 @@ void Field::addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToW
     std::vector<FieldBlock> found(coords.size());
     std::vector<std::unique_ptr<float[]>> voxels(coords.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, coords.size(), 16), [&](const auto& range) {
-      BlockReader reader(tree, indexToWorld, background_, gradients, filter);
+      BlockReader reader(tree, indexToWorld, background_, gradients, filter, second);
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         if (!voxels[i]) voxels[i] = std::make_unique<float[]>(size);
         reader.read(coords[i], voxels[i].get());
         found[i].values = voxels[i].get();
         if (gradients) found[i].gradients = voxels[i].get() + kBlockSize;
-        if (!survey(found[i], classifier, skipEmpty_)) voxels[i].reset();
+        if (second) found[i].emissions = voxels[i].get() + emissionAt;
+        if (!survey(found[i], classifier, skipEmpty_, emission)) voxels[i].reset();
       }
     });
     for (std::size_t i = 0; i < coords.size(); ++i) {

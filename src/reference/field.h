@@ -28,6 +28,7 @@ struct FieldBlock {
 
   const float* values = nullptr;     // kVoxels^3, x fastest; null: every voxel is `uniform`
   const float* gradients = nullptr;  // gradient magnitudes at the same voxels, for a 2D function
+  const float* emissions = nullptr;  // values of a second grid at the same voxels; null: nothing is emitted
   float uniform = 0;
   double sigma_maj = 0;  // 1/world unit
   // The kinds of the cells, x fastest: kTransparent, kMixed, or 1 + the stretch of a 1D function in which all values
@@ -113,8 +114,10 @@ class Field {
   using Accessor = openvdb::tree::ValueAccessor<const BlockTree, false>;
 
   /// @param skipEmpty  false: transparent blocks are kept as well, and rays visit each cell
-  /// @param filter  by which gradients are found, where the function asks for them
-  Field(const ScalarGrid& grid, const Classifier& classifier, GradientFilter filter, bool skipEmpty);
+  /// @param filter     by which gradients are found, where the function asks for them
+  /// @param emission   of the grid's second grid, whose sigma_s is emitted; null: nothing is
+  Field(const ScalarGrid& grid, const Classifier& classifier, GradientFilter filter, bool skipEmpty,
+        const Classifier* emission = nullptr);
   ~Field();  // where the tree is known: each file that deletes one compiles all of its virtual functions
 
   /// Returns the box of active voxels and of others that differ from the background, grown by one voxel.
@@ -131,9 +134,9 @@ class Field {
   void walkBlocks(Accessor& accessor, const IndexRay& ray, const Interval& part, const Visit& visit) const;
 
  private:
-  void findDomain(const openvdb::FloatTree& tree);
-  void addBlocks(const openvdb::FloatTree& tree, const glm::dmat4& indexToWorld, const Classifier& classifier,
-                 GradientFilter filter);
+  void findDomain(const openvdb::FloatTree& tree, const openvdb::FloatTree* emission);
+  void addBlocks(const ScalarGrid& grid, const Classifier& classifier, GradientFilter filter,
+                 const Classifier* emission);
   int uniformBlock(float value, const TransferFunction& transfer);
 
   bool skipEmpty_;

@@ -22,7 +22,7 @@ std::optional<ValueResult> HybridPixel::integrate(int x, int y) {
       const std::optional<PixelResult> behind = medium_.integrate(ray, Interval{*one.first, endOf(end)});
       if (!behind) return std::nullopt;
       const double through = 1 - one.colour.w;
-      one.colour += through * glm::dvec4(space_.scene.ambient * behind->light, behind->opacity);
+      one.colour += through * glm::dvec4(space_.scene.ambient * behind->light + behind->emitted, behind->opacity);
       one.depth += through * behind->depth;
       one.visibility += through * behind->visibility;
     }

@@ -10,6 +10,7 @@ namespace umbrick {
 
 struct PixelResult {
   glm::dvec3 light{0};     // Int T sigma_s V ds, which the caller multiplies by L_a
+  glm::dvec3 emitted{0};   // Int T L_e ds, of a second grid
   double opacity = 0;      // of the whole ray
   double visibility = 0;   // weighted by opacity
   double depth = 0;        // depth along the view axis, weighted by opacity
@@ -19,6 +20,7 @@ struct PixelResult {
   /// Adds the result of one ray out of several, which all count for the same `weight`.
   void add(const PixelResult& ray, double weight) {
     light += weight * ray.light;
+    emitted += weight * ray.emitted;
     opacity += weight * ray.opacity;
     visibility += weight * ray.visibility;
     depth += weight * ray.depth;

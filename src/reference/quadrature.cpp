@@ -134,8 +134,11 @@ std::optional<PixelResult> QuadraturePixel::integrate(const EyeRays::Ray& ray, c
   if (part.empty()) return result;
   ++counts_.eyeRays;
   parts_.clear();
+  std::optional<Emitted> emitted;
+  if (space_.emission) emitted.emplace(*space_.emission);
   result.opacity = collectScatterers(space_.field, accessor_, space_.classifier, ray.index, part, eyeOptions_, parts_,
-                                     counts_.cells);
+                                     counts_.cells, emitted ? &*emitted : nullptr);
+  if (emitted) result.emitted = emitted->light;
   if (parts_.empty()) return result;
   if (shading_) shade(ray.index, result);
   if (!traitsOf(space_.scene.model).occlusion) {

@@ -26,7 +26,8 @@ struct ReferenceSpace {
   const std::vector<LightDirection>& directions;  // of all models but emission and coneRay
   const std::vector<glm::dvec2>& places;          // in each pixel, through which rays go; at least one
   const ScalarGrid& grid;
-  const MeshEnds* mesh;  // null: there is none
+  const MeshEnds* mesh;        // null: there is none
+  const Classifier* emission;  // of a second grid that emits; null: there is none
 };
 
 /// Returns light that is the same from all of the solid angle for which the directions stand.

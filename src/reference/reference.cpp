@@ -103,7 +103,7 @@ void store(const PixelResult& pixel, const ResolvedScene& scene, int x, int y, R
   const glm::dvec3 behind = scene.background ? *scene.background : glm::dvec3(0);
   for (int i = 0; i < 3; ++i) {
     picture.colour.at(x, y)[i] =
-        static_cast<float>(pixel.light[i] * scene.ambient[i] + (1 - pixel.opacity) * behind[i]);
+        static_cast<float>(pixel.light[i] * scene.ambient[i] + pixel.emitted[i] + (1 - pixel.opacity) * behind[i]);
     // A path either scatters or gets through. The two never covary upwards, so this bounds the variance of the
     // sum from above.
     picture.standardError.at(x, y)[i] = static_cast<float>(
@@ -256,6 +256,8 @@ ResolvedScene mediumOf(const ResolvedScene& scene) {
 void checkMedium(const ResolvedScene& medium, const ReferenceOptions& options) {
   if (medium.mesh.shape && options.integrator == Integrator::monteCarlo)
     throw InvalidArgument("mesh: a scene with one is integrated by quadrature, not by Monte Carlo");
+  if (medium.emitted && options.integrator == Integrator::monteCarlo)
+    throw InvalidArgument("volume.emissionGrid: light of a grid is integrated by quadrature, not by Monte Carlo");
   if (!isShaded(medium)) return;
   if (options.integrator == Integrator::monteCarlo)
     throw InvalidArgument("shading.kind: phong in a medium is integrated by quadrature, not by Monte Carlo");
@@ -269,15 +271,25 @@ class MediumSpace {
       : lights_(lightsOf(scene, options)),
         indexToWorld_(grid.indexToWorld()),
         classifier_(scene.transfer),
-        field_(grid, classifier_, scene.gradients, options.skipEmpty),
+        emission_(emissionOf(grid, scene)),
+        field_(grid, classifier_, scene.gradients, options.skipEmpty, emission_ ? &*emission_ : nullptr),
         rays_(scene.camera, indexToWorld_),
         region_(scene, mediumBox(scene.transfer, field_.domain()), indexToWorld_,
                 traitsOf(scene.model).behindEye || lightComesFromBehind(scene)),
         directions_(directionsOf(scene, options, given())),
         places_(pixelPoints(scene.sampling.pixelSamples)),
         mesh_(meshEnds(scene, indexToWorld_)),
-        space_{field_,  classifier_, rays_,   region_, scene,
-               given(), directions_, places_, grid,    mesh_ ? &*mesh_ : nullptr} {}
+        space_{field_,
+               classifier_,
+               rays_,
+               region_,
+               scene,
+               given(),
+               directions_,
+               places_,
+               grid,
+               mesh_ ? &*mesh_ : nullptr,
+               emission_ ? &*emission_ : nullptr} {}
   MediumSpace(const MediumSpace&) = delete;  // its space refers to it
   MediumSpace& operator=(const MediumSpace&) = delete;
 
@@ -286,10 +298,19 @@ class MediumSpace {
 
  private:
   const LightSet* given() const { return lights_ ? &*lights_ : nullptr; }
+  static std::optional<Classifier> emissionOf(const ScalarGrid& grid, const ResolvedScene& scene) {
+    if (!scene.emitted) return std::nullopt;
+    if (!grid.emission)
+      throw InvalidArgument("volume.emissionGrid: '" + scene.volume.emissionGrid + "' is no part of the grid \"" +
+                            grid.name + "\"");
+    requireDarkBackground(*scene.emitted, grid.emissionBackground());
+    return std::optional<Classifier>(*scene.emitted);
+  }
 
   std::optional<LightSet> lights_;
   glm::dmat4 indexToWorld_;
   Classifier classifier_;
+  std::optional<Classifier> emission_;
   Field field_;
   EyeRays rays_;
   ConvexRegion region_;

@@ -199,6 +199,20 @@ void applyMesh(const AskedScene& asked, Scene& scene) {
     throw AskedSceneError(asked.nameOf("mesh-colour") + ": needs " + asked.nameOf("mesh"));
 }
 
+// A grid that emits light is looked for where the scene can show it.
+void applyEmission(const AskedScene& asked, const SceneDefaults& defaults, Scene& scene) {
+  if (asked.emissionTransfer) {
+    scene.emission.table = loadTransferFunction(*asked.emissionTransfer);
+    if (!asked.has("emission-kind")) scene.emission.kind = EmissionKind::table;
+  }
+  if (asked.whole || !defaults.emission || scene.transfer || !scene.volume.emissionGrid.empty()) return;
+  Scene emitting = scene;
+  emitting.volume.emissionGrid = "any";
+  const bool shown = emits(emitting) && scene.sampling.classification == Classification::post &&
+                     (scene.technique == Technique::automatic || supportsMode(emitting, scene.technique));
+  if (shown) scene.volume.emissionGrid = kAutomaticGrid;
+}
+
 // What is asked for holds at all frames.
 std::vector<ReplacedKeys> dropReplacedKeys(const AskedScene& asked, Scene& scene) {
   std::vector<ReplacedKeys> replaced;
@@ -244,6 +258,7 @@ Scene askedScene(const AskedScene& asked, Scene scene, const SceneDefaults& defa
   applyClipping(asked, scene);
   applySurfaces(asked, scene);
   applyMesh(asked, scene);
+  applyEmission(asked, defaults, scene);
   validateAsked(asked, scene);
   return scene;
 }

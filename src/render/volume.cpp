@@ -20,6 +20,16 @@
 #include "umbrick/sweep/swept_bricks.h"
 
 namespace umbrick {
+namespace {
+
+// The second grid by itself. @pre there is one, or nothing is asked of it but its box
+ScalarGrid emissionOf(const ScalarGrid& grid) {
+  ScalarGrid second;
+  second.grid = grid.emission ? grid.emission : grid.grid;
+  return second;
+}
+
+}  // namespace
 
 struct Volume::LazyGradient {
   std::once_flag looked;
@@ -50,6 +60,8 @@ Volume::Volume(ScalarGrid grid, std::string name, bool foreign)
   if (grid_.activeBox().empty()) throw EmptyVolume(name_ + ": grid \"" + grid_.name + "\" has no active voxel");
   indexToWorld_ = grid_.indexToWorld();
   worldBounds_ = grid_.worldBounds();
+  if (const Box second = emissionOf(grid_).worldBounds(); grid_.emission && !emissionOf(grid_).activeBox().empty())
+    worldBounds_ = {glm::min(worldBounds_.min, second.min), glm::max(worldBounds_.max, second.max)};
   foreign_ = foreign && grid_.metadata("source_format").empty();
   orientation_ = orientationOf(grid_, foreign_);
   valueUnit_ = grid_.metadata("value_unit");
@@ -64,7 +76,14 @@ Box Volume::visibleBounds(const TransferFunction& transfer) const {
     const auto single = static_cast<float>(value);
     return transfer.majorant({single, single}, gradients) > least;
   });
-  const IndexBox box = visible.empty() ? grid_.activeBox() : visible;
+  IndexBox box = visible.empty() ? grid_.activeBox() : visible;
+  if (grid_.emission) {
+    const ScalarGrid second = emissionOf(grid_);
+    const double largest = surveyValues(second).value.max;
+    const IndexBox glowing = acceptedBox(second, [&](double value) { return value > 0 && value > 0.2 * largest; });
+    if (!glowing.empty())
+      box = visible.empty() ? glowing : IndexBox{glm::min(box.min, glowing.min), glm::max(box.max, glowing.max)};
+  }
   // A voxel reaches half way to its neighbours.
   const glm::dvec3 low = glm::dvec3(box.min) - 0.5, high = glm::dvec3(box.max) + 0.5;
   return transformed({low, high}, indexToWorld_);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume_file.h"
 
+#include <algorithm>
 #include <exception>
+#include <string_view>
 #include <utility>
 
 #include "core/input_file.h"
@@ -10,6 +12,8 @@
 #include "umbrick/core/error.h"
 #include "umbrick/core/names.h"
 #include "umbrick/core/short_number.h"
+#include "umbrick/grid/emission_grid.h"
+#include "umbrick/grid/value_survey.h"
 #include "umbrick/ingest/frame_sequence.h"
 #include "umbrick/render/open_reference.h"
 #include "umbrick/render/volume.h"
@@ -99,20 +103,65 @@ bool readComponent(VolumeFile& file, const GridListing& listing, const LoadProgr
   return true;
 }
 
+bool isNamed(const std::string& label, std::string_view name) {
+  const std::string base = label.substr(0, label.find('['));
+  return std::ranges::equal(base, name,
+                            [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + ('a' - 'A') : a) == b; });
+}
+
+// Returns labels of the grids of a file that may emit light, the likeliest first: the one that is asked for, or those
+// of known names.
+std::vector<std::string> emissionGrids(const VolumeFile& file, const GridListing& listing) {
+  if (file.source.emissionGrid != kAutomaticGrid) return {file.source.emissionGrid};
+  std::vector<std::string> found;
+  for (const std::string_view name : emissionGridNames())
+    for (const GridListing::Row& row : listing.grids)
+      if (row.scalar && isNamed(row.label, name) && row.label != file.source.grid) found.push_back(row.label);
+  return found;
+}
+
+// Reads a second grid that emits light, where one is asked for.
+void readEmission(VolumeFile& file, const GridListing& listing, const LoadProgress& progress) {
+  if (file.source.emissionGrid.empty()) return;
+  const bool automatic = file.source.emissionGrid == kAutomaticGrid;
+  const std::vector<std::string> labels = emissionGrids(file, listing);
+  if (automatic) file.source.emissionGrid.clear();
+  for (const std::string& label : labels) {
+    const ScalarGrid second = readScalarGrid(file.source.file, label, progress);
+    const bool glows = acceptedBox(second, [](double value) { return value > 0; }).empty() == false;
+    if (!glows) file.notes.push_back("grid \"" + label + "\" is nowhere above 0: nothing emits light");
+    if (!glows && automatic) continue;
+    const EmissionReport report = addEmission(file.grid, second);
+    if (report.resampled)
+      file.notes.push_back("grid \"" + label + "\" lies on a lattice of its own: it is interpolated on that of \"" +
+                           file.grid.name + "\", off by up to " + shortNumber(report.max, 3) + " at its voxels (rms " +
+                           shortNumber(report.rms, 3) + ")");
+    file.source.emissionGrid = label;
+    return;
+  }
+}
+
 void readGrid(VolumeFile& file, const LoadProgress& progress) {
   file.foreign = true;
   const GridListing listing = listGrids(file.source.file);
   for (auto entry = listing.metadata.beginMeta(); entry != listing.metadata.endMeta(); ++entry)
     if (entry->first == "creator" && entry->second) file.creator = entry->second->str();
-  if (readComponent(file, listing, progress)) return;
-  const std::vector<std::string> labels = scalarGrids(listing);
-  if (file.source.grid.empty() && labels.size() > 1)
-    readSomeGrid(file, labels, progress);
-  else
-    file.grid = readScalarGrid(file.source.file, file.source.grid, progress);
+  if (!readComponent(file, listing, progress)) {
+    const std::vector<std::string> labels = scalarGrids(listing);
+    if (file.source.grid.empty() && labels.size() > 1)
+      readSomeGrid(file, labels, progress);
+    else
+      file.grid = readScalarGrid(file.source.file, file.source.grid, progress);
+  }
+  readEmission(file, listing, progress);
 }
 
 }  // namespace
+
+std::span<const std::string_view> emissionGridNames() {
+  static constexpr std::string_view kNames[]{"temperature", "temp", "heat", "flame", "flames", "fire", "burn"};
+  return kNames;
+}
 
 VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& progress,
                           const std::shared_ptr<KeptStream>& kept) {
@@ -128,6 +177,11 @@ VolumeFile readVolumeFile(const VolumeReference& reference, const LoadProgress& 
   if (!file.source.raw && holdsGrids(file.source.file)) {
     readGrid(file, progress);
   } else {
+    if (!file.source.emissionGrid.empty() && file.source.emissionGrid != kAutomaticGrid)
+      throw InvalidArgument(file.source.file.string() +
+                            ": volume.emissionGrid is for files of grids, and this is a volume: found '" +
+                            file.source.emissionGrid + "'");
+    file.source.emissionGrid.clear();
     OpenOptions open = openOptions(file.source);
     open.parts.kept = kept;
     readVolume(file, open, progress);

@@ -86,6 +86,10 @@ void requireClassification(const SceneSettings& scene) {
   if (scene.sampling.classification == Classification::pre && traitsOf(scene.model).occlusion)
     throw InvalidArgument("sampling.classification: pre is of the model emission alone, not of " +
                           modelName(scene.model));
+  if (scene.sampling.classification == Classification::pre && emits(scene))
+    throw InvalidArgument(
+        "sampling.classification: pre interpolates media and no emission, but volume.emissionGrid is '" +
+        scene.volume.emissionGrid + "'");
 }
 
 bool supports(Method method, Model model) {
@@ -105,6 +109,7 @@ bool supports(Technique technique, Mode mode) { return mode == Mode::integrate |
 
 bool supportsMode(const SceneSettings& scene, Technique technique) {
   if (scene.mesh.shape && technique != Technique::rays) return false;
+  if (emits(scene) && technique == Technique::shearWarp) return false;
   return supports(technique, scene.mode) && (!isShaded(scene) || scene.mode != Mode::integrate ||
                                              (technique != Technique::slices && technique != Technique::stacks));
 }
@@ -120,8 +125,14 @@ void requireMode(const SceneSettings& scene, Technique technique) {
       others += (others.empty() ? "" : ", ") + std::string(name);
   const std::string what = !supports(technique, scene.mode)                   ? "mode: " + modeName(scene.mode)
                            : scene.mesh.shape && technique != Technique::rays ? "mesh: a scene with one"
+                           : emits(scene)                                     ? "volume.emissionGrid: light of a grid"
                                                                               : "shading.kind: phong";
   throw InvalidArgument(what + " is not rendered by the technique " + techniqueName(technique) + " but by " + others);
+}
+
+bool emits(const SceneSettings& scene) {
+  const std::string& grid = scene.volume.emissionGrid;
+  return !grid.empty() && grid != kAutomaticGrid && (scene.mode == Mode::integrate || scene.mode == Mode::hybrid);
 }
 
 bool isShaded(const SceneSettings& scene) {

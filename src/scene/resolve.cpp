@@ -52,6 +52,7 @@ ResolvedScene resolveScene(const Scene& scene, const Box& worldBounds, const glm
   if (!scene.transfer) throw InvalidArgument("scene: no transfer function");
   validateScene(scene);
   ResolvedScene resolved(scene, shownTransfer(scene));
+  if (emits(scene)) resolved.emitted = emissionFunction(scene.emission);
   if (scene.orbit) resolved.camera = orbitCamera(worldBounds, orbitView(*scene.orbit), scene.camera);
   if (scene.spacingUnit == SpacingUnit::voxel) resolved.sampling.spacing *= shortestVoxelEdge(indexToWorld);
   return resolved;

@@ -108,6 +108,7 @@ std::optional<Complaint> findComplaint(const Scene& given) {
   checkSurfaces(check, scene);
   checkFields(check, "mesh", scene);
   checkFields(check, "shading", scene);
+  checkFields(check, "emission", scene);
   checkFields(check, "sampling", scene);
   checkFields(check, "occlusion", scene);
   checkClip(check, scene);

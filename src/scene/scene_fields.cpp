@@ -154,6 +154,28 @@ const std::vector<SceneField>& table() {
        [](Scene& s) -> FieldPlace { return &s.mesh.colour; },
        {.low = 0, .high = 1}},
 
+      {"emission.kind", "emission-kind", "Emission",
+       "what values of --emission-grid are: blackbody (temperatures) or table (looked up in --emission-tf)",
+       [](Scene& s) -> FieldPlace { return Choice(s.emission.kind, kEmissionKinds); }},
+      {"emission.scale",
+       "emission-scale",
+       "Emission",
+       "kelvin per unit of the grid's values; of a table: what values are multiplied by before they are looked up",
+       [](Scene& s) -> FieldPlace { return &s.emission.scale; },
+       {.low = 0, .lowOpen = true}},
+      {"emission.offset", "emission-offset", "Emission", "kelvin where the value is 0; of a table: added to values",
+       [](Scene& s) -> FieldPlace { return &s.emission.offset; }},
+      {"emission.brightness", "emission-brightness", "Emission",
+       "of a black body: stefan-boltzmann (by the fourth power of the temperature), planck (its luminance, which grows "
+       "faster) or constant (its colour alone)",
+       [](Scene& s) -> FieldPlace { return Choice(s.emission.brightness, kEmissionBrightnesses); }},
+      {"emission.intensity",
+       "emission-intensity",
+       "Emission",
+       "radiance per world unit of a black body of 1500 K; of a table: a factor",
+       [](Scene& s) -> FieldPlace { return &s.emission.intensity; },
+       {.low = 0}},
+
       {"model", "model", "Light", models, [](Scene& s) -> FieldPlace { return Choice(s.model, kModels); }},
       {"method", "method", "Light",
        "of the models cone (dos, ordinates or light-volume), lights (ordinates or light-volume) and ambient "

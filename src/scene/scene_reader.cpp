@@ -52,9 +52,10 @@ RawLayout readRawLayout(const JsonValue& value) {
 
 void readVolume(const JsonValue& value, const SceneFolder& folder, VolumeReference& volume) {
   volume.besideOnly = folder.besideOnly();
-  value.allowFields({"file", "grid", "series", "where", "raw", "spacing", "origin"});
+  value.allowFields({"file", "grid", "emissionGrid", "series", "where", "raw", "spacing", "origin"});
   if (const auto file = value.find("file")) volume.file = folder.file(*file);
   if (const auto grid = value.find("grid")) volume.grid = grid->string();
+  if (const auto emission = value.find("emissionGrid")) volume.emissionGrid = emission->string();
   if (const auto series = value.find("series")) volume.series = series->string();
   if (const auto where = value.find("where"))
     for (const JsonValue& condition : where->items()) volume.where.push_back(condition.string());
@@ -130,6 +131,11 @@ void readMeshOf(const JsonValue& value, const SceneFolder& folder, Scene& scene)
   }
 }
 
+void readEmission(const JsonValue& value, const SceneFolder& folder, Scene& scene) {
+  readSection(value, "emission", scene, {"transfer"});
+  if (const auto transfer = value.find("transfer")) scene.emission.table = readTransfer(*transfer, folder);
+}
+
 void readClip(const JsonValue& value, Scene& scene) {
   value.allowFields({"planes", "box", "keys", "curve"});
   if (const auto planes = value.find("planes")) readClipPlanes(*planes, scene);
@@ -151,7 +157,7 @@ Scene parseScene(std::string_view text, const std::string& source, const std::fi
   Scene scene;
   readSection(root, "", scene,
               {"description", "volume", "camera", "transfer", "window", "sigmaScale", "light", "sampling", "occlusion",
-               "clip", "bricks", "surfaces", "mesh", "shading"});
+               "clip", "bricks", "surfaces", "mesh", "shading", "emission"});
   if (const auto description = root.find("description")) description->string();
   if (const auto volume = root.find("volume")) readVolume(*volume, folder, scene.volume);
   if (const auto camera = root.find("camera")) readCamera(*camera, scene);
@@ -171,6 +177,7 @@ Scene parseScene(std::string_view text, const std::string& source, const std::fi
   if (const auto surfaces = root.find("surfaces")) readSurfaces(*surfaces, scene);
   if (const auto mesh = root.find("mesh")) readMeshOf(*mesh, folder, scene);
   if (const auto shading = root.find("shading")) readSection(*shading, "shading", scene);
+  if (const auto emission = root.find("emission")) readEmission(*emission, folder, scene);
   if (const auto bricks = root.find("bricks")) readSection(*bricks, "bricks", scene);
   // What has keys is shown as it is at frame 0, where a picture is of no frame.
   scene = sceneAt(scene, 0);

@@ -35,6 +35,7 @@ std::string printedRaw(const RawLayout& raw) {
 std::string printedVolume(const VolumeReference& volume) {
   JsonFields fields{{"file", jsonString(volume.file.string())}};
   if (!volume.grid.empty()) fields.emplace_back("grid", jsonString(volume.grid));
+  if (!volume.emissionGrid.empty()) fields.emplace_back("emissionGrid", jsonString(volume.emissionGrid));
   if (!volume.series.empty()) fields.emplace_back("series", jsonString(volume.series));
   std::vector<std::string> where;
   for (const std::string& condition : volume.where) where.push_back(jsonString(condition));
@@ -60,6 +61,12 @@ std::string printedMesh(Scene& scene) {
     fields.emplace_back("file", jsonString(scene.mesh.file.string()));
   }
   for (const auto& field : printedFields("mesh", scene)) fields.push_back(field);
+  return jsonObject(fields);
+}
+
+std::string printedEmission(Scene& scene) {
+  JsonFields fields = printedFields("emission", scene);
+  if (scene.emission.table) fields.emplace_back("transfer", printTransferFunction(*scene.emission.table));
   return jsonObject(fields);
 }
 
@@ -89,6 +96,8 @@ std::string printScene(const Scene& given) {
   if (scene.mesh != SceneMesh{} || !printedKeys("mesh", scene).empty()) fields.emplace_back("mesh", printedMesh(scene));
   if (scene.shading != ShadingOptions{} || !printedKeys("shading", scene).empty())
     fields.emplace_back("shading", jsonObject(printedFields("shading", scene)));
+  if (scene.emission != EmissionSettings{} || !printedKeys("emission", scene).empty())
+    fields.emplace_back("emission", printedEmission(scene));
   fields.emplace_back("light", printedLight(scene));
   fields.emplace_back("sampling", jsonObject(printedFields("sampling", scene)));
   fields.emplace_back("occlusion", jsonObject(printedFields("occlusion", scene)));

@@ -67,12 +67,17 @@ std::vector<BrickParts::Ranges> BrickParts::rangesOf(const glm::ivec3& origin) c
   const std::size_t voxels = volume_.layout.voxels();
   std::vector<float> values(voxels), gradients(volume_.hasGradients ? voxels : 0);
   volume_.read(origin, values, gradients);
-  std::vector<Range> ofValues, ofGradients;
+  std::vector<Range> ofValues, ofGradients, ofEmission;
   measure(values, ofValues);
   if (volume_.hasGradients) measure(gradients, ofGradients);
+  if (volume_.hasEmission) {
+    volume_.readEmission(origin, values);
+    measure(values, ofEmission);
+  }
   std::vector<Ranges> ranges(perBrick());
   for (std::size_t i = 0; i < ranges.size(); ++i)
-    ranges[i] = {ofValues[i], volume_.hasGradients ? ofGradients[i] : Range{0, 0}};
+    ranges[i] = {ofValues[i], volume_.hasGradients ? ofGradients[i] : Range{0, 0},
+                 volume_.hasEmission ? ofEmission[i] : Range{0, 0}};
   return ranges;
 }
 
@@ -88,9 +93,9 @@ void BrickParts::read(std::span<const glm::ivec3> origins) {
 }
 
 void BrickParts::each(const glm::ivec3& origin,
-                      const std::function<void(std::size_t, const Range&, const Range&)>& visit) const {
+                      const std::function<void(std::size_t, const Range&, const Range&, const Range&)>& visit) const {
   const std::vector<Ranges>& ranges = bricks_.at(origin);
-  for (std::size_t i = 0; i < ranges.size(); ++i) visit(i, ranges[i].value, ranges[i].gradient);
+  for (std::size_t i = 0; i < ranges.size(); ++i) visit(i, ranges[i].value, ranges[i].gradient, ranges[i].emission);
 }
 
 }  // namespace umbrick

@@ -30,14 +30,15 @@ class BrickParts {
 
   /// Reads the bricks at these origins that were not read yet.
   void read(std::span<const glm::ivec3> origins);
-  /// Calls visit(part, values, gradients) for the parts of a brick, x fastest. As those of bricks do, ranges count what
-  /// an apron around the part holds. @pre divides(), and the brick was read
+  /// Calls visit(part, values, gradients, emission) for the parts of a brick, x fastest. As those of bricks do, ranges
+  /// count what an apron around the part holds. @pre divides(), and the brick was read
   void each(const glm::ivec3& origin,
-            const std::function<void(std::size_t part, const Range& value, const Range& gradient)>& visit) const;
+            const std::function<void(std::size_t part, const Range& value, const Range& gradient,
+                                     const Range& emission)>& visit) const;
 
  private:
   struct Ranges {
-    Range value, gradient;
+    Range value, gradient, emission;
   };
   struct Hash {
     std::size_t operator()(const glm::ivec3& o) const;

@@ -85,6 +85,7 @@ void setSlabUniforms(GlProgram& program, const Frame& frame, const IndexView& vi
   for (const glm::dvec4& plane : planes) inShader.emplace_back(plane);
   program.set("clip_planes", inShader);
   frame.transfer.setUniforms(program, frame.atlas);
+  if (frame.scene.emitted) program.set("ambient", glm::vec3(frame.scene.ambient));
 }
 
 void SlicePass::fill(Frame& frame, std::int64_t first, std::int64_t last) {
@@ -93,7 +94,7 @@ void SlicePass::fill(Frame& frame, std::int64_t first, std::int64_t last) {
 
 void bindVolume(const Frame& frame, int texture) {
   frame.gl.BindTextureUnit(kAtlasUnit, frame.atlas.texture(texture));
-  frame.gl.BindTextureUnit(kTransferUnit, frame.transfer.texture());
+  frame.transfer.bind(frame.gl);
 }
 
 SaturationTest::SaturationTest(const GlFunctions& gl)

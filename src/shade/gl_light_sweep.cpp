@@ -148,6 +148,7 @@ void GlLightSweep::sweep(const ResidentVolume& resident, const BrickSelection& b
   for (const char* name : {"kQuadrature", "kUniformStretches"}) volume.constants[name] = 0;
   for (const char* name : {"kValueSteps", "kGradientSteps"}) volume.constants[name] = 1;
   if (medium.transfer.is2d()) transfer.setConstants(volume.constants);
+  volume.constants["kEmission"] = 0;  // nothing of it is light
   makeTables(volume);
   const LitBricks lit = findBlocks(volume);
   std::array<std::optional<LightSlabs>, 3> slabs;

@@ -90,13 +90,13 @@ class RayCaster::Implementation {
 
   void updateMedium(const ResolvedScene& next, const ResolvedScene* before) {
     checkScene(next, resident_);
-    const bool lookup = !before || before->transfer != next.transfer ||
+    const bool lookup = !before || before->transfer != next.transfer || before->emitted != next.emitted ||
                         before->sampling.spacing != next.sampling.spacing ||
                         before->sampling.quadrature != next.sampling.quadrature;
     const bool selection =
         lookup || before->bricks.culling != next.bricks.culling || sharingOf(*before) != sharingOf(next);
     Held made;
-    if (lookup) made.transfer.emplace(gl_, next.transfer, next.sampling, volume_, resident_.format());
+    if (lookup) made.transfer.emplace(gl_, next.transfer, next.sampling, volume_, resident_.format(), next.emitted);
     const TransferLookup& transfer = lookup ? *made.transfer : *held_.transfer;
     const bool background = showsBackground(transfer, volume_);
     bool fits = fits_;
@@ -249,8 +249,8 @@ class RayCaster::Implementation {
     plan.phase = phase;
     plan.skips = rays.scene.bricks.culling;
     plan.version = version_;
-    plan.isShown = [&](const Range& value, const Range& gradient) {
-      return held_.transfer->isVisible(value, gradient);
+    plan.isShown = [&](const Range& value, const Range& gradient, const Range& emission) {
+      return held_.transfer->isVisible(value, gradient, emission);
     };
     if (rays.light)
       plan.require = [&](std::span<const std::int32_t> positions) { light_.require(gl_, *held_.bricks, positions); };

@@ -49,6 +49,7 @@ void RayPass::begin(const RayScene& rays) {
   GlProgram& program = program_.get(rays.gl, constants);
   const BrickAtlas& atlas = rays.bricks.atlas();
   rays.transfer.setUniforms(program, atlas);
+  if (rays.scene.emitted) program.set("ambient", glm::vec3(rays.scene.ambient));
   if (light) program.set("whole_light", glm::vec3(light->whole()));
   rays.codes.setUniforms(program);
   setPhongUniforms(program, rays.scene, rays.volume.indexToWorld);
@@ -70,7 +71,7 @@ void RayPass::setState(const RayScene& rays, const RayRun& run) {
     gl.Enablei(GL_BLEND, target);
     gl.BlendFunci(target, target == 1 ? GL_ONE : GL_ONE_MINUS_DST_ALPHA, GL_ONE);
   }
-  gl.BindTextureUnit(kTransferUnit, rays.transfer.texture());
+  rays.transfer.bind(gl);
   gl.BindTextureUnit(kSlotsUnit, slots_.texture());
   if (rays.start) gl.BindTextureUnit(kStartUnit, rays.start->name());
   if (rays.ends) gl.BindTextureUnit(kEndUnit, rays.ends->name());

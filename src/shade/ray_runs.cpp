@@ -78,8 +78,8 @@ void RayRuns::findParts(const Walk& walk, std::span<const std::int32_t> position
   if (divided) parts_.read(origins);
   for (std::size_t i = 0; i < origins.size(); ++i) {
     if (divided)
-      parts_.each(origins[i], [&](std::size_t part, const Range& value, const Range& gradient) {
-        shown[i * each + part] = plan.isShown(value, gradient);
+      parts_.each(origins[i], [&](std::size_t part, const Range& value, const Range& gradient, const Range& emission) {
+        shown[i * each + part] = plan.isShown(value, gradient, emission);
         if (plan.bound) bounds_[i * each + part] = plan.bound(value);
       });
     else if (plan.bound)

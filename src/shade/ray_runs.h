@@ -33,7 +33,7 @@ struct RayRunPlan {
   bool joins = true;  // see SlotCells
   /// What the parts of bricks show. A number stands for it, which changes with it.
   std::uint64_t version = 0;
-  std::function<bool(const Range& value, const Range& gradient)> isShown = {};
+  std::function<bool(const Range& value, const Range& gradient, const Range& emission)> isShown = {};
   std::function<float(const Range& value)> bound = {};  // see SlotCells::bounds; none: there is none
   /// Brings what lies beside these bricks, such as light.
   std::function<void(std::span<const std::int32_t> positions)> require = {};

@@ -33,7 +33,8 @@ struct Dirty {
 
   Dirty() = default;
   Dirty(const ResolvedScene& before, const ResolvedScene& after)
-      : lookup(before.transfer != after.transfer || before.sampling.spacing != after.sampling.spacing ||
+      : lookup(before.transfer != after.transfer || before.emitted != after.emitted ||
+               before.sampling.spacing != after.sampling.spacing ||
                before.sampling.quadrature != after.sampling.quadrature),
         selection(lookup || before.bricks.culling != after.bricks.culling || sharingOf(before) != sharingOf(after)),
         targets(targetsOf(before) != targetsOf(after)),
@@ -85,7 +86,7 @@ class SliceRenderer::Implementation {
     checkScene(next);
     resetGlState(gl_);
     std::optional<TransferLookup> lookup;
-    if (dirty.lookup) lookup.emplace(gl_, next.transfer, next.sampling, volume_, resident_.format());
+    if (dirty.lookup) lookup.emplace(gl_, next.transfer, next.sampling, volume_, resident_.format(), next.emitted);
     const TransferLookup& transfer = lookup ? *lookup : *transfer_;
     bool backgroundVisible = backgroundVisible_;
     std::optional<BrickSelection> selection;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "shade/constants.h"
 #include "umbrick/core/error.h"
 #include "umbrick/optics/transfer_stretches.h"
 
@@ -154,7 +155,7 @@ void checkStretches(const GlFunctions& gl, const std::vector<AxisStretch>& stret
 }  // namespace
 
 TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& transfer, const SamplingOptions& sampling,
-                               const Bricks& volume, VoxelFormat format)
+                               const Bricks& volume, VoxelFormat format, const std::optional<TransferFunction>& emitted)
     : transfer_(bounded(transfer, sampling.spacing)),
       scale_(texelScale(volume, format)),
       background_(volume.background),
@@ -163,6 +164,7 @@ TransferLookup::TransferLookup(const GlFunctions& gl, const TransferFunction& tr
       // Half-floats are off by 2^-11 of a magnitude, even where the values are stored exactly.
       gradientRounding_(format == VoxelFormat::half ? 0x1p-10 : 0x1p-20),
       mode_((transfer.is2d() ? 2 : 0) + (sampling.quadrature == Quadrature::midpoint ? 1 : 0)) {
+  if (emitted) emission_.emplace(gl, *emitted);
   const std::vector<AxisStretch> values = axisStretches(transfer_.values());
   checkStretches(gl, values, transfer_.is2d());
   const std::vector<glm::vec2> valueEnds = endsInTexels(
@@ -230,11 +232,18 @@ void TransferLookup::setConstants(ShaderConstants& constants) const {
   constants["kUniformStretches"] = static_cast<int>(uniforms_.size() / 3);
   constants["kValueSteps"] = valueSteps_;
   constants["kGradientSteps"] = gradientSteps_;
+  constants["kEmission"] = emission_.has_value();
+}
+
+void TransferLookup::bind(const GlFunctions& gl) const {
+  gl.BindTextureUnit(kTransferUnit, texture_.name());
+  if (emission_) gl.BindTextureUnit(kEmissionUnit, emission_->texture());
 }
 
 void TransferLookup::setUniforms(GlProgram& program, const BrickAtlas& atlas) const {
   const double empty = atlas.texelOf(background_);
   program.set("empty_texel", glm::vec3(empty, std::abs(empty) * emptyRounding_, scale_.toTexel(background_)));
+  if (emission_) emission_->setUniforms(program);
   if (uniforms_.empty()) return;
   program.set("stretches", uniforms_);
   if (uniforms_.size() / 3 > kComparedStretches) return;

@@ -114,7 +114,7 @@ RayRunPlan ValueCaster::planOf(const ResolvedScene& scene) {
   // Bounds depend on the mode, and all else on what the bricks were selected for.
   const bool smallest = scene.mode == Mode::minip;
   plan.version = 2 * version_ + static_cast<std::uint64_t>(smallest);
-  plan.isShown = [this](const Range& value, const Range&) {
+  plan.isShown = [this](const Range& value, const Range&, const Range&) {
     return isWanted(*wanted_, resident_.volume().background, value);
   };
   if (wanted_->lit)

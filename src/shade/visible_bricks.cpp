@@ -16,7 +16,7 @@ std::vector<std::int32_t> visibleBricks(ResidentVolume& resident, const Transfer
   const std::vector<Brick>& bricks = resident.volume().bricks;
   std::vector<std::int32_t> visible;
   for (std::size_t i = 0; i < bricks.size(); ++i)
-    if (!culling || transfer.isVisible(bricks[i].value, bricks[i].gradient))
+    if (!culling || transfer.isVisible(bricks[i].value, bricks[i].gradient, bricks[i].emission))
       visible.push_back(static_cast<std::int32_t>(i));
   if (backgroundVisible) {
     const std::span<const std::int32_t> background = resident.background();
@@ -38,6 +38,14 @@ void checkOnGl(const ResolvedScene& scene, const ResidentVolume& resident) {
     throw InvalidArgument(
         "sampling.classification: pre is rendered on the CPU, by rays and by shear-warp, and without occlusion");
   if (scene.transfer.is2d()) requireGradients(resident.volume(), scene.gradients);
+  if (scene.emitted) {
+    if (!resident.volume().hasEmission)
+      throw InvalidArgument("volume.emissionGrid: '" + scene.volume.emissionGrid +
+                            "' needs bricks with the values of that grid, which there are none of");
+    if (scene.sampling.bits == 16)
+      throw InvalidArgument("sampling.bits: 16 holds radiance up to 1, and what a grid emits may be more; must be 32");
+    requireDarkBackground(*scene.emitted, resident.volume().emissionBackground);
+  }
   checkSize(scene, resident.context());
 }
 
@@ -53,7 +61,8 @@ void readLayers(const GlFunctions& gl, const RenderTargets& targets, const Resol
                 Picture& picture) {
   const int width = scene.camera.width, height = scene.camera.height;
   picture.colour = readTexture(gl, targets.eye, width, height);
-  const glm::vec3 ambient(scene.ambient);
+  // Beside emission the ambient radiance is in what shaders write.
+  const glm::vec3 ambient = scene.emitted ? glm::vec3(1) : glm::vec3(scene.ambient);
   const auto unit = static_cast<float>(brightest);
   for (std::size_t i = 0; i < picture.colour.pixels.size(); i += 4) {
     float* pixel = &picture.colour.pixels[i];

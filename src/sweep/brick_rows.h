@@ -80,6 +80,7 @@ class RowReader {
   bool has(int field) const {
     if (field == 0) return true;
     if (field == 1) return table_.is2d() && !classified_;
+    if (field == kEmissionField) return false;  // shear-warp does not render it
     return field < kColourFields ? field - kLightFields < lights_ : classified_;
   }
   /// Interpolates voxels begin <= u < end of the row at (v, n), which need not be whole. Each field's row is followed

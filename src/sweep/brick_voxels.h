@@ -39,8 +39,11 @@ struct VoxelBrick {
   std::unique_ptr<float[]> gradients;      // grid units per world unit; of 2D functions alone
   std::unique_ptr<float[]> media;          // sigma_t and sigma_s by colour, each of all voxels; see classify()
   std::unique_ptr<std::uint16_t[]> light;  // shares of lightUnit(), by channel; none without a light volume
+  Range emissionRange{0, 0};
+  bool readEmission = false;          // whether that of the second grid was asked for
+  std::unique_ptr<float[]> emission;  // values of the second grid; none where all are the same
   /// The range of the voxels of each group of cells, and whether the function shows anything in it.
-  std::unique_ptr<float[]> ranges;
+  std::unique_ptr<float[]> ranges, emissionRanges;
   std::vector<std::uint8_t> active;
 };
 
@@ -48,7 +51,18 @@ struct VoxelBrick {
 struct PlacedBrick {
   glm::ivec3 origin{0};               // first owned voxel
   const VoxelBrick* brick = nullptr;  // none: nothing of it is visible, so that its voxels are not held
-  float value = 0;                    // then: a value that it has
+  float value = 0, emission = 0;      // then: a value that it has, of each grid
+};
+
+/// What a scene shows of values: the functions of the grid and of the second one, where that emits.
+struct ShownValues {
+  const MediumTable& medium;
+  const MediumTable* emission = nullptr;
+  // NOLINTNEXTLINE(google-explicit-constructor): a medium alone is what most scenes show
+  ShownValues(const MediumTable& table, const MediumTable* emits = nullptr) : medium(table), emission(emits) {}
+  bool shows(const Range& value, const Range& gradient, const Range& emitted) const {
+    return !medium.isTransparent(value, gradient) || (emission && !emission->isTransparent(emitted, {0, 0}));
+  }
 };
 
 /// Holds the bricks that a transfer function shows. A cell is the space between eight voxels; a brick has the cells
@@ -64,16 +78,16 @@ class BrickVoxels {
 
   /// Returns the bricks that the function shows, ascending in z, then y, then x.
   /// @param culling  false: all bricks
-  std::vector<Brick> visible(const MediumTable& table, bool culling, bool backgroundVisible) const;
+  std::vector<Brick> visible(const ShownValues& shown, bool culling, bool backgroundVisible) const;
   /// Returns what the voxels of bricks take, and of one of several values. Bricks of one value take none.
-  /// @param gradients  whether they are held, too, as for 2D functions
-  std::uint64_t bytesOf(std::span<const Brick> bricks, bool gradients) const;
-  std::uint64_t bytesEach(bool gradients) const;
+  /// @param gradients  whether they are held, too, as for 2D functions; emission: the same of the second grid
+  std::uint64_t bytesOf(std::span<const Brick> bricks, bool gradients, bool emission = false) const;
+  std::uint64_t bytesEach(bool gradients, bool emission = false) const;
   /// Holds bricks and lets others go. Where this throws, nothing has changed.
   /// @param wanted    some of those that visible() returns, in its order
   /// @param culling   false: all groups are active
   /// @param makeRoom  lets others go first, so that no more is held at any time; they are gone where this throws
-  void hold(std::span<const Brick> wanted, const MediumTable& table, bool culling, bool makeRoom = false);
+  void hold(std::span<const Brick> wanted, const ShownValues& shown, bool culling, bool makeRoom = false);
 
   /// Does the same for pictures that do not look at a transfer function: holds the bricks and marks the groups whose
   /// range of values is wanted.
@@ -100,13 +114,14 @@ class BrickVoxels {
   }
 
  private:
-  void read(std::span<const Brick> wanted, bool gradients);
+  void read(std::span<const Brick> wanted, bool gradients, bool emission);
   std::size_t groupCount() const;
   void load(VoxelBrick& brick, std::vector<float>& values) const;
   template <class Code>
   void store(VoxelBrick& brick, std::span<const float> values) const;
-  void findRanges(VoxelBrick& brick, std::span<const float> values) const;
-  void activate(VoxelBrick& brick, const MediumTable& table, bool culling) const;
+  void loadEmission(VoxelBrick& brick) const;
+  std::unique_ptr<float[]> rangesOf(std::span<const float> values) const;
+  void activate(VoxelBrick& brick, const ShownValues& shown, bool culling) const;
 
   const Bricks& volume_;
   VoxelCode code_ = VoxelCode::f32;

@@ -152,6 +152,12 @@ void samplePacketOf(const PacketSlice& slice, std::span<const PacketBrick> brick
         store(1, brick.gradients ? hn::MulAdd(interpolated(d, brick.gradients + brick.first, slice, cells),
                                               hn::Set(d, slice.gradientFactor), hn::Set(d, slice.gradientFirst))
                                  : hn::Set(d, slice.gradientFirst));
+      if (slice.emits)
+        store(kEmissionField, brick.emission
+                                  ? hn::MulAdd(hn::Sub(interpolated(d, brick.emission + brick.first, slice, cells),
+                                                       hn::Set(d, slice.emissionBias)),
+                                               hn::Set(d, slice.emissionFactor), hn::Set(d, slice.emissionFirst))
+                                  : hn::Set(d, brick.emissionValue));
       for (int c = 0; c < slice.lights; ++c)
         store(2 + c, brick.light
                          ? hn::Mul(interpolated(d, brick.light + brick.first + c * slice.lightStride, slice, cells),

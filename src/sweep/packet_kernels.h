@@ -22,6 +22,8 @@ struct PacketBrick {
   const std::uint16_t* light = nullptr;  // by channel, see lightStride
   const float* media = nullptr;          // of classified voxels, by number, at the same stride; none: empty
   float value = 0;                       // in steps of the table, where there are no voxels
+  const float* emission = nullptr;       // values of the second grid; none where all have one value,
+  float emissionValue = 0;               // in steps of its table
   std::int32_t firstU = 0, firstV = 0;   // cells begin at these voxels,
   std::int32_t endU = 0, endV = 0;       // and end before these
   std::ptrdiff_t first = 0;              // where the voxel at (firstU, firstV) is, on the slice
@@ -40,6 +42,8 @@ struct PacketSlice {
   std::ptrdiff_t lightStride = 0;  // between channels of light, and numbers of media
   int lights = 0;
   bool gradients = false, classified = false;
+  bool emits = false;
+  float emissionBias = 0, emissionFactor = 1, emissionFirst = 0;  // as those of values
 };
 
 /// Interpolates the fields of a packet's rays: those of the first brick that have their place in it, then those of the

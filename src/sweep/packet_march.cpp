@@ -41,6 +41,7 @@ std::uint64_t PacketMarch::march(const std::array<glm::dvec2, kRayGroup>& screen
     marchTogether(own, depths ? &depth : nullptr);
     pixels.colour[i] = own.colour.front();
     pixels.aux[i] = own.aux.front();
+    pixels.emitted[i] = own.emitted.front();
   }
   return samples_;
 }
@@ -49,12 +50,14 @@ void PacketMarch::marchTogether(PacketPixels& pixels, const PacketDepths* depths
   full_ = 0;
   isSampled_ = {};
   for (Lanes* lanes : {&red_, &green_, &blue_, &opacity_, &seen_, &depth_}) lanes->fill(0);
+  for (Lanes& lanes : emitted_) lanes.fill(0);
   if (enterBox()) {
     clip(depths);
     if (first_ != last_) marchLayers();
   }
   for (std::size_t i = 0; i < kRayGroup; ++i) {
     pixels.colour[i] = {red_[i], green_[i], blue_[i], opacity_[i]};
+    pixels.emitted[i] = {emitted_[0][i], emitted_[1][i], emitted_[2][i]};
     // Depth is linear along a ray: the mean way along n has the mean depth.
     pixels.aux[i] = {seen_[i], 0};
     if (!frame_.aux || !(opacity_[i] > 0)) continue;
@@ -288,7 +291,8 @@ void PacketMarch::segment(double from, double to) {
                      length_.data(),
                      enter_.data(),
                      leave_.data(),
-                     &full_};
+                     &full_,
+                     {emitted_[0].data(), emitted_[1].data(), emitted_[2].data()}};
   std::array<const float*, kMostFields> near{}, far{};
   for (std::size_t field = 0; field < kMostFields; ++field) {
     near[field] = fields_[static_cast<std::size_t>(side)][field].data();
@@ -311,6 +315,8 @@ void PacketMarch::sample(double n, int side) {
   fields[0].fill(frame_.classified ? 0 : static_cast<float>(table.stepsOf(voxels.volume().background)));
   for (int c = 0; frame_.classified && c < 3; ++c) fields[static_cast<std::size_t>(kColourFields + c)].fill(0);
   if (table.is2d()) fields[1].fill(static_cast<float>(table.gradientStepsOf(0)));
+  if (frame_.emission)
+    fields[kEmissionField].fill(static_cast<float>(frame_.emission->stepsOf(voxels.volume().emissionBackground)));
   // Where no brick is held nothing is seen: light there is that of the slice before.
   if (frame_.lights > 0) {
     const auto& other = fields_[static_cast<std::size_t>(1 - side)];
@@ -341,6 +347,12 @@ void PacketMarch::sample(double n, int side) {
   slice.bias = codes ? 0 : static_cast<float>(table.origin());
   slice.factor = static_cast<float>(table.perUnit());
   slice.first = static_cast<float>(codes ? table.stepsOf(voxels.offset()) : table.first());
+  if (frame_.emission) {
+    slice.emits = true;
+    slice.emissionBias = static_cast<float>(frame_.emission->origin());
+    slice.emissionFactor = static_cast<float>(frame_.emission->perUnit());
+    slice.emissionFirst = static_cast<float>(frame_.emission->first());
+  }
   slice.classified = frame_.classified;
   slice.gradients = table.is2d();
   slice.gradientFactor = static_cast<float>(table.gradientPerUnit());
@@ -405,11 +417,14 @@ void PacketMarch::addBricks(std::int64_t n, std::int64_t layer, Listed& listed) 
       brick.gradients = held.gradients.get();
       brick.light = held.light.get();
       brick.media = held.media.get();
+      brick.emission = held.emission.get();
+      if (frame_.emission) brick.emissionValue = static_cast<float>(frame_.emission->stepsOf(held.emissionRange.min));
       brick.value = static_cast<float>(frame_.table->stepsOf(held.value.min));
       brick.first = (layout.apron - 1) * (strides[axes_->u] + strides[axes_->v]) +
                     (n - entry->origin[axes_->n] + layout.apron) * strides[axes_->n];
     } else {
       brick.value = static_cast<float>(frame_.table->stepsOf(entry->value));
+      if (frame_.emission) brick.emissionValue = static_cast<float>(frame_.emission->stepsOf(entry->emission));
     }
     bricks_.push_back(brick);
   }

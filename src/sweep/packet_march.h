@@ -41,6 +41,7 @@ struct PacketFrame : SweptFrame {
 struct PacketPixels {
   std::array<glm::vec4, kRayGroup> colour;
   std::array<glm::vec2, kRayGroup> aux;
+  std::array<glm::vec3, kRayGroup> emitted;
 };
 
 /// Where rays begin and end, depths along the view axis, world units.
@@ -100,6 +101,7 @@ class PacketMarch {
   Lanes acrossU_{}, acrossV_{};  // the same by ray
   std::array<glm::dvec2, kRayGroup> exact_{};
   std::array<glm::dvec2, kRayGroup> placesByDepth_{};  // along n: x + y depth
+  std::array<Lanes, 3> emitted_{};
   Lanes red_{}, green_{}, blue_{}, opacity_{}, seen_{}, depth_{}, length_{}, enter_{}, leave_{};
   std::array<std::array<Lanes, kMostFields>, 2> fields_{};
   std::array<double, 2> sampledAt_{};  // along n

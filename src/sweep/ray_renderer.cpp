@@ -267,7 +267,8 @@ class RayRenderer::Implementation {
                 const auto at =
                     static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
                 scene_.storePixel(scene, at, pixels.colour[static_cast<std::size_t>(i)],
-                                  pixels.aux[static_cast<std::size_t>(i)], picture);
+                                  pixels.aux[static_cast<std::size_t>(i)], picture,
+                                  pixels.emitted[static_cast<std::size_t>(i)]);
               }
             }
           samples += taken;

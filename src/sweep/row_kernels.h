@@ -15,9 +15,10 @@ inline constexpr int kRayGroup = 16;
 /// Buffers that rows are read from end with so many numbers more, which are read and not used.
 inline constexpr int kRowPadding = 32;
 /// What is interpolated: the value, the gradient of 2D functions, and light of one or three channels. Of classified
-/// voxels sigma_t stands in the place of the value, and sigma_s by colour in the last places.
-inline constexpr int kMostFields = 8;
-inline constexpr int kLightFields = 2, kColourFields = 5;
+/// voxels sigma_t stands in the place of the value, and sigma_s by colour from kColourFields on. Last comes the value
+/// of a second grid that emits light.
+inline constexpr int kMostFields = 9;
+inline constexpr int kLightFields = 2, kColourFields = 5, kEmissionField = 8;
 
 /// Up to four rows of a brick's voxels between which a row is interpolated, in steps of the table.
 struct VoxelRows {
@@ -50,17 +51,20 @@ struct RowRays {
   const float* length;                  // world length of a ray between slices a voxel apart
   const float *enter, *leave;           // what clip planes leave of a ray: the way along the main axis, voxels
   std::uint8_t* full;                   // by group: all rays are as good as opaque
+  /// Emitted light that reaches the eye, by colour; null: is not asked for.
+  std::array<float*, 3> emitted{};
 };
 
 /// The space between two slices.
 struct RowSegment {
-  float from = 0, to = 0;               // way along the main axis, voxels
-  bool clipped = false;                 // some rays enter or leave in it
-  float saturation = 0;                 // transmittance below which a ray is full
-  bool midpoint = false;                // the medium at the middle, for all of it
-  bool classified = false;              // the fields are media
-  int lights = 0;                       // channels of light among the fields, behind value and gradient
-  std::array<float, 3> power{1, 1, 1};  // share of the power of each channel
+  float from = 0, to = 0;                 // way along the main axis, voxels
+  bool clipped = false;                   // some rays enter or leave in it
+  float saturation = 0;                   // transmittance below which a ray is full
+  bool midpoint = false;                  // the medium at the middle, for all of it
+  bool classified = false;                // the fields are media
+  int lights = 0;                         // channels of light among the fields, behind value and gradient
+  std::array<float, 3> power{1, 1, 1};    // share of the power of each channel
+  const MediumTable* emission = nullptr;  // of the second grid, whose sigma_s is what it emits; null: nothing does
 };
 
 /// Adds what lies between two slices to the rays first, ..., first + count - 1, whole groups.

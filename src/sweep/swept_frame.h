@@ -13,6 +13,7 @@ namespace umbrick {
 struct SweptFrame {
   const BrickVoxels* voxels = nullptr;
   const MediumTable* table = nullptr;
+  const MediumTable* emission = nullptr;  // of the second grid; null: nothing emits
   float saturation = 0;
   bool midpoint = false, aux = false;
   bool classified = false;  // voxels have media, which are interpolated
@@ -30,6 +31,7 @@ struct SweptFrame {
     part.classified = classified;
     part.lights = lights;
     part.power = power;
+    part.emission = emission;
     return part;
   }
 };

@@ -28,6 +28,7 @@ double longestVoxelEdge(const glm::dmat4& indexToWorld) {
 
 bool sweptSupports(const SceneSettings& scene, Technique technique) {
   if (scene.sampling.classification == Classification::pre && traitsOf(scene.model).occlusion) return false;
+  if (scene.sampling.classification == Classification::pre && emits(scene)) return false;
   if (!supports(Method::lightVolume, scene.model)) return false;
   const Method method = occlusionMethod(scene).value_or(Method::lightVolume);
   return method == Method::lightVolume ||
@@ -42,6 +43,8 @@ void SweptScene::checkConeRays(const ResolvedScene& next) const {
   if (next.mode == Mode::hybrid) refuseConeRays(next, "surfaces");
   if (occlusionMethod(next) != Method::coneRays) return;
   if (isShaded(next)) throw InvalidArgument("shading.kind: phong takes light from a light volume, not from cone-rays");
+  if (next.emitted)
+    throw InvalidArgument("method: cone-rays takes no light that a second grid emits; emissionGrid must be none");
   if (next.transfer.is2d())
     throw InvalidArgument("method: cone-rays takes transfer functions of the value alone, without a gradient");
 }
@@ -61,27 +64,41 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
   if (volume().layout.voxels() > kMostVoxels)
     throw InvalidArgument("bricks: one brick has " + std::to_string(volume().layout.voxels()) + " voxels, " +
                           techniqueName(technique_) + " reads up to " + std::to_string(kMostVoxels));
+  if (next.emitted) {
+    if (!volume().hasEmission)
+      throw InvalidArgument("volume.emissionGrid: '" + next.volume.emissionGrid +
+                            "' needs bricks with the values of that grid, which there are none of");
+    requireDarkBackground(*next.emitted, volume().emissionBackground);
+  }
   const bool classified = next.sampling.classification == Classification::pre;
+  const bool emission = before ? before->emitted != next.emitted : next.emitted.has_value();
+  std::optional<MediumTable> emits;
+  if (emission && next.emitted)
+    emits.emplace(*next.emitted, volume().emissionBackground, std::numeric_limits<double>::max());
   const bool transfer =
       !before || before->transfer != next.transfer || before->sampling.classification != next.sampling.classification;
   std::optional<MediumTable> table;
   // A fourth of a segment, which is the least part that is taken, hides colours from an optical depth of 1 on.
   if (transfer)
     table.emplace(next.transfer, volume().background, largestExtinction(), 4 / longestVoxelEdge(volume().indexToWorld));
-  if (transfer || before->bricks.culling != next.bricks.culling || before->bricks.budgetMiB != next.bricks.budgetMiB) {
+  if (transfer || emission || before->bricks.culling != next.bricks.culling ||
+      before->bricks.budgetMiB != next.bricks.budgetMiB) {
     const MediumTable& now = table ? *table : *table_;
     const Range background{volume().background, volume().background};
     const bool backgroundVisible = !volume().domain.empty() && !now.isTransparent(background, {0, 0});
     const Stopwatch watch;
-    std::vector<Brick> visible = voxels_.visible(now, next.bricks.culling, backgroundVisible);
+    const ShownValues shown(now, emits ? &*emits : next.emitted ? &*emission_ : nullptr);
+    const bool emitting = next.emitted.has_value();
+    std::vector<Brick> visible = voxels_.visible(shown, next.bricks.culling, backgroundVisible);
     const std::uint64_t most = next.bricks.budgetMiB << 20,
-                        each = voxels_.bytesEach(now.is2d()) + mediaBytes(classified);
-    const std::uint64_t needed = voxels_.bytesOf(visible, now.is2d()) + visible.size() * mediaBytes(classified);
+                        each = voxels_.bytesEach(now.is2d(), emitting) + mediaBytes(classified);
+    const std::uint64_t needed =
+        voxels_.bytesOf(visible, now.is2d(), emitting) + visible.size() * mediaBytes(classified);
     if (needed > 0 && each > most)
       throw InvalidArgument("bricks.budgetMiB: the voxels of one brick take " + std::to_string((each >> 20) + 1) +
                             " MiB, more than " + std::to_string(most >> 20) + " MiB");
     const bool inBands = needed > most;
-    voxels_.hold(inBands ? std::span<const Brick>() : visible, now, next.bricks.culling);
+    voxels_.hold(inBands ? std::span<const Brick>() : visible, shown, next.bricks.culling);
     if (classified)
       classify(voxels_, next.transfer, largestExtinction());
     else
@@ -93,6 +110,7 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
     loaded_ += voxels_.loaded();
   }
   if (table) table_.emplace(std::move(*table));
+  if (emission) emission_ = std::move(emits);
 }
 
 // What this extinction leaves of light on the way through a thousandth of a voxel is nothing.
@@ -153,13 +171,14 @@ void SweptScene::drawInBands(const ResolvedScene& scene, int rows, int multiple,
   const bool classified = scene.sampling.classification == Classification::pre;
   std::vector<RowSpan> spans;
   for (const Brick& brick : visible_) spans.push_back(rowsOf(brick));
-  for (const RowBand& band : cutBands(spans, rows, multiple, voxels_.bytesEach(table_->is2d()) + mediaBytes(classified),
+  for (const RowBand& band : cutBands(spans, rows, multiple,
+                                      voxels_.bytesEach(table_->is2d(), emission_.has_value()) + mediaBytes(classified),
                                       scene.bricks.budgetMiB << 20)) {
     const Stopwatch watch;
     std::vector<Brick> needed;
     for (std::size_t i = 0; i < spans.size(); ++i)
       if (spans[i].meets(band.begin, band.end)) needed.push_back(visible_[i]);
-    voxels_.hold(needed, *table_, scene.bricks.culling, true);
+    voxels_.hold(needed, shown(), scene.bricks.culling, true);
     if (classified) classify(voxels_, scene.transfer, largestExtinction());
     if (occlusionMethod(scene)) light_.store(voxels_);
     if (isShaded(scene)) shade();
@@ -180,6 +199,7 @@ SweptFrame SweptScene::frame(const ResolvedScene& scene, bool aux) const {
   SweptFrame frame;
   frame.voxels = &voxels_;
   frame.table = &*table_;
+  if (emission_) frame.emission = &*emission_;
   frame.saturation = static_cast<float>(scene.sampling.saturation);
   frame.classified = scene.sampling.classification == Classification::pre;
   frame.midpoint = scene.sampling.quadrature == Quadrature::midpoint;
@@ -205,11 +225,11 @@ double segmentsPerVoxel(const ResolvedScene& scene, const Bricks& volume) {
 }
 
 void SweptScene::storePixel(const ResolvedScene& scene, std::size_t at, const glm::vec4& colour, const glm::vec2& aux,
-                            Picture& picture) const {
+                            Picture& picture, const glm::vec3& emitted) const {
   float* out = &picture.colour.pixels[4 * at];
   const float opacity = std::clamp(colour.w, 0.0f, 1.0f), through = 1 - opacity;
   for (int c = 0; c < 3; ++c) {
-    out[c] = std::max(colour[c], 0.0f) * whole_[c] * static_cast<float>(scene.ambient[c]);
+    out[c] = std::max(colour[c], 0.0f) * whole_[c] * static_cast<float>(scene.ambient[c]) + emitted[c];
     if (scene.background) out[c] += through * static_cast<float>((*scene.background)[c]);
   }
   out[3] = scene.background ? 1 : opacity;

@@ -61,14 +61,16 @@ class SweptScene {
   const std::vector<glm::dvec4>& planes() const { return planes_; }
   const Bricks& volume() const { return voxels_.volume(); }
 
-  /// Fills in a pixel: colour is premultiplied, of light 1; aux is opacity times light, and times depth.
+  /// Fills in a pixel: colour is premultiplied, of light 1; aux is opacity times light, and times depth; emitted is
+  /// what reaches the eye of the light of a second grid.
   void storePixel(const ResolvedScene& scene, std::size_t at, const glm::vec4& colour, const glm::vec2& aux,
-                  Picture& picture) const;
+                  Picture& picture, const glm::vec3& emitted = glm::vec3(0)) const;
 
  private:
   double largestExtinction() const;
   void shade();
   std::uint64_t mediaBytes(bool classified) const;
+  ShownValues shown() const { return {*table_, emission_ ? &*emission_ : nullptr}; }
 
   void checkConeRays(const ResolvedScene& next) const;
 
@@ -77,6 +79,7 @@ class SweptScene {
   BrickLight light_;
   BrickShading shading_;
   std::optional<MediumTable> table_;
+  std::optional<MediumTable> emission_;  // of the second grid; none: nothing emits
   bool backgroundVisible_ = false;
   std::vector<Brick> visible_;
   bool inBands_ = false;      // not all of them are held at once

@@ -108,6 +108,7 @@ TEST_CASE("Every shader that is not an include compiles by itself, or says where
                                           {"kPerVoxel", 1 + perspective},
                                           {"kSurfaces", 1 + quadrature},
                                           {"kLossy", planes > 0},
+                                          {"kEmission", perspective},
                                           {"kPlanes", planes},
                                           {"kContinued", perspective},
                                           {"kTableSteps", 4096},

@@ -105,7 +105,7 @@ class BrickAtlas {
   double formatError() const { return formatError_; }
 
  private:
-  using UniformKey = std::tuple<float, float>;
+  using UniformKey = std::tuple<float, float, float>;
   void checkLimits(int maxEdge);
   // How slots are arranged.
   struct Plan {

@@ -51,6 +51,7 @@ struct Brick {
   Range value;        // grid units, over interior and apron
   /// Gradient magnitude over interior and apron, grid units per world unit; {0, 0} when it is not asked for.
   Range gradient;
+  Range emission{0, 0};  // as `value`, of the second grid; {0, 0} where there is none
   bool uniform() const { return value.min == value.max; }
 };
 
@@ -61,7 +62,7 @@ class Bricks {
 
   BrickLayout layout;
   glm::dmat4 indexToWorld{1};  // an affine transform
-  // The box of active voxels and of others that differ from the background, grown by one voxel.
+  // The box of active voxels and of others that differ from the background, of both grids, grown by one voxel.
   IndexBox domain;
   Range value;     // over all voxels, the background included
   Range gradient;  // over all bricks; {0, 0} without gradients
@@ -71,11 +72,14 @@ class Bricks {
   float anchor = 0;
   bool hasGradients = false;
   GradientFilter gradientFilter = GradientFilter::central;
+  bool hasEmission = false;  // there are values of a second grid, which emits light
+  Range emission{0, 0};      // over all of its voxels, the background included
+  float emissionBackground = 0;
   VoxelFormat exactFormat = VoxelFormat::float32;
   std::uint64_t nonFiniteVoxels = 0;  // active NaN or infinite voxels, which read as background
-  // The cells whose interior or apron holds anything but background, or a gradient; ascending in z, then y, then x.
-  // Among them are cells beyond the domain whose aprons reach into it, since a slab whose middle lies in such a cell
-  // may reach into the domain, too.
+  // The cells whose interior or apron holds anything but background, of either grid, or a gradient; ascending in z,
+  // then y, then x. Among them are cells beyond the domain whose aprons reach into it, since a slab whose middle lies
+  // in such a cell may reach into the domain, too.
   std::vector<Brick> bricks;
 
   /// Returns how far beyond its faces a brick sees voxels: the apron, and one voxel more with gradients.
@@ -90,6 +94,9 @@ class Bricks {
   ///                   world unit
   /// @throw InvalidArgument  a span of the wrong size, or gradients without hasGradients
   virtual void read(const glm::ivec3& origin, std::span<float> values, std::span<float> gradients = {}) const = 0;
+  /// Reads the voxels of the second grid, as read() does those of the first.
+  /// @throw InvalidArgument  a span of the wrong size, or there is no second grid
+  virtual void readEmission(const glm::ivec3& origin, std::span<float> values) const;
 };
 
 /// Checks that bricks have the gradients that 2D transfer functions ask for, found by the filter.

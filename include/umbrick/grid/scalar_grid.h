@@ -16,11 +16,16 @@ struct ScalarGrid {
   std::string name;
   /// Grid units; not 0 when the file held doubles or integers beyond 24 bits: largest |stored - float|.
   double conversionError = 0;
+  /// Values of a second grid, which emits light, on the lattice of this one; none: nothing emits. See
+  /// emission_grid.h.
+  std::shared_ptr<const openvdb::FloatGrid> emission = {};
 
   /// True for a grid of OpenVDB's class "level set": distances to a surface, negative inside.
   bool isLevelSet() const;
   /// Returns the text of a grid's metadata, such as "modality" (see VolumeInfo); empty where there is none.
   std::string metadata(const std::string& key) const;
+  /// Returns the background of the grid that emits, 0 where it is not finite. @pre there is one
+  float emissionBackground() const;
   /// @throw InvalidArgument  the transform is not affine
   glm::dmat4 indexToWorld() const;
   /// Returns the bounds of the centres of the active voxels, tiles included; empty for an empty grid.

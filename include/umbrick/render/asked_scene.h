@@ -38,7 +38,8 @@ struct AskedScene {
   std::optional<double> sigmaScale;
   std::vector<double> isoValues, isoOpacities;  // of isosurfaces, one after another
   std::vector<std::vector<double>> isoColours;
-  std::optional<std::string> mesh;  // its file
+  std::optional<std::string> mesh;              // its file
+  std::optional<std::string> emissionTransfer;  // "emission-tf": a preset or a file, which makes the kind a table
   bool orthographic = false;
   /// Sets the field of each option of the table of scene fields that was given, by the name of the option.
   std::map<std::string, std::function<void(Scene&)>, std::less<>> fields;
@@ -52,6 +53,8 @@ struct AskedScene {
 /// What a picture shows where neither options nor a scene say it.
 struct SceneDefaults {
   Model model = Model::emission;
+  /// A grid that emits light is looked for, where no transfer function is given.
+  bool emission = false;
 };
 
 /// Keys of a scene that an option takes the place of: what is asked for holds at all frames.

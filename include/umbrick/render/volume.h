@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/mat4x4.hpp>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,12 +28,18 @@ struct EmptyVolume : InvalidArgument {
   using InvalidArgument::InvalidArgument;
 };
 
+/// Returns the names by which grids that emit light are found where VolumeReference::emissionGrid is kAutomaticGrid, in
+/// the order in which they are tried, in lower case: those of OpenVDB, Houdini ("temperature", "heat", "flame",
+/// "burn"), Blender ("temperature", "heat", "flame") and EmberGen ("temperature", "flames").
+std::span<const std::string_view> emissionGridNames();
+
 /// A grid that holds something, with its place in the world.
 class Volume {
  public:
   /// Reads a grid of a .vdb or .nvdb file, or any volume that can be converted (the same formats, by the same rules,
   /// see loadVolume), or the first frame of a numbered sequence. Of a file with several grids and no name given it
-  /// takes "density", or else the first scalar one that holds something.
+  /// takes "density", or else the first scalar one that holds something. A grid that emits light is read beside it
+  /// where the reference names one, or finds one (emissionGridNames()).
   /// @throw IoError          as readScalarGrid and openVolume
   /// @throw InvalidArgument  as readScalarGrid and loadVolume
   /// @throw EmptyVolume      the grid has no active voxel, or all voxels of the volume are 0
@@ -55,7 +62,7 @@ class Volume {
   const std::string& name() const { return name_; }
   const ScalarGrid& grid() const { return grid_; }
   const glm::dmat4& indexToWorld() const { return indexToWorld_; }
-  /// Returns the box around the active voxels' centres.
+  /// Returns the box around the active voxels' centres, also of those that emit.
   const Box& worldBounds() const { return worldBounds_; }
   double loadMs() const { return loadMs_; }  // 0 where it was not read from a file
   const Orientation& orientation() const { return orientation_; }
@@ -70,6 +77,7 @@ class Volume {
 
   /// Returns the box of what a transfer function shows: voxels that weaken light by more than a hundredth along the
   /// diagonal of the volume. Where it shows nothing, the box of all active voxels. Faces of voxels count, not centres.
+  /// Of a second grid that emits light, voxels with more than a fifth of its largest value are shown.
   Box visibleBounds(const TransferFunction& transfer) const;
 
   /// Returns the largest gradient magnitude of active voxels, grid units per world unit. It is looked for once.

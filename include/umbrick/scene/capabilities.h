@@ -42,7 +42,7 @@ std::optional<Method> occlusionMethod(const SceneSettings& scene);
 /// @throw InvalidArgument
 void refuseConeRays(const SceneSettings& scene, std::string_view other);
 
-/// Refuses a scene that interpolates media where its model has occlusion, whose light knows values alone.
+/// Refuses a scene that interpolates media where its model has occlusion, or where it emits: both know values alone.
 /// @throw InvalidArgument
 void requireClassification(const SceneSettings& scene);
 
@@ -67,6 +67,10 @@ bool supports(Technique technique, Mode mode);
 bool supportsMode(const SceneSettings& scene, Technique technique);
 /// @throw InvalidArgument  the technique does not render the scene's mode, and which do; or the mode cannot be shaded
 void requireMode(const SceneSettings& scene, Technique technique);
+
+/// Tells whether a picture of the scene shows light that a second grid of its volume emits: only modes that show a
+/// medium and its colours do.
+bool emits(const SceneSettings& scene);
 
 /// Tells whether a picture of the scene reflects light.
 bool isShaded(const SceneSettings& scene);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/mat4x4.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,8 @@ namespace umbrick {
 /// transfer function. Renderers, reference and checks take nothing else.
 struct ResolvedScene : SceneSettings {
   TransferFunction transfer;
+  /// What the values of the second grid emit, see emissionFunction(); none: the scene does not emit, see emits().
+  std::optional<TransferFunction> emitted;
   bool operator==(const ResolvedScene&) const = default;
 
  private:

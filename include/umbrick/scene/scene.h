@@ -17,6 +17,7 @@
 #include "umbrick/core/names.h"
 #include "umbrick/optics/gradient_filter.h"
 #include "umbrick/optics/transfer_function.h"
+#include "umbrick/scene/emission.h"
 #include "umbrick/scene/light_source.h"
 #include "umbrick/scene/mode.h"
 #include "umbrick/scene/scene_keys.h"
@@ -180,10 +181,14 @@ struct RawLayout {
   bool operator==(const RawLayout&) const = default;
 };
 
+/// Stands for the grid that emits light, if there is one, see emissionGridNames() in render/volume.h.
+inline constexpr std::string_view kAutomaticGrid = "auto";
+
 /// Where voxels come from: a grid of a file of grids, or a volume of any format that can be converted.
 struct VolumeReference {
   std::filesystem::path file;
   std::string grid;                        // of a file of grids: empty, "name" or "name[1]"
+  std::string emissionGrid = {};           // of the same file: the grid that emits light, or "auto"; empty: none
   std::string series = {};                 // of DICOM: the UID of a series, or its number in the list, from 1
   std::vector<std::string> where = {};     // of DICOM: only slices with this "Tag=value"
   std::optional<RawLayout> raw = {};       // of a file without a header
@@ -228,6 +233,7 @@ struct SceneSettings {
   std::vector<SceneSurface> surfaces;  // of isosurface and hybrid; none of a level set: where it is 0
   SceneMesh mesh;
   ShadingOptions shading;
+  EmissionSettings emission;  // of VolumeReference::emissionGrid
   /// Gradient magnitudes from which and up to which a medium appears: sigma_t is scaled from 0 at the first one to 1 at
   /// the second one. Of a Scene in its gradientUnit, else grid units per world unit. Both 0: the medium stays as it is.
   glm::dvec2 gradientOpacity{0};
@@ -259,7 +265,7 @@ struct Scene : SceneSettings {
 
 /// Reads a scene. A field that the text leaves out keeps its default; an unknown field is an error. File names are
 /// relative to the scene's folder. All fields are optional, and angles are in degrees:
-///   volume     file, grid, series, where ["Tag=value", ...], spacing [x, y, z], origin [x, y, z],
+///   volume     file, grid, emissionGrid, series, where ["Tag=value", ...], spacing [x, y, z], origin [x, y, z],
 ///              raw {dims [x, y, z], type ("u8", ...), endian ("little", "big"), headerBytes, bitsStored}
 ///   camera     projection ("perspective", "orthographic"), size [width, height], fov, near, and either azimuth and
 ///              elevation around the volume, upAxis, frontAxis ("auto", "x", "-x", ...), zoom and pan [right, up], or
@@ -276,6 +282,8 @@ struct Scene : SceneSettings {
 ///   mesh       file (PLY, OBJ, STL), colour [r, g, b]
 ///   shading    kind ("auto", "none", "phong"), light ("auto", "headlight", "sources"), ambient, diffuse, specular,
 ///              shininess
+///   emission   kind ("blackbody", "table"), scale, offset, brightness ("stefan-boltzmann", "planck", "constant"),
+///              intensity, transfer (of a table, as above)
 ///   light      ambient [r, g, b], background [r, g, b], sources [{type, frame ("view", "world"), ...}, ...]; by type,
 ///                "cone"         axis, theta, radiance ([r, g, b], or one number)
 ///                "directional"  direction, softAngle (of theta's kind), radiance: the same, and printed as a cone
@@ -287,7 +295,8 @@ struct Scene : SceneSettings {
 ///              pixelSamples (tableSize, of scenes made by earlier versions, is read and means nothing)
 ///   occlusion  theta, footprint, passes, algorithm, perspectiveCorrection, bits, directions, scale, lightSpacing
 ///   clip       planes [[a, b, c, d], ...], box [[x, y, z], [x, y, z]]
-///   keys       [{frame, ...}, ...], curve ("smooth", "linear")    in camera, shading, light, occlusion, clip and the
+///   keys       [{frame, ...}, ...], curve ("smooth", "linear")    in camera, shading, emission, light, occlusion, clip
+///   and the
 ///              scene itself: numbers, vectors, planes, box and surfaces (as many at all keys) at those frames; in
 ///              transfer {frame, function}. A field that only some keys have runs between these
 ///   bricks     bricked, interior, culling, format ("auto", "unorm8", "unorm16", "half", "float32"), budgetMiB
