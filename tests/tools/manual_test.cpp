@@ -152,8 +152,8 @@ TEST_CASE("bash completes commands, options, words and files", "[tools]") {
   CHECK(offered("umbrick render --dims 2 3 4 s") == Words{"scene.json"});
   CHECK(offered("umbrick render --eye 1 -2 3 s") == Words{"scene.json"});
   CHECK(offered("umbrick render --annotate triad,sc") == Words{"triad,scale"});
-  CHECK(offered("umbrick study --methods dos ra") ==
-        Words{"rays", "rays-gl", "rays-gl-light-volume", "rays-light-volume", "rays-midpoint", "rays-pre"});
+  CHECK(offered("umbrick study --methods dos ra") == Words{"rays", "rays-gl", "rays-gl-box", "rays-gl-light-volume",
+                                                           "rays-light-volume", "rays-midpoint", "rays-pre"});
   CHECK(offered("umbrick nothing s").empty());
 }
 
