@@ -357,8 +357,10 @@ Scene makeScene(const SceneOptions& options, const SceneDefaults& defaults, bool
   else
     scene.volume.file = options.input;
   applyVolumeOptions(options.volume, scene.volume);
+  SceneDefaults wanted = defaults;
+  if (options.volume.emissionGrid) wanted.emission = false;  // "none" is an answer, too
   std::vector<ReplacedKeys> replaced;
-  scene = asUsage([&] { return askedScene(options, std::move(scene), defaults, &replaced); });
+  scene = asUsage([&] { return askedScene(options, std::move(scene), wanted, &replaced); });
   for (const ReplacedKeys& keys : replaced)
     std::cerr << keys.option << " takes the place of the keys of " << keys.field << " in "
               << printable(options.input.string()) << '\n';
