@@ -122,6 +122,9 @@ TEST_CASE("TimeValue of a VTI file is its time, however it is stored", "[ingest]
   is(file(field("format=\"ascii\"", "0.5", "Float32")), "time 0.5");
   // The length of 8 bytes and 1.5 in base64.
   is(file(field("format=\"binary\"", "CAAAAAAAAAAAAPg/")), "time 1.5");
+  std::string big = file(field("format=\"binary\"", "AAAACD/4AAAAAAAA"));  // the same, the highest byte first
+  big.replace(big.find("Little"), 6, "Big");
+  is(big, "time 1.5");
   is(file(field("format=\"appended\" offset=\"0\"", ""), "<AppendedData encoding=\"raw\">_" +
                                                              bytesOf<std::uint32_t>({8}) + bytesOf<double>({-2.25}) +
                                                              "</AppendedData>"),

@@ -98,9 +98,12 @@ void normaliseVoxels(const VoxelLayout& layout, std::span<std::byte> voxels) {
     case 2:
       return layout.type == VoxelType::u16 ? normaliseAs<std::uint16_t>(layout, voxels)
                                            : normaliseAs<std::int16_t>(layout, voxels);
-    default:
+    case 4:
       assert(layout.type == VoxelType::f32);
       return normaliseAs<float>(layout, voxels);
+    default:
+      assert(layout.type == VoxelType::f64);
+      return normaliseAs<double>(layout, voxels);
   }
 }
 
