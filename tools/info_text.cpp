@@ -11,8 +11,9 @@
 namespace umbrick::tools {
 namespace {
 
-constexpr const char* kUsualSources[] = {"source_format", "source_file", "modality", "series_description",
-                                         "space",         "length_unit", "rescale",  "value_unit", "frame", "time", "time_step", "time_unit", "cycle"};
+constexpr const char* kUsualSources[] = {
+    "source_format", "source_file", "modality", "series_description", "space",     "length_unit", "rescale",
+    "value_unit",    "frame",       "time",     "time_step",          "time_unit", "cycle"};
 
 }  // namespace
 
