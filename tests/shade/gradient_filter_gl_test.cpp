@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 
+#include "shade/cast_grid.h"
 #include "shade/grid_picture.h"
 #include "support/gl_fixture.h"
 #include "support/observed_order.h"
@@ -9,7 +10,6 @@
 #include "sweep/value_picture.h"
 #include "umbrick/core/error.h"
 #include "umbrick/image/image_difference.h"
-#include "umbrick/shade/ray_caster.h"
 
 using namespace umbrick;
 using Catch::Contains;
@@ -25,14 +25,6 @@ ResolvedScene splinedScene(const ScalarGrid& grid, Projection projection) {
                  orbitCamera(grid.worldBounds(), 1.7, 0.4, base), 0.25 * shortestVoxelEdge(grid.indexToWorld()));
   scene.gradients = GradientFilter::bspline;
   return scene;
-}
-
-Picture castSplined(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene, bool layers = false,
-                    const AtlasLimits& limits = {}) {
-  RenderOptions options;
-  options.visibilityAndDepth = layers;
-  const auto volume = valueBricks(grid, scene);
-  return RayCaster(context, *volume, scene, options, limits).render();
 }
 
 ResolvedScene centralOf(ResolvedScene scene) {
@@ -54,25 +46,25 @@ TEST_CASE("Gradients by B-splines are on OpenGL those of the CPU and of the refe
   ramp.gradientOpacity = {0.03, 0.13};
   ramp.transfer = withGradientOpacity(ramp.transfer, ramp.gradientOpacity);
 
-  const Picture seen = castSplined(*context, grid, surface, true);
+  const Picture seen = castGrid(*context, grid, surface, true);
   const Picture onCpu = valuePicture(grid, surface, {}, true);
   // A pixel at a silhouette may show the surface in one and not in the other: 24 x 24 pixels, of which a few.
   CHECK(rmsDifference(seen.colour, onCpu.colour) < 1e-3);
   CHECK(differenceOf(layerOf(seen, "normal"), layerOf(onCpu, "normal")).p999 < 2e-3);
-  CHECK(rmsDifference(seen.colour, castSplined(*context, grid, centralOf(surface)).colour) > 5e-4);
+  CHECK(rmsDifference(seen.colour, castGrid(*context, grid, centralOf(surface)).colour) > 5e-4);
 
   for (const ResolvedScene& medium : {shaded, ramp}) {
     INFO("2D " << medium.transfer.is2d());
     const Image exact = renderReference(grid, medium).colour;
-    const Picture ours = castSplined(*context, grid, medium);
+    const Picture ours = castGrid(*context, grid, medium);
     CHECK(largestAlpha(exact) > 0.3);
     const double off = rmsDifference(ours.colour, exact);
     CHECK(off < 1e-3);
     CHECK(rmsDifference(ours.colour, valuePicture(grid, medium, 4).colour) < 1e-3);
-    CHECK(off < rmsDifference(castSplined(*context, grid, centralOf(medium)).colour, exact));
+    CHECK(off < rmsDifference(castGrid(*context, grid, centralOf(medium)).colour, exact));
     AtlasLimits small;
     small.budgetBytes = ours.stats.textureBytes / 3;
-    CHECK(maxDifference(castSplined(*context, grid, medium, false, small).colour, ours.colour) < 1e-4);
+    CHECK(maxDifference(castGrid(*context, grid, medium, false, small).colour, ours.colour) < 1e-4);
   }
   CHECK(rmsDifference(renderGrid(*context, grid, ramp).colour, renderReference(grid, ramp).colour) < 1e-3);
 }

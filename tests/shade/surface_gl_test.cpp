@@ -3,13 +3,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "shade/cast_grid.h"
 #include "support/gl_fixture.h"
 #include "support/observed_order.h"
 #include "support/small_blobs.h"
 #include "sweep/value_picture.h"
 #include "umbrick/core/error.h"
 #include "umbrick/image/image_difference.h"
-#include "umbrick/shade/ray_caster.h"
 
 using namespace umbrick;
 using Catch::Contains;
@@ -25,14 +25,6 @@ ResolvedScene surfaceScene(const Camera& camera, std::vector<SceneSurface> surfa
   return scene;
 }
 
-Picture castSurface(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene, bool layers = false,
-                    const AtlasLimits& limits = {}) {
-  RenderOptions options;
-  options.visibilityAndDepth = layers;
-  const auto volume = valueBricks(grid, scene);
-  return RayCaster(context, *volume, scene, options, limits).render();
-}
-
 // Places along a ray are single precision: of some hundred voxels, 1e-5 of a voxel each, a few of which add up along
 // the way. That is the fraction of a voxel to which crossings are refined.
 constexpr double kPlace = 1e-4;
@@ -44,7 +36,7 @@ struct Errors {
 };
 template <class Distance>
 Errors errorsOf(const GlContext& context, const ScalarGrid& grid, const Camera& camera, const Distance& distance) {
-  const Picture picture = castSurface(context, grid, surfaceScene(camera, {surfaceAt(0)}), true);
+  const Picture picture = castGrid(context, grid, surfaceScene(camera, {surfaceAt(0)}), true);
   const Image &position = layerOf(picture, "position"), &normal = layerOf(picture, "normal");
   Errors errors;
   for (int y = 0; y < camera.height; ++y)
@@ -143,7 +135,7 @@ TEST_CASE("Surfaces on OpenGL are those of rays on the CPU and of the reference"
       }
       SECTION("by several samples a pixel") { scene.sampling.pixelSamples = 3; }
       SECTION("over a background") { scene.background = glm::dvec3(0.1, 0.2, 0.3); }
-      const Picture ours = castSurface(*context, grid, scene, true), theirs = valuePicture(grid, scene, {}, true);
+      const Picture ours = castGrid(*context, grid, scene, true), theirs = valuePicture(grid, scene, {}, true);
       const ReferencePicture exact = renderReference(grid, scene);
       CHECK(largestAlpha(exact.colour) > 0.5);
       // Normals turn by a tenth or so from voxel to voxel, and a highlight's exponent is 20. Where a ray only just
@@ -161,11 +153,11 @@ TEST_CASE("A sheet that is thinner than a step, and a single voxel, are met on O
   const ScalarGrid sheet = makeFilled(glm::ivec3(20), glm::ivec3(0), [](const glm::ivec3& i) { return i.z == 10; });
   ResolvedScene scene = surfaceScene(orthographicCamera({12, 14, 60}, {9.5, 9.5, 10}, 10, 24), {surfaceAt(0.98)});
   scene.sampling.spacing = 2;  // of no effect
-  const Image seen = castSurface(*context, sheet, scene).colour;
+  const Image seen = castGrid(*context, sheet, scene).colour;
   for (std::size_t i = 3; i < seen.pixels.size(); i += 4) CHECK(seen.pixels[i] == 1);
   const ScalarGrid voxel = makeVoxels({{{5, 5, 5}, 1.0f}});
   scene.camera = orthographicCamera({5, 5, 60}, {5, 5, 5}, 0.02, 8);
-  const Image single = castSurface(*context, voxel, scene).colour;
+  const Image single = castGrid(*context, voxel, scene).colour;
   for (std::size_t i = 3; i < single.pixels.size(); i += 4) CHECK(single.pixels[i] == 1);
 }
 
@@ -180,12 +172,12 @@ TEST_CASE("Transparent surfaces are composited on OpenGL in the order in which r
   scene.camera.up = {0, 1, 0};
   scene.shading.kind = Shading::none;
   scene.clipBox = Box{{0, 0, 1}, {19, 19, 18}};
-  const Image front = castSurface(*context, grid, scene).colour;
+  const Image front = castGrid(*context, grid, scene).colour;
   CHECK(front.pixels[0] == Approx(0.5));
   CHECK(front.pixels[1] == Approx(0.5 * 0.25));
   CHECK(front.pixels[3] == Approx(0.5 + 0.5 * 0.25));
   scene.camera.eye.z = -40;
-  const Image back = castSurface(*context, grid, scene).colour;
+  const Image back = castGrid(*context, grid, scene).colour;
   CHECK(back.pixels[0] == Approx(0.75 * 0.5));
   CHECK(back.pixels[1] == Approx(0.25));
 }
@@ -197,20 +189,20 @@ TEST_CASE("Bricks that are skipped, cut and drawn in runs change no surface on O
   const glm::dvec3 centre = grid.worldBounds().centre();
   ResolvedScene scene =
       surfaceScene(perspectiveCamera(centre + glm::dvec3(70, 90, 120), centre, 0.7, 60), {surfaceAt(0.3, 0.5)});
-  const Picture first = castSurface(*context, grid, scene, true);
+  const Picture first = castGrid(*context, grid, scene, true);
   CHECK(largestAlpha(first.colour) > 0.5);
   AtlasLimits small;
   small.budgetBytes = first.stats.textureBytes / 5;
-  const Picture inRuns = castSurface(*context, grid, scene, true, small);
+  const Picture inRuns = castGrid(*context, grid, scene, true, small);
   CHECK(inRuns.stats.textureBytes < first.stats.textureBytes / 2);
   const double most = 20 * 0.5 * kPlace;
   CHECK(pixelsApart(inRuns.colour, first.colour, most) <= 1);
   CHECK(differenceOf(layerOf(inRuns, "position"), layerOf(first, "position")).maxError < 10 * kPlace);
   CHECK(differenceOf(inRuns.depth, first.depth).maxError < 10 * kPlace);
   scene.bricks.culling = false;
-  CHECK(pixelsApart(castSurface(*context, grid, scene).colour, first.colour, most) <= 1);
+  CHECK(pixelsApart(castGrid(*context, grid, scene).colour, first.colour, most) <= 1);
   scene.bricks.bricked = false;
-  CHECK(pixelsApart(castSurface(*context, grid, scene).colour, first.colour, most) <= 1);
+  CHECK(pixelsApart(castGrid(*context, grid, scene).colour, first.colour, most) <= 1);
 }
 
 TEST_CASE("A level set is met on OpenGL where its sphere is, also from within", "[shade][rays][modes][gl]") {
@@ -222,7 +214,7 @@ TEST_CASE("A level set is met on OpenGL where its sphere is, also from within", 
   for (const Camera& camera :
        {orthographicCamera({40, 30, 50}, centre, 20, 40), perspectiveCamera({40, 30, 50}, centre, 0.3, 40),
         perspectiveCamera({2, 4, 1}, {9, 5, 2}, 1.9, 40)}) {
-    const Picture picture = castSurface(*context, grid, surfaceScene(camera, {surfaceAt(0)}), true);
+    const Picture picture = castGrid(*context, grid, surfaceScene(camera, {surfaceAt(0)}), true);
     const Image& position = layerOf(picture, "position");
     double worst = 0;
     int hits = 0;
@@ -242,13 +234,13 @@ TEST_CASE("What has no surface or no light is refused on OpenGL in one line", "[
   if (!context) return;
   const ScalarGrid grid = surfaceBlobs();
   ResolvedScene scene = surfaceScene(smallCameras().front(), {surfaceAt(5)});
-  CHECK_THROWS_WITH(castSurface(*context, grid, scene),
+  CHECK_THROWS_WITH(castGrid(*context, grid, scene),
                     Contains("surfaces[0].value: 5 has no surface, the volume has values from 0 to "));
   scene.surfaces.clear();
-  CHECK_THROWS_WITH(castSurface(*context, grid, scene), Contains("surfaces: is empty"));
+  CHECK_THROWS_WITH(castGrid(*context, grid, scene), Contains("surfaces: is empty"));
   scene.surfaces = {surfaceAt(0.4)};
   scene.shading.light = ShadingLight::sources;
-  CHECK_THROWS_WITH(castSurface(*context, grid, scene), Contains("shading.light: the scene has no directional source"));
+  CHECK_THROWS_WITH(castGrid(*context, grid, scene), Contains("shading.light: the scene has no directional source"));
   scene.shading = {};
   const auto bricks = cutGrid(grid, BrickOptions{.interior = 16, .apron = 1}, true);
   CHECK_THROWS_WITH(RayCaster(*context, *bricks, scene), Contains("surfaces need an apron of 2 voxels, found 1"));
