@@ -16,6 +16,7 @@
 #include <string>
 #include <utility>
 
+#include "core/extremes.h"
 #include "light/light_edit.h"
 #include "light/light_sweep.h"
 #include "light/stored_light.h"
@@ -119,6 +120,7 @@ class LightVolume::Implementation {
     stats_.spacing = spacingFor(medium.spacing, cells.size(), mostBytes);
     const SortedLight sorted = sortLight(medium.directions, whole_, volume_.indexToWorld);
     stats_.sweeps = sorted.sweeps;
+    keepsValues_ = before.has_value();
     stats_.edited = before && sameChannels && stats_.spacing == stored_.spacing() && edits_ < kMostEdits &&
                     sweepEdit(*before, wholeBefore, medium, sorted, cells, mostBytes);
     if (stats_.edited) {
@@ -128,7 +130,7 @@ class LightVolume::Implementation {
       edits_ = 0;
     }
     stats_.directions = static_cast<int>(medium.directions.size());
-    stats_.heldBytes = stored_.bytes();
+    stats_.heldBytes = stored_.bytes() + (kept_ ? kept_->values->size() * sizeof(float) : 0);
     stats_.spacingError = stored_.spacingError();
     stats_.ms = watch.elapsedMs();
     medium_ = medium;
@@ -168,7 +170,7 @@ class LightVolume::Implementation {
     stored_ = {};
     SweptBricks bricks = bricksOf(cells);
     if (!cells.empty()) sweep(bricks, medium, cells, sorted.tasks, 1);
-    bricks.values = {};
+    bricks.values.reset();
     stored_.store(bricks, std::move(cells));
   }
 
@@ -224,7 +226,7 @@ class LightVolume::Implementation {
     bricks.planes = medium.planes;
     bricks.surfaces = pathSurfaces(medium, extinction);
     bricks.busy = std::make_unique<std::mutex[]>(bricks.origins.size());
-    readValues(bricks, medium, cells);
+    takeValues(bricks, medium, cells);
     std::atomic<std::uint64_t> updates{0};
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, tasks.size(), 1),
@@ -239,9 +241,24 @@ class LightVolume::Implementation {
     bricks.extinction = nullptr;
   }
 
+  // Reads the values of bricks, or takes those that were read for the last update where the medium is the same, as
+  // while the camera or a light moves.
+  void takeValues(SweptBricks& bricks, const LightMedium& medium, const std::vector<glm::ivec3>& cells) {
+    const bool all = bricks.origins == cells;
+    if (all && kept_ && kept_->isOf(medium, cells, stats_.spacing)) {
+      bricks.values = kept_->values;
+      bricks.lit = kept_->lit;
+      return;
+    }
+    if (all) kept_.reset();
+    readValues(bricks, medium, cells);
+    if (all && keepsValues_)
+      kept_ = {medium.transfer, medium.surfaces, cells, stats_.spacing, bricks.values, bricks.lit};
+  }
+
   void readValues(SweptBricks& bricks, const LightMedium& medium, const std::vector<glm::ivec3>& cells) const {
     const std::size_t voxels = volume_.layout.voxels();
-    bricks.values.assign(bricks.origins.size() * voxels, 0.0f);
+    const auto read = std::make_shared<LargeVector<float>>(bricks.origins.size() * voxels);
     bricks.lit.assign(bricks.origins.size(), LitBlocks(bricks.layout, bricks.light));
     tbb::enumerable_thread_specific<std::vector<float>> scratches;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bricks.origins.size(), 1), [&](const auto& range) {
@@ -249,26 +266,27 @@ class LightVolume::Implementation {
       if (medium.transfer.is2d()) gradients.resize(voxels);
       for (std::size_t brick = range.begin(); brick != range.end(); ++brick) {
         if (!std::ranges::binary_search(cells, bricks.origins[brick], comesBefore)) continue;
-        const std::span<float> values = std::span(bricks.values).subspan(brick * voxels, voxels);
+        const std::span<float> values = std::span(*read).subspan(brick * voxels, voxels);
         volume_.read(bricks.origins[brick], values, gradients);
         if (!medium.surfaces.empty()) findSurfaces(values, medium.surfaces, bricks.lit[brick]);
         bricks.extinction->toSteps(values, gradients);
         findLit(values.data(), *bricks.extinction, bricks.lit[brick]);
       }
     });
+    bricks.values = read;
   }
 
   // Marks the blocks of a brick that have medium between any of their voxels.
   void findLit(const float* values, const ExtinctionTable& extinction, LitBlocks& lit) const {
-    const auto [least, most] = std::minmax_element(values, values + volume_.layout.voxels());
-    if (extinction.isOpaque(*least, *most)) return lit.markAll();
+    const auto [least, most] = leastAndMost(std::span(values, volume_.layout.voxels()));
+    if (extinction.isOpaque(least, most)) return lit.markAll();
     markCells(values, lit, 0, [&](float low, float high) { return !extinction.isTransparent(low, high); });
   }
 
   // Marks those that surfaces cross.
   void findSurfaces(std::span<const float> values, const std::vector<LightSurface>& surfaces, LitBlocks& lit) const {
-    const auto [least, most] = std::minmax_element(values.begin(), values.end());
-    if (crosses(surfaces, *least, *most))
+    const auto [least, most] = leastAndMost(values);
+    if (crosses(surfaces, least, most))
       markCells(values.data(), lit, 1, [&](float low, float high) { return crosses(surfaces, low, high); });
   }
 
@@ -294,8 +312,23 @@ class LightVolume::Implementation {
       }
   }
 
+  /// The values of all bricks of a medium.
+  struct KeptValues {
+    TransferFunction transfer;
+    std::vector<LightSurface> surfaces;
+    std::vector<glm::ivec3> cells;  // ascending
+    int spacing;
+    std::shared_ptr<const LargeVector<float>> values;  // see SweptBricks
+    std::vector<LitBlocks> lit;
+    bool isOf(const LightMedium& medium, const std::vector<glm::ivec3>& those, int apart) const {
+      return spacing == apart && cells == those && surfaces == medium.surfaces && transfer == medium.transfer;
+    }
+  };
+
   const Bricks& volume_;
   std::optional<LightMedium> medium_;
+  std::optional<KeptValues> kept_;
+  bool keepsValues_ = false;  // from the second update on, so that one picture takes no more memory
   StoredLight stored_;
   int edits_ = 0;  // since all was swept
   glm::dvec3 whole_{0};

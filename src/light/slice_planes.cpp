@@ -74,7 +74,7 @@ void ValuePlanes::put(int brick, const glm::ivec3& place, int first, int last, i
           std::max(part.v0 + apron, -beyond), std::min(part.v1 + apron, edge.y + beyond)};
   if (part.empty()) return;
   const auto stride = strides(lattice_.axes(), bricks_.layout.edge());
-  const float* from = bricks_.values.data() + static_cast<std::size_t>(brick) * bricks_.layout.voxels();
+  const float* from = bricks_.values->data() + static_cast<std::size_t>(brick) * bricks_.layout.voxels();
   const int count = last - first + 1, begin = std::max(part.u0, 0), end = std::min(part.u1, edge.x);
   std::array<float*, kSlicesTogether> to{};  // to the apron's first voxel
   std::array<std::ptrdiff_t, kSlicesTogether> layer{};

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <vector>
 
+#include "core/large_vector.h"
 #include "light/cell_store.h"
 #include "light/sweep_kernels.h"
 #include "umbrick/light/extinction_table.h"
@@ -20,9 +21,9 @@ struct SweptBricks {
   LightLayout light;
   std::vector<glm::ivec3> origins;  // first owned voxels
   std::vector<LitBlocks> lit;
-  std::vector<float> values;  // with aprons, in steps of the table
+  std::shared_ptr<const LargeVector<float>> values;  // with aprons, in steps of the table
   int channels = 1;
-  std::vector<std::int32_t> sums;  // of light, channel by channel within a brick
+  LargeVector<std::int32_t> sums;  // of light, channel by channel within a brick
   const ExtinctionTable* extinction = nullptr;
   std::vector<PathSurface> surfaces;   // that keep light away
   std::vector<glm::dvec4> planes;      // see LightMedium

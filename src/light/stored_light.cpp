@@ -114,7 +114,7 @@ void StoredLight::change(const SweptBricks& changed, std::vector<glm::ivec3> ori
       },
       [](double a, double b) { return std::max(a, b); });
   unit_ = static_cast<float>(most / kMostCode);
-  std::vector<std::uint16_t> codes(origins.size() * perBrick(), 0);
+  LargeVector<std::uint16_t> codes(origins.size() * perBrick(), 0);
   forEachBrick(origins.size(), [&](std::size_t brick) {
     for (std::size_t c = 0; c < channels; ++c) {
       std::uint16_t* const to = codes.data() + brick * perBrick() + c * places;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/large_vector.h"
 #include "light/slice_planes.h"
 
 namespace umbrick {
@@ -43,7 +44,7 @@ class StoredLight {
   int channels_ = 1;
   float unit_ = 1;
   std::vector<glm::ivec3> origins_;  // ascending in z, then y, then x
-  std::vector<std::uint16_t> codes_;
+  LargeVector<std::uint16_t> codes_;
 };
 
 /// The order of bricks.

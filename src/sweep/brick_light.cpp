@@ -10,37 +10,36 @@
 #include <cmath>
 #include <utility>
 
+#include "core/extremes.h"
 #include "umbrick/core/stopwatch.h"
 
 namespace umbrick {
 namespace {
 
 // Light is 0 at voxels without medium next to them. Rays read light half a slice away from the medium, too, so that it
-// goes on for one more voxel along each axis.
-void spread(std::vector<float>& light, const glm::ivec3& edge) {
+// goes on for one more voxel along each axis: as the mean of the neighbours that have any. `scratch` is of the same
+// size.
+void spread(std::vector<float>& light, std::vector<float>& scratch, const glm::ivec3& edge) {
+  const auto [least, most] = leastAndMost(light);
+  if (least > 0 || most <= 0) return;
   const std::ptrdiff_t strides[3]{1, edge.x, static_cast<std::ptrdiff_t>(edge.x) * edge.y};
-  std::vector<float> line;
+  const auto filled = [](float here, float before, float behind) {
+    const float beside = before > 0 && behind > 0 ? 0.5f * (before + behind) : before + behind;
+    return here > 0 ? here : beside;
+  };
   for (int axis = 0; axis < 3; ++axis) {
-    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-    line.resize(static_cast<std::size_t>(edge[axis]));
-    for (int i = 0; i < edge[a]; ++i)
-      for (int j = 0; j < edge[b]; ++j) {
-        float* const first = light.data() + i * strides[a] + j * strides[b];
-        bool some = false, all = true;
-        for (int k = 0; k < edge[axis]; ++k) {
-          line[static_cast<std::size_t>(k)] = first[k * strides[axis]];
-          some = some || line[static_cast<std::size_t>(k)] > 0;
-          all = all && line[static_cast<std::size_t>(k)] > 0;
-        }
-        if (!some || all) continue;
-        for (int k = 0; k < edge[axis]; ++k) {
-          if (line[static_cast<std::size_t>(k)] > 0) continue;
-          const float before = k > 0 ? line[static_cast<std::size_t>(k) - 1] : 0;
-          const float behind = k + 1 < edge[axis] ? line[static_cast<std::size_t>(k) + 1] : 0;
-          if (before > 0 || behind > 0)
-            first[k * strides[axis]] = before > 0 && behind > 0 ? 0.5f * (before + behind) : before + behind;
-        }
-      }
+    // Numbers that stand together: a row along x, or all of a row or slice that has neighbours along the axis.
+    const std::ptrdiff_t stride = strides[axis], together = axis == 0 ? 1 : stride, block = stride * edge[axis];
+    const float* const from = light.data();
+    float* const to = scratch.data();
+    for (std::ptrdiff_t first = 0; first < static_cast<std::ptrdiff_t>(light.size()); first += block) {
+      const std::ptrdiff_t last = first + block - together;
+      for (std::ptrdiff_t i = first; i < first + together; ++i) to[i] = filled(from[i], 0, from[i + stride]);
+      for (std::ptrdiff_t i = first + together; i < last; ++i)
+        to[i] = filled(from[i], from[i - stride], from[i + stride]);
+      for (std::ptrdiff_t i = last; i < last + together; ++i) to[i] = filled(from[i], from[i - stride], 0);
+    }
+    light.swap(scratch);
   }
 }
 
@@ -84,23 +83,22 @@ void BrickLight::store(BrickVoxels& voxels) {
   const float largest = tbb::parallel_reduce(
       all, 1.0f,
       [&](const auto& range, float most) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i)
-          for (const float light : read(i)) most = std::max(most, light);
+        for (std::size_t i = range.begin(); i != range.end(); ++i) most = std::max(most, leastAndMost(read(i)).second);
         return most;
       },
       [](float a, float b) { return std::max(a, b); });
   unit_ = largest / 65535;
   tbb::parallel_for(all, [&](const auto& range) {
-    std::vector<float> plane(count);
+    std::vector<float> plane(count), scratch(count);
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const std::vector<float>& light = read(i);
       VoxelBrick& brick = voxels.brick(i);
       brick.light = std::make_unique_for_overwrite<std::uint16_t[]>(count * channels + BrickVoxels::kPadding);
       for (std::size_t c = 0; c < channels; ++c) {
         for (std::size_t v = 0; v < count; ++v) plane[v] = std::max(light[v * channels + c], 0.0f);
-        spread(plane, voxels.volume().layout.edge());
+        spread(plane, scratch, voxels.volume().layout.edge());
         for (std::size_t v = 0; v < count; ++v)
-          brick.light[c * count + v] = static_cast<std::uint16_t>(std::lround(std::min(plane[v] / unit_, 65535.0f)));
+          brick.light[c * count + v] = static_cast<std::uint16_t>(std::min(plane[v] / unit_ + 0.5f, 65535.0f));
       }
     }
   });

@@ -195,3 +195,21 @@ TEST_CASE("Functions are compared over the values of a brick alone", "[light]") 
   CHECK_FALSE(sameExtinction(peak, flat, brick(0.5f, 3.5f)));
   CHECK(sameExtinction(peak, flat, brick(3, 9)));
 }
+
+// What is read for one update is used for the next ones.
+TEST_CASE("Directions, distances and functions that come and go give the light of a fresh sweep", "[light]") {
+  LightVolume light(volume());
+  const glm::dvec3 axes[]{{0.1, 0.2, 1}, {-1, 0.3, 0.1}, {0.2, 1, -0.3}};
+  for (int i = 0; i < 9; ++i) {
+    INFO("update " << i);
+    LightMedium medium = mediumOf(volume(), function(i < 6 ? 2 : 0.7, i % 4 == 3 ? 0.3 : 0.05), cone(5, axes[i % 3]));
+    medium.spacing = i == 4 || i == 5 ? 2 : 1;
+    REQUIRE(light.update(medium, kPlenty));
+    CHECK_FALSE(light.stats().edited);
+    CHECK(differenceFromFresh(volume(), light, medium) == 0);
+    LightVolume fresh(volume());
+    fresh.update(medium, kPlenty);
+    // A single picture holds no more than its light.
+    CHECK((light.stats().heldBytes > fresh.stats().heldBytes) == (i > 0));
+  }
+}
