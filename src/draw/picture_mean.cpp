@@ -6,9 +6,14 @@
 
 namespace umbrick {
 
+void ColourMean::add(const Image& colour) {
+  if (count_ == 0) sum_.assign(colour.pixels.size(), 0);
+  for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += colour.pixels[i];
+  ++count_;
+}
+
 void PictureMean::add(const Picture& picture) {
   if (count_ == 0) {
-    colour_.assign(picture.colour.pixels.size(), 0);
     visibility_.assign(picture.visibility.pixels.size(), 0);
     opacity_.assign(picture.opacity.pixels.size(), 0);
     depth_.assign(picture.depth.pixels.size(), 0);
@@ -16,7 +21,7 @@ void PictureMean::add(const Picture& picture) {
     for (const ImageLayer& layer : picture.layers)
       layers_.push_back({std::vector<double>(layer.image.pixels.size()), std::vector<int>(layer.image.pixels.size())});
   }
-  for (std::size_t i = 0; i < colour_.size(); ++i) colour_[i] += picture.colour.pixels[i];
+  colour_.add(picture.colour);
   for (std::size_t i = 0; i < visibility_.size(); ++i) visibility_[i] += picture.visibility.pixels[i];
   for (std::size_t i = 0; i < opacity_.size(); ++i) opacity_[i] += picture.opacity.pixels[i];
   for (std::size_t i = 0; i < depth_.size(); ++i) {
@@ -35,7 +40,7 @@ void PictureMean::add(const Picture& picture) {
 }
 
 void PictureMean::store(Picture& picture) const {
-  for (std::size_t i = 0; i < colour_.size(); ++i) picture.colour.pixels[i] = static_cast<float>(colour(i));
+  for (std::size_t i = 0; i < values(); ++i) picture.colour.pixels[i] = static_cast<float>(colour_[i]);
   for (std::size_t i = 0; i < visibility_.size(); ++i)
     picture.visibility.pixels[i] = static_cast<float>(visibility_[i] / count_);
   for (std::size_t i = 0; i < opacity_.size(); ++i)

@@ -169,13 +169,13 @@ class PassSeries {
     const RenderSample sample = streams_[stream].sample(scene_, passes_ / kStreams, pixelArea_);
     renderer_.setScene(onePerPixel(scene_));
     picture = renderer_.render(sample);
-    means_[stream].add(picture);
+    means_[stream].add(picture.colour);
     all_.add(picture);
     if (passes_ == 0) choose(picture);
     // The other pictures have the same directions; only distances differ.
     for (Comparison& other : others_) {
       renderer_.setScene(onePerPixel(other.scene));
-      other.means[stream].add(renderer_.render(sample));
+      other.pictures[stream] = renderer_.render(sample).colour;
     }
     if (++passes_ >= kStreams) error.statistical = standardError();
     if (passes_ == kStreams && !others_.empty()) {
@@ -188,11 +188,11 @@ class PassSeries {
   }
 
  private:
-  // A scene that pictures are compared with.
+  // A scene that the first picture of each stream is compared with.
   struct Comparison {
     ResolvedScene scene;
     double errorOverDifference = 1;
-    std::array<PictureMean, kStreams> means = {};
+    std::array<Image, kStreams> pictures = {};
   };
 
   // Chooses the scenes that pictures are compared with.
@@ -238,15 +238,14 @@ class PassSeries {
   double differenceTo(const Comparison& other) const {
     return rootMean(all_.values(), [&](std::size_t i) {
       const StreamMoments moments =
-          momentsOf([&](std::size_t k) { return other.means[k].colour(i) - means_[k].colour(i); });
+          momentsOf([&](std::size_t k) { return double{other.pictures[k].pixels[i]} - means_[k][i]; });
       return moments.mean * moments.mean - moments.variance;
     });
   }
 
   double standardError() const {
-    return rootMean(all_.values(), [&](std::size_t i) {
-      return momentsOf([&](std::size_t k) { return means_[k].colour(i); }).variance;
-    });
+    return rootMean(all_.values(),
+                    [&](std::size_t i) { return momentsOf([&](std::size_t k) { return means_[k][i]; }).variance; });
   }
 
   Renderer& renderer_;
@@ -256,7 +255,7 @@ class PassSeries {
   std::vector<Comparison> others_;  // until their differences are known
   double lightError_ = 0;           // of light at every second voxel that is compared with no other light
   std::vector<Stream> streams_;
-  std::array<PictureMean, kStreams> means_;
+  std::array<ColourMean, kStreams> means_;
   PictureMean all_;
   int passes_ = 0;
 };
