@@ -10,6 +10,7 @@
 #include "umbrick/core/short_number.h"
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/draw/blank_picture.h"
+#include "umbrick/scene/capabilities.h"
 #include "view/frame_encoder.h"
 
 namespace umbrick::view {
@@ -17,14 +18,23 @@ namespace {
 
 constexpr int kDraftQuality = 80;    // of JPEG
 constexpr double kLeastScale = 0.2;  // of the edges of a draft
+constexpr int kLeastDirections = 4;
 
-// Returns the scene as a draft shows it: smaller, and with fewer directions of light.
-ResolvedScene draftOf(const ResolvedScene& scene, double scale, int directions) {
+// Light may take this share of a draft's time.
+constexpr double kMostLight = 0.65;
+// A draft is aimed at a bit less than the time that is wanted, since the next one may take longer.
+constexpr double kAim = 0.9;
+
+// Returns the scene as a draft shows it: smaller, and with light at fewer places or of fewer directions.
+ResolvedScene draftOf(const ResolvedScene& scene, const DraftMeans& means) {
+  const double scale = means.scale;
   ResolvedScene draft = scene;
   draft.camera.width = std::max(1, static_cast<int>(std::lround(scene.camera.width * scale)));
   draft.camera.height = std::max(1, static_cast<int>(std::lround(scene.camera.height * scale)));
   draft.sampling.pixelSamples = 1;
-  if (directions > 0) draft.occlusion.ordinates.directions = std::min(directions, draft.occlusion.ordinates.directions);
+  OrdinatesOptions& light = draft.occlusion.ordinates;
+  if (means.coarseLight) light.lightSpacing = 2;
+  if (means.directions > 0) light.directions = std::min(means.directions, light.directions);
   return draft;
 }
 
@@ -70,8 +80,7 @@ void ViewRenderer::open(std::shared_ptr<const Volume> volume, const ResolvedScen
     lastScene_.reset();
     lastFrame_.reset();
     lastStatus_ = {};
-    draftScale_ = 1;
-    draftDirections_ = 0;
+    draftMeans_ = {};
   });
   changed_.notify_all();
 }
@@ -211,32 +220,57 @@ void ViewRenderer::draft(const ResolvedScene& scene) {
   interrupt_ = [this, &watch, version] {
     if (stop_ || (wanted_ != version && watch.elapsedMs() > 4 * goals_.draftMs)) throw Obsolete{};
   };
-  const ResolvedScene drafted = draftOf(scene, draftScale_, draftDirections_);
+  const ResolvedScene drafted = draftOf(scene, draftMeans_);
   Renderer& renderer = rendererFor(drafted);
   const Stopwatch drawing;
   try {
     last_ = renderer.render();
   } catch (const Obsolete&) {
-    draftScale_ = std::max(kLeastScale, draftScale_ / 2);
-    if (drafted.occlusion.ordinates.directions > 4) draftDirections_ = drafted.occlusion.ordinates.directions / 2;
+    draftMeans_.scale = std::max(kLeastScale, draftMeans_.scale / 2);
+    lessLight(scene);
     throw;
   }
   lastScene_ = drafted;
-  const double ms = drawing.elapsedMs(), light = last_.stats.lightMs, picture = std::max(1.0, ms - light);
-  // Half of the time at most is for light. The time of a picture goes with its pixels; it is followed with some delay,
-  // so that one slow picture does not make all coarse.
-  if (light > 0.6 * goals_.draftMs && drafted.occlusion.ordinates.directions > 4)
-    draftDirections_ = std::max(4, drafted.occlusion.ordinates.directions / 2);
-  else if (light > 0 && light < 0.2 * goals_.draftMs && draftDirections_ > 0)
-    draftDirections_ = 2 * draftDirections_;
-  const double left = std::max(0.3 * goals_.draftMs, goals_.draftMs - light);
-  draftScale_ = std::clamp(draftScale_ * std::pow(left / picture, 0.35), kLeastScale, 1.0);
-  send(last_, true, 0);
   ViewStatus status;
   status.draft = true;
-  status.ms = ms;
+  status.ms = drawing.elapsedMs();
   status.text = "draft";
+  send(last_, true, 0);
+  adaptDraft(scene, last_.stats.lightMs, status.ms, watch.elapsedMs());
   tell(status);
+}
+
+// Makes the light of drafts cheaper by one step.
+void ViewRenderer::lessLight(const ResolvedScene& scene) {
+  const std::optional<Method> method = occlusionMethod(scene);
+  if (!method) return;
+  const int directions = draftOf(scene, draftMeans_).occlusion.ordinates.directions;
+  if (*method == Method::lightVolume && !draftMeans_.coarseLight)
+    draftMeans_.coarseLight = true;
+  else if (directions > kLeastDirections)
+    draftMeans_.directions = std::max(kLeastDirections, directions / 2);
+}
+
+// Makes it better by one step.
+void ViewRenderer::moreLight(const ResolvedScene& scene) {
+  if (draftMeans_.directions > 0)
+    draftMeans_.directions =
+        2 * draftMeans_.directions < scene.occlusion.ordinates.directions ? 2 * draftMeans_.directions : 0;
+  else
+    draftMeans_.coarseLight = false;
+}
+
+// Chooses the next draft's means by the times of this one, ms: of its light, of all that was drawn, and of all.
+void ViewRenderer::adaptDraft(const ResolvedScene& scene, double light, double drawn, double whole) {
+  const double aim = kAim * goals_.draftMs;
+  if (light > kMostLight * aim)
+    lessLight(scene);
+  else if (light > 0 && light < 0.25 * aim)
+    moreLight(scene);
+  // The time of a picture goes with its pixels; it is followed with some delay, so that one slow picture does not make
+  // all coarse.
+  const double picture = std::max(1.0, drawn - light), left = std::max(0.25 * aim, aim - light - (whole - drawn));
+  draftMeans_.scale = std::clamp(draftMeans_.scale * std::pow(left / picture, 0.35), kLeastScale, 1.0);
 }
 
 void ViewRenderer::refine(const ResolvedScene& scene, std::uint64_t version) {

@@ -62,6 +62,13 @@ struct ViewProbe {
   double depth = 0;                 // along the view axis, world units
 };
 
+/// What makes a draft faster than the picture that it stands for.
+struct DraftMeans {
+  double scale = 1;          // of the edges
+  bool coarseLight = false;  // light volumes have light at every second voxel
+  int directions = 0;        // of light; 0: as many as the scene has
+};
+
 class ViewRenderer {
  public:
   /// @param number  see open()
@@ -98,6 +105,9 @@ class ViewRenderer {
   struct Obsolete {};
   void run();
   void draft(const ResolvedScene& scene);
+  void lessLight(const ResolvedScene& scene);
+  void moreLight(const ResolvedScene& scene);
+  void adaptDraft(const ResolvedScene& scene, double light, double drawn, double whole);
   void drawBlank(const ResolvedScene& scene, bool draft);
   void refine(const ResolvedScene& scene, std::uint64_t version);
   bool obsolete(std::uint64_t version) const { return wanted_ != version || stop_; }
@@ -123,8 +133,7 @@ class ViewRenderer {
   // Of the thread that draws.
   std::unique_ptr<SceneDrawer> drawer_;
   std::function<void()> interrupt_;  // throws Obsolete where the picture is not wanted any more
-  double draftScale_ = 1;            // of the edges of drafts
-  int draftDirections_ = 0;          // of their light; 0: all
+  DraftMeans draftMeans_;
   std::uint64_t drawn_ = 0, done_ = 0;
   std::chrono::steady_clock::time_point begun_;
   Picture last_;
