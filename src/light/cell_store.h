@@ -92,6 +92,21 @@ void LitBlocks::forEachSpan(const SweepAxes& axes, int v, int n, const Visit& vi
             u + 1 == blocks ? light_.interior[axes.u] + light_.apron : (u + 1) * perBlock);
 }
 
+/// Calls visit(first, place, count) for the rows of places of a brick whose light is known.
+/// @note first: the place that a row begins with, counted from the brick's first owned one; place: its number in the
+///       brick, x fastest
+template <class Visit>
+void forEachRow(const LitBlocks& lit, const LightLayout& light, const Visit& visit) {
+  const glm::ivec3 edge = light.edge();
+  std::size_t row = 0;
+  for (int z = -light.apron; z < light.interior.z + light.apron; ++z)
+    for (int y = -light.apron; y < light.interior.y + light.apron; ++y, row += static_cast<std::size_t>(edge.x))
+      lit.forEachSpan(kSweepAxes[2], y, z * light.spacing, [&](int begin, int end) {
+        visit(glm::ivec3(begin, y, z), row + static_cast<std::size_t>(begin + light.apron),
+              static_cast<std::size_t>(end - begin));
+      });
+}
+
 /// A half-open part of a row.
 struct Span {
   int begin = 0, end = 0;

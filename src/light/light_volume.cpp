@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "core/extremes.h"
+#include "light/glow_light.h"
 #include "light/light_edit.h"
 #include "light/light_sweep.h"
 #include "light/stored_light.h"
@@ -24,6 +25,7 @@
 #include "umbrick/core/stopwatch.h"
 #include "umbrick/light/extinction_table.h"
 #include "umbrick/light/light_paths.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
 namespace {
@@ -92,6 +94,12 @@ LightMedium lightAtSurfaces(const Bricks& volume, const ResolvedScene& scene, st
   return medium;
 }
 
+void lightFromEmission(const ResolvedScene& scene, LightMedium& medium) {
+  if (!emissionLights(scene)) return;
+  medium.emitted = scene.emitted;
+  for (LightDirection& direction : medium.directions) direction.radiance *= scene.ambient;
+}
+
 bool cutsMedium(const glm::dvec4& plane, std::span<const glm::ivec3> cells, const glm::ivec3& interior) {
   return std::ranges::any_of(cells, [&](const glm::ivec3& cell) {
     double least = plane.w;
@@ -110,8 +118,9 @@ class LightVolume::Implementation {
     const Stopwatch watch;
     std::vector<glm::ivec3> cells = medium.cells;
     std::ranges::sort(cells, comesBefore);
-    const glm::dvec3 whole = wholeLight(medium.directions);
-    const bool coloured = isColoured(medium.directions);
+    glow_.update(volume_, medium);
+    const glm::dvec3 whole = wholeLight(medium.directions) + glm::dvec3(glow_.most());
+    const bool coloured = isColoured(medium.directions) || glow_.any();
     // Until all is computed nothing is held.
     const std::optional<LightMedium> before = std::exchange(medium_, std::nullopt);
     const glm::dvec3 wholeBefore = std::exchange(whole_, whole);
@@ -122,6 +131,7 @@ class LightVolume::Implementation {
     stats_.sweeps = sorted.sweeps;
     keepsValues_ = before.has_value();
     stats_.edited = before && sameChannels && stats_.spacing == stored_.spacing() && edits_ < kMostEdits &&
+                    !medium.emitted && !before->emitted &&
                     sweepEdit(*before, wholeBefore, medium, sorted, cells, mostBytes);
     if (stats_.edited) {
       ++edits_;
@@ -132,6 +142,7 @@ class LightVolume::Implementation {
     stats_.directions = static_cast<int>(medium.directions.size());
     stats_.heldBytes = stored_.bytes() + (kept_ ? kept_->values->size() * sizeof(float) : 0);
     stats_.spacingError = stored_.spacingError();
+    stats_.glowCell = glow_.any() ? glow_.cellEdge() : 0;
     stats_.ms = watch.elapsedMs();
     medium_ = medium;
     return true;
@@ -171,6 +182,7 @@ class LightVolume::Implementation {
     SweptBricks bricks = bricksOf(cells);
     if (!cells.empty()) sweep(bricks, medium, cells, sorted.tasks, 1);
     bricks.values.reset();
+    if (glow_.any()) addGlow(bricks);
     stored_.store(bricks, std::move(cells));
   }
 
@@ -256,6 +268,27 @@ class LightVolume::Implementation {
       kept_ = {medium.transfer, medium.surfaces, cells, stats_.spacing, bricks.values, bricks.lit};
   }
 
+  // Adds the light of what emits.
+  void addGlow(SweptBricks& bricks) const {
+    const std::size_t places = bricks.light.places();
+    glm::vec3 perLight(0);
+    for (int c = 0; c < 3; ++c)
+      if (whole_[c] > 0) perLight[c] = static_cast<float>(kWholeLight / whole_[c]);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bricks.origins.size(), 1), [&](const auto& range) {
+      for (std::size_t brick = range.begin(); brick != range.end(); ++brick) {
+        std::int32_t* const sums = bricks.sums.data() + brick * places * 3;
+        forEachRow(bricks.lit[brick], bricks.light, [&](const glm::ivec3& first, std::size_t place, std::size_t count) {
+          glm::vec3 voxel = glm::vec3(bricks.origins[brick] + first * bricks.light.spacing);
+          for (std::size_t i = place; i < place + count; ++i, voxel.x += static_cast<float>(bricks.light.spacing)) {
+            const glm::vec3 light = glow_.at(voxel) * perLight;
+            for (std::size_t c = 0; c < 3; ++c)
+              sums[c * places + i] += static_cast<std::int32_t>(std::lround(light[static_cast<glm::length_t>(c)]));
+          }
+        });
+      }
+    });
+  }
+
   void readValues(SweptBricks& bricks, const LightMedium& medium, const std::vector<glm::ivec3>& cells) const {
     const std::size_t voxels = volume_.layout.voxels();
     const auto read = std::make_shared<LargeVector<float>>(bricks.origins.size() * voxels);
@@ -330,6 +363,7 @@ class LightVolume::Implementation {
   std::optional<KeptValues> kept_;
   bool keepsValues_ = false;  // from the second update on, so that one picture takes no more memory
   StoredLight stored_;
+  GlowLight glow_;
   int edits_ = 0;  // since all was swept
   glm::dvec3 whole_{0};
   bool coloured_ = false;

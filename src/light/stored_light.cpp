@@ -24,18 +24,6 @@ std::uint16_t codeOf(float light) {
   return static_cast<std::uint16_t>(std::min(std::max(light, 1.0f), static_cast<float>(kMostCode)) + 0.5f);
 }
 
-// Calls visit(first, count) for the rows of places of a brick whose light is known, x fastest.
-template <class Visit>
-void forEachRow(const LitBlocks& lit, const LightLayout& light, const Visit& visit) {
-  const glm::ivec3 edge = light.edge();
-  std::size_t row = 0;
-  for (int z = -light.apron; z < light.interior.z + light.apron; ++z)
-    for (int y = -light.apron; y < light.interior.y + light.apron; ++y, row += static_cast<std::size_t>(edge.x))
-      lit.forEachSpan(kSweepAxes[2], y, z * light.spacing, [&](int begin, int end) {
-        visit(row + static_cast<std::size_t>(begin + light.apron), static_cast<std::size_t>(end - begin));
-      });
-}
-
 template <class Work>
 void forEachBrick(std::size_t count, const Work& work) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), [&](const auto& range) {
@@ -72,7 +60,7 @@ void StoredLight::store(const SweptBricks& bricks, std::vector<glm::ivec3> origi
       const std::size_t first = brick * perBrick() + c * places;
       const std::int32_t* const sums = bricks.sums.data() + first;
       std::uint16_t* const codes = codes_.data() + first;
-      forEachRow(bricks.lit[brick], light_, [&](std::size_t place, std::size_t count) {
+      forEachRow(bricks.lit[brick], light_, [&](const glm::ivec3&, std::size_t place, std::size_t count) {
         for (std::size_t i = place; i < place + count; ++i) codes[i] = codeOf(static_cast<float>(sums[i]) * perSum);
       });
     }
@@ -98,7 +86,7 @@ void StoredLight::change(const SweptBricks& changed, std::vector<glm::ivec3> ori
     }
     const auto swept = static_cast<std::size_t>(found - changed.origins.begin());
     const std::int32_t* const sums = changed.sums.data() + swept * perBrick() + c * places;
-    forEachRow(changed.lit[swept], light_, [&](std::size_t first, std::size_t count) {
+    forEachRow(changed.lit[swept], light_, [&](const glm::ivec3&, std::size_t first, std::size_t count) {
       for (std::size_t place = first; place < first + count; ++place)
         visit(place, kept(place) + sums[place] / double{kWholeLight});
     });

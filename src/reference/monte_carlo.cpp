@@ -4,17 +4,29 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 namespace umbrick {
 namespace {
 
+constexpr double kPi = std::numbers::pi;
+
+// The cell of a block in which a point lies, and where in it.
+struct CellPlace {
+  glm::ivec3 cell;
+  glm::dvec3 inside;
+};
+CellPlace placeIn(const glm::dvec3& local) {
+  const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(local)), glm::ivec3(0), glm::ivec3(FieldBlock::kCells - 1));
+  return {cell, glm::clamp(local - glm::dvec3(cell), glm::dvec3(0), glm::dvec3(1))};
+}
+
 Medium mediumAt(const FieldBlock& block, const glm::dvec3& local, const TransferFunction& transfer) {
   if (!block.values) return transfer(block.uniform, 0);
-  const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(local)), glm::ivec3(0), glm::ivec3(FieldBlock::kCells - 1));
+  const auto [cell, inside] = placeIn(local);
   if (!block.sees(cell)) return {};
-  const glm::dvec3 inside = glm::clamp(local - glm::dvec3(cell), glm::dvec3(0), glm::dvec3(1));
   const double gradient = block.gradients ? TrilinearCell(block.gradients, cell)(inside) : 0;
   return transfer(TrilinearCell(block.values, cell)(inside), gradient);
 }
@@ -41,22 +53,22 @@ class RunningMoments {
 
 }  // namespace
 
-// Calls visit(t, medium, sigma_maj) at tentative collisions, until it returns false. Their density is the majorant of
-// each block. But in a block that is much denser somewhere than a voxel is wide, each cell has a majorant of its own;
-// else a ray would be stopped again and again on its way through the thin parts.
+// Calls visit(t, medium, sigma_maj, L_e) at tentative collisions, until it returns false. Their density is the majorant
+// of each block. But in a block that is much denser somewhere than a voxel is wide, each cell has a majorant of its
+// own; else a ray would be stopped again and again on its way through the thin parts.
 template <class Visit>
 void MonteCarloPixel::trackBlocks(const IndexRay& ray, const Interval& part, Random& random, const Visit& visit) {
   const TransferFunction& transfer = space_.classifier.transfer();
   double tau = -std::log(random.uniform());  // optical depth to the next collision, by the majorants
   const auto track = [&](const FieldBlock& block, const glm::dvec3& origin, double majorant, double t, double end) {
-    const double sigma_maj = std::min(majorant, densest_);
+    const double sigma_maj = std::min(block.emissions ? std::max(majorant, glowing_) : majorant, densest_);
     while (tau < sigma_maj * (end - t)) {
       t += tau / sigma_maj;
       tau = -std::log(random.uniform());
       ++counts_.samples;
       Medium medium = mediumAt(block, ray.at(t) - origin, transfer);
       medium.sigma_t = std::min(medium.sigma_t, densest_);
-      if (!visit(t, medium, sigma_maj)) return false;
+      if (!visit(t, medium, sigma_maj, radianceAt(block, ray.at(t) - origin))) return false;
     }
     tau -= sigma_maj * (end - t);
     return true;
@@ -77,11 +89,20 @@ double MonteCarloPixel::majorantOf(const FieldBlock& block, const glm::ivec3& ce
   return space_.classifier.transfer().majorant(rangeOfCell(block.values, cell), gradients);
 }
 
+glm::dvec3 MonteCarloPixel::radianceAt(const FieldBlock& block, const glm::dvec3& local) const {
+  if (!block.emissions) return glm::dvec3(0);
+  const auto [cell, inside] = placeIn(local);
+  return space_.emission->transfer()(TrilinearCell(block.emissions, cell)(inside)).sigma_s();
+}
+
+// Tentative collisions up to the first real one have the density T sigma_maj, so that the sum of L_e / sigma_maj over
+// them has the mean Int T L_e ds.
 MonteCarloPixel::Collision MonteCarloPixel::collide(const IndexRay& ray, const Interval& part, Random& random) {
   Collision collision;
-  trackBlocks(ray, part, random, [&](double t, const Medium& medium, double sigma_maj) {
+  trackBlocks(ray, part, random, [&](double t, const Medium& medium, double sigma_maj, const glm::dvec3& radiance) {
+    collision.emitted += radiance / sigma_maj;
     if (random.uniform() * sigma_maj >= medium.sigma_t) return true;
-    collision = {true, t, medium};
+    collision = {true, t, medium, collision.emitted};
     return false;
   });
   return collision;
@@ -93,7 +114,7 @@ LightDirection MonteCarloPixel::chooseLight(const glm::dvec3& towardsEye, Random
   const double source = space_.lights && space_.lights->size() > 1 ? random.uniform() : 0;
   const double u = random.uniform(), v = random.uniform();
   if (space_.lights) return space_.lights->sample(source, u, v);
-  const double aperture = traitsOf(scene.model).sphere ? 3.14159265358979323846 : scene.occlusion.aperture;
+  const double aperture = traitsOf(scene.model).sphere ? kPi : scene.occlusion.aperture;
   return {sampleCone(towardsEye, aperture, u, v), glm::dvec3(1)};
 }
 
@@ -103,7 +124,7 @@ double MonteCarloPixel::estimateTransmittance(const glm::dvec3& point, const glm
   const Interval part = space_.region.clip(light, 0);
   double transmittance = 1;
   if (part.empty()) return transmittance;
-  trackBlocks(light, part, random, [&](double, const Medium& medium, double sigma_maj) {
+  trackBlocks(light, part, random, [&](double, const Medium& medium, double sigma_maj, const glm::dvec3&) {
     transmittance *= 1 - medium.sigma_t / sigma_maj;
     // Russian roulette: a path that is nearly dark goes on only now and then, and then counts for more.
     if (transmittance < 0.1) {
@@ -122,7 +143,8 @@ double MonteCarloPixel::estimateTransmittance(const glm::dvec3& point, const glm
 MonteCarloPixel::Found MonteCarloPixel::trace(const EyeRays::Ray& ray, const Interval& part, Random& random) {
   ++counts_.eyeRays;
   const Collision hit = collide(ray.index, part, random);
-  if (!hit.happened) return {};
+  const glm::dvec3 seen = hit.emitted;
+  if (!hit.happened) return {seen.x, seen.y, seen.z, 0, 0, 0};
   double visibility = 1;
   glm::dvec3 light = hit.medium.albedo;
   if (traitsOf(space_.scene.model).occlusion) {
@@ -131,6 +153,17 @@ MonteCarloPixel::Found MonteCarloPixel::trace(const EyeRays::Ray& ray, const Int
     const double transmittance = estimateTransmittance(ray.index.at(hit.t), chosen.direction, random);
     light *= transmittance * chosen.radiance;
     visibility = power_ > 0 ? transmittance * powerOf(chosen.radiance) / power_ : 0;
+  }
+  if (space_.emission) {
+    light *= space_.scene.ambient;
+    if (emissionLights(space_.scene)) {
+      const double u = random.uniform(), v = random.uniform();
+      const IndexRay from(ray.index.at(hit.t), space_.rays.toIndex(sampleCone(towardsEye_, kPi, u, v)));
+      ++counts_.lightRays;
+      const Interval way = space_.region.clip(from, 0);
+      if (!way.empty()) light += hit.medium.albedo * collide(from, way, random).emitted;
+    }
+    light += seen;
   }
   return {light.x, light.y, light.z, 1, visibility, hit.t * ray.depthPerLength};
 }
@@ -175,7 +208,7 @@ std::optional<PixelResult> MonteCarloPixel::integrate(int x, int y) {
     result.converged = std::sqrt(largest) <= options_.standardError;
     if (result.converged) break;
   }
-  result.light = {moments.mean(0), moments.mean(1), moments.mean(2)};
+  (space_.emission ? result.emitted : result.light) = {moments.mean(0), moments.mean(1), moments.mean(2)};
   result.opacity = moments.mean(3);
   result.visibility = moments.mean(4);
   result.depth = moments.mean(5);

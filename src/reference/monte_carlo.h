@@ -19,6 +19,7 @@ class MonteCarloPixel {
         goOn_(goOn),
         dense_(20 / voxelEdge),
         densest_(1e4 / voxelEdge),
+        glowing_(space.emission ? 0.5 / voxelEdge : 0),
         power_(space.lights ? space.lights->power() : 1),
         towardsEye_(-cameraFrame(space.scene.camera).forward),
         accessor_(space.field.accessor()) {}
@@ -32,6 +33,7 @@ class MonteCarloPixel {
     bool happened = false;
     double t = 0;
     Medium medium;
+    glm::dvec3 emitted{0};  // an estimate of Int T L_e ds, whether there is a collision or not
   };
 
   using Found = std::array<double, 6>;  // light (RGB), opacity, visibility, depth
@@ -40,6 +42,7 @@ class MonteCarloPixel {
   template <class Visit>
   void trackBlocks(const IndexRay& ray, const Interval& part, Random& random, const Visit& visit);
   double majorantOf(const FieldBlock& block, const glm::ivec3& cell) const;
+  glm::dvec3 radianceAt(const FieldBlock& block, const glm::dvec3& local) const;
   Collision collide(const IndexRay& ray, const Interval& part, Random& random);
   LightDirection chooseLight(const glm::dvec3& towardsEye, Random& random) const;
   double estimateTransmittance(const glm::dvec3& point, const glm::dvec3& direction, Random& random);
@@ -50,6 +53,8 @@ class MonteCarloPixel {
   double dense_;  // 1/world unit: in blocks with a majorant from here on each cell has its own majorant
   // 1/world unit: extinction beyond this counts as this, since tracking takes as many steps as the majorant is large.
   double densest_;
+  // 1/world unit: where something emits there are at least so many tentative collisions, which sample it.
+  double glowing_;
   double power_;           // sum over all lights
   glm::dvec3 towardsEye_;  // against the view axis, world space
   Field::Accessor accessor_;

@@ -10,11 +10,11 @@ namespace umbrick {
 
 struct PixelResult {
   glm::dvec3 light{0};     // Int T sigma_s V ds, which the caller multiplies by L_a
-  glm::dvec3 emitted{0};   // Int T L_e ds, of a second grid
+  glm::dvec3 emitted{0};   // Int T L_e ds, of a second grid; and all light of the medium where that lights it
   double opacity = 0;      // of the whole ray
   double visibility = 0;   // weighted by opacity
   double depth = 0;        // depth along the view axis, weighted by opacity
-  glm::dvec4 variance{0};  // of the means of light (x, y, z) and opacity (w)
+  glm::dvec4 variance{0};  // of the means of light, or of `emitted` where it is not 0, (x, y, z) and opacity (w)
   bool converged = true;   // false: the standard error that was asked for was not reached
 
   /// Adds the result of one ray out of several, which all count for the same `weight`.

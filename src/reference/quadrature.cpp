@@ -71,6 +71,9 @@ QuadraturePixel::QuadraturePixel(const ReferenceSpace& space, const ReferenceOpt
     eyeOptions_.largestTau = std::min(eyeOptions_.largestTau, 0.02);  // what is reflected is that of a part's centre
   }
   eyeOptions_.darkest = std::min(1e-6, 0.01 * options.tolerance);
+  if (space.emission && emissionLights(space.scene))
+    for (const auto& [direction, weight] : sphereDirections(options.directions))
+      glow_.push_back({space.rays.toIndex(direction), glm::dvec3(weight), 0});
   aim(space.directions);
 }
 
@@ -79,11 +82,15 @@ void QuadraturePixel::aim(const std::vector<LightDirection>& lights) {
   glm::dvec3 sum(0);
   for (const LightDirection& light : lights) sum += light.radiance;
   const double power = sum.r + sum.g + sum.b;
+  // Beside light that is emitted others are what they are, and no multiples of L_a.
+  const glm::dvec3 scale = glow_.empty() ? glm::dvec3(1) : space_.scene.ambient;
   for (const auto& [direction, radiance] : lights)
-    lights_.push_back(
-        {space_.rays.toIndex(direction), radiance, power > 0 ? (radiance.r + radiance.g + radiance.b) / power : 0});
+    lights_.push_back({space_.rays.toIndex(direction), scale * radiance,
+                       power > 0 ? (radiance.r + radiance.g + radiance.b) / power : 0});
   whole_ = sum;
   brightest_ = std::max({sum.r, sum.g, sum.b});
+  // Where all light is emitted, tolerances are shares of about the light that is seen.
+  if (!glow_.empty()) brightest_ = std::max({scale.r * sum.r, scale.g * sum.g, scale.b * sum.b, 0.1});
 }
 
 // Aims light that is around the ray to the eye.
@@ -159,7 +166,10 @@ std::optional<PixelResult> QuadraturePixel::integrate(const EyeRays::Ray& ray, c
   }
   result.depth = before_.back().t * ray.depthPerLength;
   const Sum sum = step_ > 0 ? integrateSteps(ray.index) : integrateAdaptive(ray.index);
-  result.light += shading_ ? shareOf(sum.light) : sum.light;
+  if (!glow_.empty())
+    result.emitted += sum.light;  // with L_a in it
+  else
+    result.light += shading_ ? shareOf(sum.light) : sum.light;
   // What is reflected is light and all; the medium's own visibility is no part of it.
   result.visibility = shading_ ? before_.back().alpha : sum.visibility;
   if (stopped_) return std::nullopt;
@@ -172,6 +182,25 @@ void QuadraturePixel::shade(const IndexRay& ray, PixelResult& result) {
     result.light += p.light * shading_->ambient();
     p.light *= shading_->direct(ray.at(p.t));
   }
+}
+
+// Returns the mean, over all directions, of the emitted light that arrives at a point.
+glm::dvec3 QuadraturePixel::glowAt(const glm::dvec3& point) {
+  glm::dvec3 sum(0);
+  for (const auto& [direction, weight, share] : glow_) {
+    if (!stopped_ && !goOn_()) stopped_ = true;
+    if (stopped_) return sum;
+    ++counts_.lightRays;
+    const IndexRay ray(point, direction);
+    const Interval part = space_.region.clip(ray, 0);
+    if (part.empty()) continue;
+    Emitted emitted{*space_.emission};
+    onTheWay_.clear();
+    collectScatterers(space_.field, accessor_, space_.classifier, ray, part, eyeOptions_, onTheWay_, counts_.cells,
+                      &emitted);
+    sum += weight * emitted.light;
+  }
+  return sum;
 }
 
 QuadraturePixel::Arriving QuadraturePixel::arrivingAt(const glm::dvec3& point,
@@ -201,6 +230,7 @@ QuadraturePixel::Arriving QuadraturePixel::arrivingAt(const glm::dvec3& point,
     sum.light += transmittance * radiance;
     sum.visibility += transmittance * share;
   }
+  if (!glow_.empty()) sum.light += glowAt(point);
   return sum;
 }
 

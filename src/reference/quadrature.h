@@ -85,6 +85,7 @@ class QuadraturePixel {
 
   void aim(const std::vector<LightDirection>& lights);
   void aimAlong(const EyeRays::Ray& ray);
+  glm::dvec3 glowAt(const glm::dvec3& point);
   Arriving arrivingAt(const glm::dvec3& point, const std::function<double(const IndexRay&)>& through = {});
   void shade(const IndexRay& ray, PixelResult& result);
   glm::dvec3 shareOf(const glm::dvec3& light) const;
@@ -103,6 +104,8 @@ class QuadraturePixel {
   EyeRayOptions eyeOptions_;
   Field::Accessor accessor_;
   std::vector<AimedLight> lights_;
+  std::vector<AimedLight> glow_;         // where light that is emitted comes from: radiance is a share of 1
+  std::vector<Scatterer> onTheWay_;      // of that light
   std::optional<ShadedVoxels> shading_;  // of a medium that reflects light
   glm::dvec3 whole_{1};                  // sum of their radiances
   double brightest_ = 1;                 // largest component of it

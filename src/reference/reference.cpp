@@ -105,9 +105,11 @@ void store(const PixelResult& pixel, const ResolvedScene& scene, int x, int y, R
     picture.colour.at(x, y)[i] =
         static_cast<float>(pixel.light[i] * scene.ambient[i] + pixel.emitted[i] + (1 - pixel.opacity) * behind[i]);
     // A path either scatters or gets through. The two never covary upwards, so this bounds the variance of the
-    // sum from above.
-    picture.standardError.at(x, y)[i] = static_cast<float>(
-        std::sqrt(pixel.variance[i] * scene.ambient[i] * scene.ambient[i] + pixel.variance[3] * behind[i] * behind[i]));
+    // sum from above. A path that gets through light that is emitted finds more of it, so that errors are added there.
+    const double light = std::sqrt(pixel.variance[i]) * (scene.emitted ? 1 : scene.ambient[i]);
+    const double through = std::sqrt(pixel.variance[3]) * behind[i];
+    picture.standardError.at(x, y)[i] =
+        static_cast<float>(scene.emitted ? light + through : std::hypot(light, through));
   }
   picture.colour.at(x, y)[3] = scene.background ? 1.0f : static_cast<float>(pixel.opacity);
   picture.standardError.at(x, y)[3] = scene.background ? 0.0f : static_cast<float>(std::sqrt(pixel.variance[3]));
@@ -256,8 +258,6 @@ ResolvedScene mediumOf(const ResolvedScene& scene) {
 void checkMedium(const ResolvedScene& medium, const ReferenceOptions& options) {
   if (medium.mesh.shape && options.integrator == Integrator::monteCarlo)
     throw InvalidArgument("mesh: a scene with one is integrated by quadrature, not by Monte Carlo");
-  if (medium.emitted && options.integrator == Integrator::monteCarlo)
-    throw InvalidArgument("volume.emissionGrid: light of a grid is integrated by quadrature, not by Monte Carlo");
   if (!isShaded(medium)) return;
   if (options.integrator == Integrator::monteCarlo)
     throw InvalidArgument("shading.kind: phong in a medium is integrated by quadrature, not by Monte Carlo");

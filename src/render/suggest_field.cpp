@@ -36,8 +36,10 @@ double beginOf(const SuggestInput& input) {
 }  // namespace
 
 TransferFunction suggestDensity(const SuggestInput& input, bool coloured) {
-  const glm::dvec3 smoke(0.86, 0.87, 0.89);
-  const Colour colour = [&](double share) { return coloured ? ascendingColour(share) : smoke; };
+  // Droplets of water absorb next to nothing, particles of smoke a tenth of the light and more.
+  const bool cloud = namesOneOf(input.volume.grid().name, {"cloud"});
+  const glm::dvec3 particles = cloud ? glm::dvec3(0.99, 0.992, 0.995) : glm::dvec3(0.86, 0.87, 0.89);
+  const Colour colour = [&](double share) { return coloured ? ascendingColour(share) : particles; };
   return proportional(input, beginOf(input), input.values.high, colour);
 }
 

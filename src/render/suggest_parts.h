@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <initializer_list>
 #include <optional>
+#include <string>
 
 #include "umbrick/grid/value_survey.h"
 #include "umbrick/render/suggest_transfer.h"
@@ -24,6 +26,9 @@ struct SuggestInput {
   /// that meet any of them. 1/world unit.
   double depthOf(double opticalDepth, const std::function<double(double)>& weight) const;
 };
+
+/// Tells whether a name has one of some words in it, of lower case letters.
+bool namesOneOf(const std::string& name, std::initializer_list<const char*> words);
 
 TransferFunction suggestLevelSet(const SuggestInput& input);
 /// @param air  the value of air and of water less 1000: -1000 for HU

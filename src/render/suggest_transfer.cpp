@@ -19,11 +19,6 @@ std::string lowerCase(std::string text) {
   return text;
 }
 
-bool namesOneOf(const std::string& name, std::initializer_list<const char*> words) {
-  return std::any_of(words.begin(), words.end(),
-                     [&](const char* word) { return lowerCase(name).find(word) != std::string::npos; });
-}
-
 // Returns the axis of index space that runs most along the way the volume faces.
 int axisOfView(const Volume& volume) {
   const glm::dvec3 front = axisDirection(volume.orientation().front);
@@ -90,6 +85,11 @@ std::string ctUnit(const Volume& volume, const ValueSurvey& values) {
 }
 
 }  // namespace
+
+bool namesOneOf(const std::string& name, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(),
+                     [&](const char* word) { return lowerCase(name).find(word) != std::string::npos; });
+}
 
 std::string ctUnit(const Volume& volume) {
   return volume.valueUnit().empty() ? ctUnit(volume, surveyValues(volume.grid())) : volume.valueUnit();

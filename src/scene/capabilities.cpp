@@ -135,6 +135,15 @@ bool emits(const SceneSettings& scene) {
   return !grid.empty() && grid != kAutomaticGrid && (scene.mode == Mode::integrate || scene.mode == Mode::hybrid);
 }
 
+bool emissionLights(const SceneSettings& scene) {
+  return emits(scene) && scene.mode == Mode::integrate && scene.emission.lightsMedium &&
+         traitsOf(scene.model).occlusion && !isShaded(scene);
+}
+
+glm::dvec3 lightScale(const SceneSettings& scene) {
+  return emissionLights(scene) && occlusionMethod(scene) == Method::lightVolume ? glm::dvec3(1) : scene.ambient;
+}
+
 bool isShaded(const SceneSettings& scene) {
   return scene.shading.kind == Shading::automatic ? traitsOf(scene.mode).surfaces
                                                   : scene.shading.kind == Shading::phong;

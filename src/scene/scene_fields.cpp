@@ -175,6 +175,10 @@ const std::vector<SceneField>& table() {
        "radiance per world unit of a black body of 1500 K; of a table: a factor",
        [](Scene& s) -> FieldPlace { return &s.emission.intensity; },
        {.low = 0}},
+      {"emission.lightsMedium", "no-emission-light", "Emission",
+       "what is emitted does not light the medium around it; else it does, scattered once, in the models cone, ambient "
+       "and lights by --method light-volume and in the reference, not with Phong's model",
+       [](Scene& s) -> FieldPlace { return &s.emission.lightsMedium; }},
 
       {"model", "model", "Light", models, [](Scene& s) -> FieldPlace { return Choice(s.model, kModels); }},
       {"method", "method", "Light",

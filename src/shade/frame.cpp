@@ -5,6 +5,7 @@
 #include <glm/vec4.hpp>
 
 #include "shade/constants.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
 
@@ -85,7 +86,7 @@ void setSlabUniforms(GlProgram& program, const Frame& frame, const IndexView& vi
   for (const glm::dvec4& plane : planes) inShader.emplace_back(plane);
   program.set("clip_planes", inShader);
   frame.transfer.setUniforms(program, frame.atlas);
-  if (frame.scene.emitted) program.set("ambient", glm::vec3(frame.scene.ambient));
+  if (frame.scene.emitted) program.set("ambient", glm::vec3(lightScale(frame.scene)));
 }
 
 void SlicePass::fill(Frame& frame, std::int64_t first, std::int64_t last) {

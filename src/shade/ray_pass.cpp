@@ -6,6 +6,7 @@
 
 #include "shade/constants.h"
 #include "shade/phong_uniforms.h"
+#include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
 
@@ -49,7 +50,7 @@ void RayPass::begin(const RayScene& rays) {
   GlProgram& program = program_.get(rays.gl, constants);
   const BrickAtlas& atlas = rays.bricks.atlas();
   rays.transfer.setUniforms(program, atlas);
-  if (rays.scene.emitted) program.set("ambient", glm::vec3(rays.scene.ambient));
+  if (rays.scene.emitted) program.set("ambient", glm::vec3(lightScale(rays.scene)));
   if (light) program.set("whole_light", glm::vec3(light->whole()));
   rays.codes.setUniforms(program);
   setPhongUniforms(program, rays.scene, rays.volume.indexToWorld);

@@ -43,6 +43,7 @@ void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sampl
                      {},
                      {bricks.origins().begin(), bricks.origins().end()},
                      scene.occlusion.ordinates.lightSpacing};
+  lightFromEmission(scene, medium);
   take(medium, view, planes);
   if (wantsGl()) note_ = GlLightSweep::refusal(resident_, bricks, medium);
   const bool computed = wantsGl() && note_.empty() ? sweepOnGl(medium, transfer, bricks) : sweepOnCpu(medium, scene);
@@ -65,6 +66,8 @@ bool ResidentLight::sweepOnCpu(const LightMedium& medium, const ResolvedScene& s
   // The textures may hold light of OpenGL.
   if (computed || swept_) ++version_;
   swept_.reset();
+  whole_ = light_.whole();
+  coloured_ = light_.coloured();
   return computed;
 }
 

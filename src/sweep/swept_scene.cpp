@@ -131,6 +131,7 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
   whole_ = glm::vec3(1);
   if (occlusionMethod(scene) == Method::lightVolume) {
     LightMedium medium{scene.transfer, lightsOf(scene, sample), {}, {}, scene.occlusion.ordinates.lightSpacing};
+    lightFromEmission(scene, medium);
     for (const Brick& brick : visible_) medium.cells.push_back(brick.origin);
     light_.update(std::move(medium), scene, planes_, volume().layout);
     if (!inBands_) light_.store(voxels_);
@@ -228,8 +229,9 @@ void SweptScene::storePixel(const ResolvedScene& scene, std::size_t at, const gl
                             Picture& picture, const glm::vec3& emitted) const {
   float* out = &picture.colour.pixels[4 * at];
   const float opacity = std::clamp(colour.w, 0.0f, 1.0f), through = 1 - opacity;
+  const glm::vec3 scale(lightScale(scene));
   for (int c = 0; c < 3; ++c) {
-    out[c] = std::max(colour[c], 0.0f) * whole_[c] * static_cast<float>(scene.ambient[c]) + emitted[c];
+    out[c] = std::max(colour[c], 0.0f) * whole_[c] * scale[c] + emitted[c];
     if (scene.background) out[c] += through * static_cast<float>((*scene.background)[c]);
   }
   out[3] = scene.background ? 1 : opacity;

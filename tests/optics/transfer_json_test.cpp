@@ -65,7 +65,7 @@ TEST_CASE("Malformed transfer functions are refused with line, column and field"
 
 TEST_CASE("Presets and files are found by name, and other names are refused", "[optics]") {
   const std::vector<std::string> presets = transferPresets();
-  for (const char* name : {"ct-bone", "ct-head", "fire", "grey-ramp", "smoke"})
+  for (const char* name : {"cloud", "ct-bone", "ct-head", "explosion", "fire", "grey-ramp", "smoke"})
     CHECK(std::find(presets.begin(), presets.end(), name) != presets.end());
   for (const std::string& name : presets) {
     const TransferFunction f = loadTransferFunction(name);

@@ -58,6 +58,22 @@ def test_the_same_words_make_the_same_picture(options, keywords, head_file, prog
     assert_same(umbrick.render(head_file, layers=True, **SMALL, **keywords), by_program)
 
 
+def test_fire_is_found_in_a_file_and_asked_for_of_a_volume(assets, program, tmp_path):
+    path = assets / "densityAndHeat.vdb"
+    by_program = program_picture(program, tmp_path, path, "--size", "64x48")
+    assert by_program.scene["volume"]["emissionGrid"] == "heat"
+    by_python = umbrick.render(path, layers=True, **SMALL)
+    assert_same(by_python, by_program)
+    assert by_python.chosen["emission-grid"] == "'heat'"
+    of_volume = umbrick.render(umbrick.Volume.open(path, emission_grid="auto"), layers=True, **SMALL)
+    np.testing.assert_array_equal(np.asarray(of_volume), np.asarray(by_program))
+    assert "emissionGrid" not in umbrick.render(umbrick.Volume.open(path), **SMALL).scene["volume"]
+    dark = umbrick.render(path, no_emission_light=True, **SMALL)
+    assert np.asarray(dark)[..., :3].sum() < np.asarray(by_python)[..., :3].sum()
+    with pytest.raises(umbrick.InvalidArgument, match="embers"):
+        umbrick.Volume.open(path, emission_grid="embers")
+
+
 def test_a_scene_makes_the_same_picture_in_any_form(head_file, program, tmp_path):
     scene = {
         "volume": {"file": str(head_file)},

@@ -146,3 +146,29 @@ TEST_CASE("On OpenGL what cannot hold a fire is refused", "[shade][emission][gl]
   CHECK(complaint<InvalidArgument>([&] { renderGrid(*context, grid, scene); }).find("sampling.bits") !=
         std::string::npos);
 }
+
+TEST_CASE("On OpenGL fire lights the smoke as in the reference, by every technique", "[shade][emission][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = smokeAndFire();
+  ResolvedScene scene = fireScene(ramp(0.4), flames(0.3), atTheFire(12), 0.25, 0.3);
+  scene.model = Model::ambient;
+  scene.method = Method::lightVolume;
+  scene.occlusion.ordinates.directions = 32;
+  ResolvedScene unlit = scene;
+  unlit.emission.lightsMedium = false;
+  ReferenceOptions options;
+  options.directions = 64;
+  options.tolerance = 0.01;
+  const Image exact = renderReference(grid, scene, options).colour, less = renderReference(grid, unlit, options).colour;
+  const double bounce = rmsDifference(exact, less);
+  CHECK(bounce > 0.02);
+  for (const Technique technique : kFireTechniques) {
+    scene.technique = unlit.technique = technique;
+    const double off = rmsDifference(fireOnGl(*context, grid, scene), exact);
+    const double without = rmsDifference(fireOnGl(*context, grid, unlit), less);
+    INFO(techniqueName(technique) << ": the bounce is " << bounce << ", off by " << off << ", without it by "
+                                  << without);
+    CHECK(off < 0.1 * bounce + without);  // its cells, see glow_light.h
+  }
+}

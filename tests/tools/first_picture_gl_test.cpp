@@ -93,7 +93,7 @@ TEST_CASE("The suggested function can be written, edited and used", "[tools]") {
         readExr(folder.path() / "b.exr").layers[0].image.pixels);
   const ProgramResult list = runProgram(folder, "tf list -o sheet.png");
   CHECK(list.status == 0);
-  for (const char* preset : {"ct-bone", "ct-head", "fire", "grey-ramp", "smoke"})
+  for (const char* preset : {"cloud", "ct-bone", "ct-head", "explosion", "fire", "grey-ramp", "smoke"})
     CHECK_THAT(list.out, Contains(preset));
   CHECK(std::filesystem::file_size(folder.path() / "sheet.png") > 1000);
 }

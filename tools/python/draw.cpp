@@ -73,6 +73,15 @@ OpenedScene openScene(const ScenePlea& plea, Scene scene, std::shared_ptr<const 
   return {std::move(volume), std::move(completed)};
 }
 
+// Returns the volume that is given: none where a path stands for it, which the scene then names, or where the scene
+// does.
+std::shared_ptr<const Volume> volumeGiven(const py::object& volume, ScenePlea& plea) {
+  if (volume.is_none()) return nullptr;
+  if (!py::isinstance<py::str>(volume)) return volume.cast<const VolumeHandle&>().volume;
+  plea.given.volume.file = volume.cast<std::string>();
+  return nullptr;
+}
+
 VolumeUnits unitsOf(const Volume& volume) {
   const ScalarGrid& grid = volume.grid();
   return {grid.metadata("length_unit"), grid.metadata("value_unit"), grid.metadata("space")};
@@ -139,11 +148,11 @@ std::function<void(double)> progressTo(JobWatch*& watch) {
 
 PictureHandle render(const py::object& volume, const py::object& sceneGiven, const py::dict& sceneKeywords,
                      const py::dict& values, const py::object& progress) {
-  const ScenePlea plea = readScenePlea(sceneGiven, sceneKeywords);
+  ScenePlea plea = readScenePlea(sceneGiven, sceneKeywords);
   DrawOptions options = drawOptions(Keywords(values));
-  Scene scene = askedScene(plea, plea.given, {.model = Model::cone});
+  std::shared_ptr<const Volume> given = volumeGiven(volume, plea);
+  Scene scene = askedScene(plea, plea.given, {.model = Model::cone, .emission = !given});
   fitToPicture(plea, options.asked(), scene);
-  std::shared_ptr<const Volume> given = volume.is_none() ? nullptr : volume.cast<const VolumeHandle&>().volume;
   PictureHandle picture;
   runJob("render", progress, [&](JobWatch& watch) {
     JobWatch* present = &watch;
@@ -259,8 +268,9 @@ PictureHandle reference(const py::object& volume, const py::object& sceneGiven, 
   // If no number of paths is given, as many are traced as the standard error needs.
   options.samples = paths.value_or(options.standardError > 0 ? 1'000'000'000 : options.samples);
   const bool layers = keywords.get<bool>("layers", kTruth).value_or(false);
-  Scene scene = askedScene(plea, plea.given, {.model = Model::cone});
-  std::shared_ptr<const Volume> given = volume.is_none() ? nullptr : volume.cast<const VolumeHandle&>().volume;
+  std::shared_ptr<const Volume> given = volumeGiven(volume, plea);
+  const bool emission = !given && options.integrator == Integrator::quadrature;
+  Scene scene = askedScene(plea, plea.given, {.model = Model::cone, .emission = emission});
   PictureHandle picture;
   runJob("reference", progress, [&](JobWatch& watch) {
     const OpenedScene opened = openScene(plea, std::move(scene), std::move(given), watch);

@@ -149,6 +149,7 @@ const std::map<std::string, SetKeyword>& otherKeywords() {
   static const std::map<std::string, SetKeyword> table{
       {"tf", setTransfer},
       {"up", setUp},
+      {"emission_tf", [](const auto& k, const auto& v, ScenePlea& a) { a.emissionTransfer = textOf(k, v); }},
       {"clip_box", setClipBox},
       {"window", [](const auto& k, const auto& v, ScenePlea& a) { a.window = numbersOf(k, v, 2); }},
       {"sigma_scale", [](const auto& k, const auto& v, ScenePlea& a) { a.sigmaScale = numberOf(k, v); }},

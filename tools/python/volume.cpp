@@ -145,6 +145,7 @@ VolumeReference referenceOf(const fs::path& path, const Keywords& keywords) {
   VolumeReference reference;
   reference.file = path;
   keywords.set("grid", kText, reference.grid);
+  keywords.set("emission_grid", kText, reference.emissionGrid);
   if (const auto frame = keywords.get<std::int64_t>("frame", kWhole)) {
     if (isFramePattern(path))
       reference.file = framePath(path, *frame);

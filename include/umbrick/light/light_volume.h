@@ -28,6 +28,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,6 +60,9 @@ struct LightMedium {
   /// half the time. 0: at every voxel, unless there is no memory for that.
   int spacing = 0;
   std::vector<LightSurface> surfaces = {};
+  /// What the second grid emits, as a function of its values (emissionFunction): it lights the medium, too, scattered
+  /// once and alike in all directions. It is computed in cells, see LightStats::glowCell. None: nothing emits.
+  std::optional<TransferFunction> emitted = {};
   bool operator==(const LightMedium&) const = default;
 };
 
@@ -66,6 +70,9 @@ struct LightMedium {
 /// transfer function shows, and those that a surface crosses.
 /// @throw InvalidArgument  as backgroundBricks
 LightMedium lightAtSurfaces(const Bricks& volume, const ResolvedScene& scene, std::vector<LightDirection> directions);
+/// Adds what a scene emits to the light of its medium, where it lights that, and multiplies the lights by L_a, so that
+/// all is in one unit. @see lightScale
+void lightFromEmission(const ResolvedScene& scene, LightMedium& medium);
 /// Tells whether a function shows the background of a volume, whose medium ends at the faces of mediumBox() then.
 bool showsBackground(const TransferFunction& transfer, const Bricks& volume);
 
@@ -80,6 +87,7 @@ struct LightStats {
   std::uint64_t heldBytes = 0;  // of host memory, from then on
   int spacing = 1;              // of the places of light, voxels
   double spacingError = 0;      // of light at every second voxel, root mean square, a share of whole(); an estimate
+  int glowCell = 0;             // edge of the cells in which what emits lights the medium, voxels; 0: nothing does
   bool edited = false;          // no more was swept than what an edit touches
   double ms = 0;
 };
@@ -100,10 +108,11 @@ class LightVolume {
   /// @throw InvalidArgument  more memory would be needed: the message says how much
   bool update(const LightMedium& medium, std::uint64_t mostBytes);
 
-  /// Tells whether the directions' radiances differ in more than brightness, so that there are three channels.
+  /// Tells whether the directions' radiances differ in more than brightness, or something emits, so that there are
+  /// three channels.
   bool coloured() const;
   int channels() const { return coloured() ? 3 : 1; }
-  /// Returns what arrives where nothing is in the way: the sum of the radiances.
+  /// Returns what arrives where nothing is in the way: the sum of the radiances, and the most of what is emitted.
   glm::dvec3 whole() const;
   const LightStats& stats() const;
 

@@ -1,6 +1,7 @@
 // Tables of what follows from a model and a method, so that code asks these and compares no names.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -71,6 +72,11 @@ void requireMode(const SceneSettings& scene, Technique technique);
 /// Tells whether a picture of the scene shows light that a second grid of its volume emits: only modes that show a
 /// medium and its colours do.
 bool emits(const SceneSettings& scene);
+/// Tells whether what is emitted lights the medium around it, too. Only light volumes and the reference compute that.
+bool emissionLights(const SceneSettings& scene);
+/// Returns what renderers multiply the light in the medium by: L_a, but 1 where a light volume also holds light that is
+/// emitted, to which L_a is nothing. It holds L_a then (see lightFromEmission()).
+glm::dvec3 lightScale(const SceneSettings& scene);
 
 /// Tells whether a picture of the scene reflects light.
 bool isShaded(const SceneSettings& scene);

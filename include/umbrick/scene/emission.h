@@ -36,6 +36,8 @@ struct EmissionSettings {
   EmissionBrightness brightness = EmissionBrightness::stefanBoltzmann;
   /// Of a black body: the luminance that kEmissionReference kelvin add per world unit. Of a table: a factor.
   double intensity = 1;
+  /// Whether the medium scatters it: once, and alike in all directions, in the models with occlusion but Phong's.
+  bool lightsMedium = true;
   /// Of a table: sigma_s of this 1D function is the radiance per world unit.
   std::optional<TransferFunction> table;
   bool operator==(const EmissionSettings&) const = default;

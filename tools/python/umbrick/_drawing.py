@@ -17,6 +17,8 @@ def _opened(volume, scene, progress):
     """Returns the core's volume and scene. A path of a scene stands for both."""
     if isinstance(volume, (str, os.PathLike)) and os.fspath(volume).endswith(".json") and scene is None:
         volume, scene = None, volume
+    if isinstance(volume, (str, os.PathLike)) and os.fspath(volume).endswith((".vdb", ".nvdb")) and scene is None:
+        return os.fspath(volume), None  # among whose grids one that emits is looked for
     handle = None
     if volume is not None:
         handle = (volume if isinstance(volume, Volume) else volume_of(volume))._handle
@@ -39,7 +41,8 @@ def render(
 ) -> Picture:
     """Makes a picture of a volume: the one that `umbrick render` makes of the same words, to the last bit.
 
-    volume    a Volume, a path, an array, or None where the scene names a file
+    volume    a Volume, a path, an array, or None where the scene names a file. Without `tf` a path of a .vdb also shows
+              the grid of it that emits light, as `umbrick render` does; of a Volume, Volume.open(emission_grid="auto")
     scene     a dictionary as scene files have it (Picture.scene is one), or the path of such a file. Without it, what no
               keyword says is chosen so that the picture shows something: Picture.chosen
     keywords  the options of `umbrick render` with _ for -: size=(512, 512), tf="ct-head", model="cone", theta=60,

@@ -42,6 +42,7 @@ class Volume:
         source: Source,
         *,
         grid: Optional[str] = None,
+        emission_grid: Optional[str] = None,
         component: Union[None, int, str] = None,
         frame: Optional[int] = None,
         spacing: Optional[Sequence[float]] = None,
@@ -66,6 +67,8 @@ class Volume:
                      (frame_%04d.nrrd: the first); or an array of two or three axes, behind which may stand one of 1 to
                      4 components; or an image of nibabel, whose affine matrix it keeps
         grid         of a file of grids: "name" or "name[1]"
+        emission_grid  of a file of grids: the one that emits light beside it, "name", or "auto": the first that is above
+                     0 somewhere of "temperature", "temp", "heat", "flame", "flames", "fire", "burn"
         component    of voxels of several numbers: 0, 1, ..., "x", "r", ... or "magnitude"
         frame        of a file of several volumes, counted from 0; of numbered files the number
         spacing      world units between voxel centres along x, y, z; of sources that state none [1, 1, 1]
@@ -86,12 +89,12 @@ class Volume:
             array, place = _array_of(source)
             options = {**place, **given(spacing=spacing, origin=origin, affine=affine, axes=axes, component=component,
                                         length_unit=length_unit, space=space)}
-            _refuse("Volume.open", "files", grid=grid, frame=frame, series=series, where=where, dims=dims, type=type,
+            _refuse("Volume.open", "files", grid=grid, emission_grid=emission_grid, frame=frame, series=series, where=where, dims=dims, type=type,
                     endian=endian, header_bytes=header_bytes, bits_stored=bits_stored, beside_only=beside_only)
             handle = _core.open_array(array, options, progress)
         else:
-            options = given(grid=grid, component=component, frame=frame, spacing=spacing, origin=origin, series=series,
-                            where=where, dims=dims, type=type, endian=endian, header_bytes=header_bytes,
+            options = given(grid=grid, emission_grid=emission_grid, component=component, frame=frame, spacing=spacing,
+                            origin=origin, series=series, where=where, dims=dims, type=type, endian=endian, header_bytes=header_bytes,
                             bits_stored=bits_stored, beside_only=beside_only)
             _refuse("Volume.open", "arrays", affine=affine, axes=axes, length_unit=length_unit, space=space)
             handle = _core.open_file(_path_of(source), options, progress)
