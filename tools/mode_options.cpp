@@ -38,7 +38,8 @@ void addMeshOption(CLI::App& command, SceneOptions& options) {
       .add_option(
           "--mesh", options.mesh,
           "opaque geometry in the volume: .ply, .obj or .stl, world units; hides what lies behind it, is shaded "
-          "by --shading and --shading-light, casts no shadow and gets none, and is not clipped; drawn by rays")
+          "by --shading and --shading-light, casts shadows into the volume where --model has any and gets none, and is "
+          "not clipped; drawn by rays")
       ->group("Mesh");
 }
 

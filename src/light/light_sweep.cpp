@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 
+#include "light/mesh_shadow.h"
 #include "light/sweep_kernels.h"
 
 namespace umbrick {
@@ -22,7 +24,8 @@ struct Paths {
   PathPlace u, v, beforeU, beforeV;  // on this slice and on the one before
   // Transmittances of the present row of paths and of the one before.
   std::array<std::vector<float>, 2> through;
-  int held = -2;  // the row that `through` holds
+  int held = -2;                        // the row that `through` holds
+  std::optional<MeshShadow> mesh = {};  // none: there is no mesh
 };
 
 class Sweep {
@@ -60,6 +63,7 @@ class Sweep {
         paths.within = task.paths[i];
         paths.bounded = true;
       }
+      if (bricks.mesh) paths.mesh.emplace(*bricks.mesh, direction, followed(direction), spacing_);
       paths_.push_back(std::move(paths));
     }
   }
@@ -86,6 +90,18 @@ class Sweep {
   }
 
  private:
+  // Returns the paths that are in the plane on any slice.
+  PlaneWindow followed(const SweptDirection& direction) const {
+    const auto on = [&](int n) {
+      const int u = origin_[0] - pathPlace(sign_, direction.u, spacing_, n).whole;
+      const int v = origin_[1] - pathPlace(sign_, direction.v, spacing_, n).whole;
+      return PlaneWindow{u, u + lattice_.width(), v, v + lattice_.height()};
+    };
+    PlaneWindow all = on(lattice_.firstSlice());
+    all.include(on(lattice_.lastSlice()));
+    return all;
+  }
+
   // Finds the places of a slice that get light, and the paths around them.
   void findRows(int n) {
     const int kind = lattice_.kindOf(n);
@@ -169,6 +185,9 @@ class Sweep {
     const PathRow before = rowAt(n + sign_, row + paths.beforeV.whole - paths.v.whole,
                                  span.begin + paths.beforeU.whole - paths.u.whole, paths.beforeU, paths.beforeV);
     float* const depth = paths.lattice.row(row, span.begin);
+    if (paths.mesh)
+      paths.mesh->darken(span.begin - paths.u.whole + origin_[0], row - paths.v.whole + origin_[1], n,
+                         lattice_.hasLight(n), depth, count);
     float* const through = lit ? paths.through[1].data() + span.begin : nullptr;
     if (bricks_.planes.empty()) return carryRow(before, here, paths.medium, spacing_, depth, through, count);
     const SweptDirection& direction = paths.direction;

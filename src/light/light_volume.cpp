@@ -20,6 +20,7 @@
 #include "light/glow_light.h"
 #include "light/light_edit.h"
 #include "light/light_sweep.h"
+#include "light/mesh_shadow.h"
 #include "light/stored_light.h"
 #include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
@@ -84,6 +85,7 @@ bool showsBackground(const TransferFunction& transfer, const Bricks& volume) {
 
 LightMedium lightAtSurfaces(const Bricks& volume, const ResolvedScene& scene, std::vector<LightDirection> directions) {
   LightMedium medium{scene.transfer, std::move(directions), {}, {}, scene.occlusion.ordinates.lightSpacing};
+  medium.mesh = scene.mesh.shape;
   for (const SceneSurface& surface : scene.surfaces) medium.surfaces.push_back({surface.value, surface.opacity});
   for (const Brick& brick : volume.bricks)
     if (!scene.bricks.culling || !scene.transfer.isTransparent(brick.value, brick.gradient) ||
@@ -191,7 +193,9 @@ class LightVolume::Implementation {
                  const SortedLight& sorted, const std::vector<glm::ivec3>& cells, std::uint64_t mostBytes) {
     // Between other ends of the function the steps of its table are others, and all values are rounded to others.
     const std::vector<double>&from = before.transfer.values(), &to = medium.transfer.values();
-    if (from.front() != to.front() || from.back() != to.back() || before.surfaces != medium.surfaces) return false;
+    if (from.front() != to.front() || from.back() != to.back() || before.surfaces != medium.surfaces ||
+        before.mesh != medium.mesh)
+      return false;
     const std::vector<glm::ivec3> changed = changedCells(before, medium, volume_);
     if (before.directions != medium.directions) {
       if (!changed.empty()) return false;
@@ -237,6 +241,9 @@ class LightVolume::Implementation {
     bricks.extinction = &extinction;
     bricks.planes = medium.planes;
     bricks.surfaces = pathSurfaces(medium, extinction);
+    std::optional<IndexTriangles> mesh;
+    if (medium.mesh) mesh = trianglesInIndex(*medium.mesh, volume_.indexToWorld);
+    bricks.mesh = mesh ? &*mesh : nullptr;
     bricks.busy = std::make_unique<std::mutex[]>(bricks.origins.size());
     takeValues(bricks, medium, cells);
     std::atomic<std::uint64_t> updates{0};
@@ -251,6 +258,7 @@ class LightVolume::Implementation {
         tbb::simple_partitioner());
     stats_.updates += updates;
     bricks.extinction = nullptr;
+    bricks.mesh = nullptr;
   }
 
   // Reads the values of bricks, or takes those that were read for the last update where the medium is the same, as

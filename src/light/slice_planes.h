@@ -10,6 +10,7 @@
 
 #include "core/large_vector.h"
 #include "light/cell_store.h"
+#include "light/mesh_shadow.h"
 #include "light/sweep_kernels.h"
 #include "umbrick/light/extinction_table.h"
 
@@ -25,10 +26,11 @@ struct SweptBricks {
   int channels = 1;
   LargeVector<std::int32_t> sums;  // of light, channel by channel within a brick
   const ExtinctionTable* extinction = nullptr;
-  std::vector<PathSurface> surfaces;   // that keep light away
-  std::vector<glm::dvec4> planes;      // see LightMedium
-  glm::dmat3 toIndex{1};               // of directions, from the world
-  std::unique_ptr<std::mutex[]> busy;  // one for the sums of each brick
+  std::vector<PathSurface> surfaces;     // that keep light away
+  std::vector<glm::dvec4> planes;        // see LightMedium
+  const IndexTriangles* mesh = nullptr;  // that ends paths; null: there is none
+  glm::dmat3 toIndex{1};                 // of directions, from the world
+  std::unique_ptr<std::mutex[]> busy;    // one for the sums of each brick
 };
 
 /// A plane of numbers, row by row.

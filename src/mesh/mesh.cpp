@@ -104,7 +104,13 @@ class Mesh::Implementation {
     return hitOf(query, origin - centre_, direction, enter, length);
   }
 
-  std::size_t triangles() const { return triangles_.size(); }
+  std::vector<glm::dvec3> vertices() const {
+    std::vector<glm::dvec3> world;
+    world.reserve(vertices_.size());
+    for (const glm::vec3& vertex : vertices_) world.push_back(centre_ + glm::dvec3(vertex));
+    return world;
+  }
+  const std::vector<glm::uvec3>& corners() const { return triangles_; }
   const Box& bounds() const { return bounds_; }
   bool equals(const Implementation& other) const {
     return centre_ == other.centre_ && vertices_ == other.vertices_ && normals_ == other.normals_ &&
@@ -159,7 +165,9 @@ Mesh::~Mesh() = default;
 std::optional<Mesh::Hit> Mesh::first(const glm::dvec3& origin, const glm::dvec3& direction, double from) const {
   return implementation_->first(origin, direction, from);
 }
-std::size_t Mesh::triangles() const { return implementation_->triangles(); }
+std::size_t Mesh::triangles() const { return implementation_->corners().size(); }
+std::vector<glm::dvec3> Mesh::vertices() const { return implementation_->vertices(); }
+const std::vector<glm::uvec3>& Mesh::corners() const { return implementation_->corners(); }
 const Box& Mesh::bounds() const { return implementation_->bounds(); }
 bool Mesh::operator==(const Mesh& other) const { return implementation_->equals(*other.implementation_); }
 

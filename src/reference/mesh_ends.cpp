@@ -23,6 +23,11 @@ std::optional<MeshEnd> MeshEnds::find(const EyeRays::Ray& ray) const {
   return MeshEnd{hit->t, phong_ ? phong_->ambient() * colour_ + phong_->direct(colour_, normal, viewer) : colour_};
 }
 
+bool MeshEnds::isAlong(const IndexRay& ray) const {
+  const glm::dvec3 origin(indexToWorld_ * glm::dvec4(ray.origin, 1));
+  return mesh_->first(origin, glm::dmat3(indexToWorld_) * ray.direction, 0).has_value();
+}
+
 std::optional<MeshEnds> meshEnds(const ResolvedScene& scene, const glm::dmat4& indexToWorld) {
   if (!scene.mesh.shape) return std::nullopt;
   return MeshEnds(scene, indexToWorld);

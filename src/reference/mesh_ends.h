@@ -27,6 +27,8 @@ class MeshEnds {
   /// @param scene  with a mesh  @throw InvalidArgument  as shadingLights
   MeshEnds(const ResolvedScene& scene, const glm::dmat4& indexToWorld);
   std::optional<MeshEnd> find(const EyeRays::Ray& ray) const;
+  /// Tells whether the mesh is in the way of the light that comes along a ray.
+  bool isAlong(const IndexRay& ray) const;
 
  private:
   std::shared_ptr<const Mesh> mesh_;

@@ -221,6 +221,7 @@ QuadraturePixel::Arriving QuadraturePixel::arrivingAt(const glm::dvec3& point,
       if (stopped_) return sum;
     }
     const IndexRay light(point, direction);
+    if (space_.mesh && space_.mesh->isAlong(light)) continue;
     const Interval part = space_.region.clip(light, 0);
     double tau = 0;
     if (!part.empty())

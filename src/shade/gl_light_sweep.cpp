@@ -69,6 +69,7 @@ std::string GlLightSweep::refusal(const ResidentVolume& resident, const BrickSel
   const BrickAtlas& atlas = resident.atlas();
   if (medium.spacing == 2) return "OpenGL computes it at every voxel alone";
   if (medium.emitted) return "light that is emitted is computed on the CPU";
+  if (medium.mesh) return "the light around a mesh is computed on the CPU";
   if (medium.planes.size() > kMostPlanes) return "too many planes cut the medium";
   if (bricks.slots() > atlas.slots()) return "the textures of bricks do not hold the visible ones at once";
   if (atlas.textureCount() > kRayTextures)

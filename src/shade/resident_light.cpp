@@ -44,6 +44,7 @@ void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sampl
                      {bricks.origins().begin(), bricks.origins().end()},
                      scene.occlusion.ordinates.lightSpacing};
   lightFromEmission(scene, medium);
+  medium.mesh = scene.mesh.shape;
   take(medium, view, planes);
   if (wantsGl()) note_ = GlLightSweep::refusal(resident_, bricks, medium);
   const bool computed = wantsGl() && note_.empty() ? sweepOnGl(medium, transfer, bricks) : sweepOnCpu(medium, scene);

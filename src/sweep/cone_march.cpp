@@ -131,7 +131,9 @@ double ConeMarch::opticalDepth(const ValueRay& ray, double most) const {
 ConeMarch::Light ConeMarch::lightAt(const glm::dvec3& point) const {
   constexpr double kOpaque = 20;  // exp(-20) is 2e-9
   Light light;
+  const glm::dvec3 place(frame_.voxels->volume().indexToWorld * glm::dvec4(point, 1));
   for (const LightDirection& one : frame_.directions) {
+    if (frame_.mesh && frame_.mesh->first(place, one.direction, 0)) continue;
     ValueRay ray;
     ray.origin = point;
     ray.direction = toIndex_ * one.direction;

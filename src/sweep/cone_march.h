@@ -11,6 +11,7 @@
 #include "sweep/medium_table.h"
 #include "sweep/value_ray.h"
 #include "umbrick/core/box.h"
+#include "umbrick/mesh/mesh.h"
 #include "umbrick/scene/lights.h"
 
 namespace umbrick {
@@ -24,8 +25,9 @@ struct ConeFrame {
   /// Half-spaces in which the medium lies that the eye sees, and that keeps light away, index coordinates; those of the
   /// visible box among them.
   std::vector<glm::dvec4> planes, lightPlanes;
-  Box visible;         // the space of cells in visible bricks, index coordinates
-  double longest = 1;  // segment of a view ray, depth along the view axis, world units
+  Box visible;                 // the space of cells in visible bricks, index coordinates
+  const Mesh* mesh = nullptr;  // that keeps light away; null: there is none
+  double longest = 1;          // segment of a view ray, depth along the view axis, world units
   double saturation = 0;
 };
 

@@ -185,6 +185,7 @@ class RayRenderer::Implementation {
     frame.planes = scene_.planes();
     frame.lightPlanes = scene_.lightPlanes();
     frame.visible = scene_.visibleBox();
+    frame.mesh = scene.mesh.shape.get();
     for (std::vector<glm::dvec4>* planes : {&frame.planes, &frame.lightPlanes})
       for (const ClipPlane& plane : boxPlanes(frame.visible)) planes->push_back(plane);
     frame.longest = scene.sampling.spacing / scene.sampling.segments;

@@ -132,6 +132,7 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
   if (occlusionMethod(scene) == Method::lightVolume) {
     LightMedium medium{scene.transfer, lightsOf(scene, sample), {}, {}, scene.occlusion.ordinates.lightSpacing};
     lightFromEmission(scene, medium);
+    medium.mesh = scene.mesh.shape;
     for (const Brick& brick : visible_) medium.cells.push_back(brick.origin);
     light_.update(std::move(medium), scene, planes_, volume().layout);
     if (!inBands_) light_.store(voxels_);

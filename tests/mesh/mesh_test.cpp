@@ -27,6 +27,8 @@ TEST_CASE("A plane is met where it is, also from far away", "[mesh]") {
   CHECK_FALSE(mesh.first({1, 1, 7.5}, {1, 0, 0}, 0));   // or the ray runs along it
   CHECK(mesh.first({1, 1, 6}, {0, 0, 1}, 0)->t == 1);   // from the other side, too
   CHECK(mesh.triangles() == 2);
+  CHECK(mesh.corners() == std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}});
+  CHECK(mesh.vertices()[2] == glm::dvec3(5, 4, 7));
   CHECK(mesh.bounds().max == glm::dvec3(5, 4, 7));
 }
 

@@ -61,6 +61,26 @@ TEST_CASE("A scene with a mesh on OpenGL is that of the CPU in each mode", "[sha
   }
 }
 
+TEST_CASE("The shadow of a mesh on OpenGL is that of the CPU", "[shade][rays][mesh][gl]") {
+  const auto context = testContext();
+  if (!context) return;
+  const ScalarGrid grid = blobGrid();
+  for (const Mode mode : {Mode::integrate, Mode::isosurface, Mode::hybrid}) {
+    CAPTURE(modeName(mode));
+    ResolvedScene scene = shadowScene(mode, smallCameras(16).back());
+    CHECK(rmsDifference(castMesh(*context, grid, scene).colour, valuePicture(grid, scene, 4).colour) < 1e-3);
+  }
+  // Light is computed where meshes are known.
+  const ResolvedScene scene = shadowScene(Mode::integrate, smallCameras(16).back());
+  const auto volume = valueBricks(grid, scene);
+  RenderOptions onGl;
+  onGl.lightSweep = LightSweep::gl;
+  const Picture picture = RayCaster(*context, *volume, scene, onGl).render();
+  CHECK_FALSE(picture.stats.lightOnGl);
+  CHECK_THAT(picture.stats.lightNote, Contains("mesh"));
+  CHECK(maxDifference(picture.colour, castMesh(*context, grid, scene).colour) == 0);
+}
+
 TEST_CASE("A mesh comes and goes with a scene on OpenGL, and is refused by slices", "[shade][rays][mesh][gl]") {
   const auto context = testContext();
   if (!context) return;

@@ -26,6 +26,15 @@ inline ResolvedScene meshScene(Mode mode, const Camera& camera) {
   return scene;
 }
 
+/// The same blobs in a light from aside, which the sphere keeps from them.
+inline ResolvedScene shadowScene(Mode mode, const Camera& camera) {
+  ResolvedScene scene = meshScene(mode, camera);
+  scene.model = Model::lights;
+  scene.method = Method::lightVolume;
+  scene.lights = {{LightFrame::world, ConeLight{{0.5, -1, 0.3}, 0, {1, 0.8, 0.6}}}};
+  return scene;
+}
+
 /// The same blobs from straight above, with a wall across them at z = kWall.
 inline constexpr double kWall = 11.37;
 inline ResolvedScene wallScene(Mode mode) {

@@ -108,15 +108,54 @@ TEST_CASE("A scene with a mesh is that of the reference in each mode", "[sweep][
     }
 }
 
-TEST_CASE("Light in a medium in front of a mesh is as it is without", "[sweep][cpu][mesh]") {
+TEST_CASE("A mesh beside the picture keeps its light from a slab", "[sweep][cpu][mesh]") {
+  const ScalarGrid grid = makeFilled(glm::ivec3(32), glm::ivec3(0), [](const glm::ivec3&) { return 1.0; });
+  const Medium solid{{0.9, 0.6, 0.3}, 0.2};
+  ResolvedScene scene = plainScene(TransferFunction({{0, solid}, {1, solid}}),
+                                   orthographicCamera({16, 15, 50}, {16, 15, 14}, 16, 33), 0.25);
+  scene.camera.up = {0, 1, 0};
+  scene.clipBox = Box{glm::dvec3(2), glm::dvec3(30, 30, 6)};
+  scene.model = Model::lights;
+  scene.lights = {{LightFrame::world, ConeLight{{1, 0, 1}, 0, glm::dvec3(1)}}};
+  for (const Method method : {Method::lightVolume, Method::coneRays}) {
+    scene.method = method;
+    scene.mesh = {};
+    const Image bare = valuePicture(grid, scene).colour;
+    // Higher than the eye, and outside of the volume: of a point of height z all beyond x = 12 + z is dark.
+    scene.mesh = sceneMesh(squareMesh({72, -50}, {200, 80}, 60), {0.2, 0.7, 0.4});
+    const Image ours = valuePicture(grid, scene).colour, exact = renderReference(grid, scene).colour;
+    for (int y = 0; y < 33; ++y)
+      for (int x = 0; x < 33; ++x) {
+        const double place = 16 + (x - 16) * (16.0 / 33);
+        CHECK(ours.at(x, y)[3] == bare.at(x, y)[3]);
+        for (int c = 0; c < 3; ++c) {
+          if (place < 13) CHECK(ours.at(x, y)[c] == bare.at(x, y)[c]);
+          if (place > 19) CHECK(ours.at(x, y)[c] < 2e-5);
+          if (place > 18) CHECK(exact.at(x, y)[c] == 0);
+        }
+      }
+    CHECK(rmsDifference(ours, exact) < (method == Method::coneRays ? 3e-3 : 1.5e-2));
+  }
+}
+
+TEST_CASE("The shadow of a mesh is that of the reference", "[sweep][cpu][mesh]") {
   const ScalarGrid grid = blobGrid();
-  ResolvedScene scene = meshScene(Mode::integrate, smallCameras(24).back());
-  scene.model = Model::cone;
-  scene.method = Method::lightVolume;
-  scene.occlusion.ordinates.directions = 64;
-  ReferenceOptions options;
-  options.directions = 64;
-  CHECK(rmsDifference(valuePicture(grid, scene, 4).colour, renderReference(grid, scene, options).colour) < 4e-3);
+  for (const Camera& camera : smallCameras(24))
+    for (const Mode mode : {Mode::integrate, Mode::isosurface, Mode::hybrid}) {
+      CAPTURE(modeName(mode));
+      ResolvedScene scene = shadowScene(mode, camera);
+      const Image exact = renderReference(grid, scene).colour;
+      const double rms = rmsDifference(valuePicture(grid, scene, 4).colour, exact);
+      CAPTURE(rms);
+      // At the edges of a shadow light is interpolated over a voxel.
+      CHECK(rms < 7e-3);
+      ResolvedScene bare = scene;
+      bare.model = Model::emission;
+      CHECK(rmsDifference(valuePicture(grid, bare, 4).colour, exact) > 10 * rms);
+      if (mode != Mode::integrate) continue;
+      scene.method = Method::coneRays;
+      CHECK(rmsDifference(valuePicture(grid, scene, 4).colour, exact) < 2.5e-3);
+    }
 }
 
 TEST_CASE("A mesh comes and goes with a scene, and is refused where it is not drawn", "[sweep][cpu][mesh]") {

@@ -12,8 +12,9 @@
 //     ------x----x----x----x- slice m+1                         both are interpolated with weights constant on a slice
 //
 // So a lattice is shifted and never resampled: optical depths do not blur on the way, and empty space changes nothing.
-// Only rows of voxels in or next to visible bricks are visited. Where light is held at every second voxel, paths are
-// two voxels apart, too; they still meet every slice, so that their optical depths are as exact.
+// Only rows of voxels in or next to visible bricks are visited. A mesh ends paths, wherever it meets them. Where light
+// is held at every second voxel, paths are two voxels apart, too; they still meet every slice, so that their optical
+// depths are as exact.
 //
 // Compared with Fattal 2009, Participating Media Illumination Using Light Propagation Maps,
 // doi:10.1145/1477926.1477933: his maps are 2D sets of rays detached from the grid, too, so that light neither blurs
@@ -63,6 +64,9 @@ struct LightMedium {
   /// What the second grid emits, as a function of its values (emissionFunction): it lights the medium, too, scattered
   /// once and alike in all directions. It is computed in cells, see LightStats::glowCell. None: nothing emits.
   std::optional<TransferFunction> emitted = {};
+  /// Keeps all light from what lies behind it, also from outside of the bricks. Another one is another medium, even
+  /// with the same triangles.
+  std::shared_ptr<const Mesh> mesh = {};
   bool operator==(const LightMedium&) const = default;
 };
 

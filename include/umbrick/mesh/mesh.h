@@ -42,6 +42,9 @@ class Mesh {
   std::optional<Hit> first(const glm::dvec3& origin, const glm::dvec3& direction, double from) const;
 
   std::size_t triangles() const;
+  /// Returns the corners of the triangles, world units, and which of them each triangle has.
+  std::vector<glm::dvec3> vertices() const;
+  const std::vector<glm::uvec3>& corners() const;
   const Box& bounds() const;
   /// Tells whether all corners and normals are the same.
   bool operator==(const Mesh& other) const;

@@ -212,8 +212,8 @@ struct Orbit {
 
 /// An opaque mesh in the volume, such as an implant or an instrument. Each ray ends where it meets the mesh first, so
 /// that what a mode shows of the volume is what lies in front of it. Clipping does not cut the mesh. It is shaded by
-/// Phong's model unless there is no shading, by the lights that shadingLights() returns; no medium keeps light from it,
-/// and it casts no shadow.
+/// Phong's model unless there is no shading, by the lights that shadingLights() returns. Under models with occlusion it
+/// keeps all light from the medium and the surfaces behind it, wherever it is, but nothing keeps light from it.
 struct SceneMesh {
   std::filesystem::path file;         // name of the file in a scene file
   std::shared_ptr<const Mesh> shape;  // in the world, world units; none: there is no mesh
