@@ -43,11 +43,8 @@ vec2 between(Ray ray, vec3 low, vec3 high) {
   return vec2(max(max(nearer.x, nearer.y), nearer.z), min(min(farther.x, farther.y), farther.z));
 }
 
-// Cuts the ray at the eye, where it ends and where clip planes end the medium.
-void clipRay(inout Ray ray) {
-  ray.kept = vec2(-first_depth / segment_depth, 1e30);
-  if (kEnds != 0)
-    ray.kept.y = min(ray.kept.y, (texelFetch(ends, ivec2(gl_FragCoord.xy), 0).r - first_depth) / segment_depth);
+// Cuts the ray where clip planes end the medium.
+void clipByPlanes(inout Ray ray) {
   for (int i = 0; i < kClipPlanes; ++i) {
     float distance = dot(clip_planes[i].xyz, ray.at) + clip_planes[i].w, rate = dot(clip_planes[i].xyz, ray.step);
     if (rate > 0.0)
@@ -59,22 +56,37 @@ void clipRay(inout Ray ray) {
   }
 }
 
+// Cuts the ray at the eye, where it ends and where clip planes end the medium.
+void clipRay(inout Ray ray) {
+  ray.kept = vec2(-first_depth / segment_depth, 1e30);
+  if (kEnds != 0)
+    ray.kept.y = min(ray.kept.y, (texelFetch(ends, ivec2(gl_FragCoord.xy), 0).r - first_depth) / segment_depth);
+  clipByPlanes(ray);
+}
+
+// A ray along a face gets an inclination that is lost in rounding, and no division by 0.
+vec3 perStep(vec3 step) { return 1.0 / mix(step, vec3(1e-20), lessThan(abs(step), vec3(1e-20))); }
+
+// Leaves of the first `count` segments those that may meet a cell of the run, and medium.
+void limitTo(float count, inout Ray ray) {
+  vec2 run = between(ray, vec3(first_cell) * part, vec3(first_cell + textureSize(slots, 0)) * part);
+  // A segment more at both ends, since rounding may miss one; the cell of its middle decides.
+  vec2 seen = between(ray, medium_low, medium_high);
+  seen = vec2(max(ray.kept.x, seen.x), min(ray.kept.y, seen.y));
+  ray.segments.x = max(max(0.0, ceil(run.x) - 1.0), floor(seen.x + 0.5));
+  ray.segments.y = min(min(count, floor(run.y) + 2.0), ceil(seen.y + 0.5));
+}
+
 Ray rayThrough(vec2 pixel) {
   vec2 p = pixel * screen_scale + screen_offset;
   vec3 across = p.x * across_x + p.y * across_y;
   Ray ray;
   ray.at = first_middle + (kPerspective != 0 ? first_depth : 1.0) * across;
   ray.step = segment_depth * (kPerspective != 0 ? forward + across : forward);
-  // A ray along a face gets an inclination that is lost in rounding, and no division by 0.
-  ray.per_step = 1.0 / mix(ray.step, vec3(1e-20), lessThan(abs(ray.step), vec3(1e-20)));
+  ray.per_step = perStep(ray.step);
   ray.stretch = kPerspective != 0 ? sqrt(1.0 + dot(p, p)) : 1.0;
   clipRay(ray);
-  vec2 run = between(ray, vec3(first_cell) * part, vec3(first_cell + textureSize(slots, 0)) * part);
-  // A segment more at both ends, since rounding may miss one; the cell of its middle decides.
-  vec2 seen = between(ray, medium_low, medium_high);
-  seen = vec2(max(ray.kept.x, seen.x), min(ray.kept.y, seen.y));
-  ray.segments.x = max(max(0.0, ceil(run.x) - 1.0), floor(seen.x + 0.5));
-  ray.segments.y = min(min(segment_count, floor(run.y) + 2.0), ceil(seen.y + 0.5));
+  limitTo(segment_count, ray);
   return ray;
 }
 
@@ -106,4 +118,24 @@ float leaves(Ray ray, float segment, vec3 corner, vec3 edge) {
 float skips(Ray ray, float segment, float distance) {
   vec3 corner = cornerOf(ray, segment, part), around = max(distance - 1.0, 0.0) * part;
   return max(floor(between(ray, corner - around, corner + part + around).y), segment) + 1.0;
+}
+
+// A cell, or a whole brick, that a ray is in from a segment on.
+struct Crossing {
+  bool empty;
+  float until;     // the first segment beyond it; where it is empty, the next one that may meet something
+  int number;      // of the texture that it lies in
+  vec3 to_texels;  // from places to texels, without the apron
+};
+
+Crossing crossingOf(Ray ray, float segment) {
+  uvec4 slot = slotOf(ray, segment);
+  vec3 edge = slot.w > uint(kWholeBrick) ? brick : part, corner = cornerOf(ray, segment, edge);
+  Crossing crossing;
+  crossing.empty = slot.w == 0u;
+  crossing.until =
+      min(crossing.empty ? skips(ray, segment, float(slot.x)) : leaves(ray, segment, corner, edge), ray.segments.y);
+  crossing.number = int(slot.w & uint(kWholeBrick - 1)) - 1;
+  crossing.to_texels = vec3(slot.xyz) - corner;
+  return crossing;
 }

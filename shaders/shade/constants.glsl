@@ -24,6 +24,7 @@ const int kMoreLightUnit = 13;         // the same for light
 const int kBoundsUnit = 5;             // of projections: what values a cell may have
 const int kStartUnit = 2;              // of rays: the depth from which each sees the medium
 const int kEndUnit = 8;                // of rays: the depth at which each ends
+const int kConeLightsUnit = 9;         // of rays: directions of the light, see cone_light.glsl
 
 // Rays read up to so many textures of the atlas in one draw.
 const int kRayTextures = 4;

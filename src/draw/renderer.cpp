@@ -6,6 +6,10 @@
 
 namespace umbrick {
 
+std::vector<LightDirection> lightsOf(const ResolvedScene& scene, const RenderSample& sample) {
+  return sample.lights.empty() ? lightDirections(scene, scene.occlusion.ordinates.directions) : sample.lights;
+}
+
 void addWork(RenderStats& sum, const RenderStats& other) {
   sum.polygons += other.polygons;
   sum.fragments += other.fragments;

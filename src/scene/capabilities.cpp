@@ -79,7 +79,15 @@ std::optional<Method> occlusionMethod(const SceneSettings& scene) {
 
 void refuseConeRays(const SceneSettings& scene, std::string_view other) {
   if (occlusionMethod(scene) == Method::coneRays)
-    throw InvalidArgument("method: cone-rays is of media by rays on the CPU, not of " + std::string(other));
+    throw InvalidArgument("method: cone-rays is of media by rays, not of " + std::string(other));
+}
+
+void checkConeRays(const SceneSettings& scene) {
+  if (scene.mode == Mode::hybrid) refuseConeRays(scene, "surfaces");
+  if (occlusionMethod(scene) != Method::coneRays) return;
+  if (isShaded(scene)) throw InvalidArgument("shading.kind: phong takes light from a light volume, not from cone-rays");
+  if (emits(scene))
+    throw InvalidArgument("method: cone-rays takes no light that a second grid emits; emissionGrid must be none");
 }
 
 void requireClassification(const SceneSettings& scene) {

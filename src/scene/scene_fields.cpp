@@ -183,8 +183,8 @@ const std::vector<SceneField>& table() {
       {"model", "model", "Light", models, [](Scene& s) -> FieldPlace { return Choice(s.model, kModels); }},
       {"method", "method", "Light",
        "of the models cone (dos, ordinates or light-volume), lights (ordinates or light-volume) and ambient "
-       "(light-volume); or cone-rays of all three: rays towards the light from each sample, by rays on the CPU, slow, "
-       "to compare the others with",
+       "(light-volume); or cone-rays of all three: rays towards the light from each sample, by rays, slow, to compare "
+       "the others with",
        [](Scene& s) -> FieldPlace { return Choice(s.method, kMethods); }},
       {"technique", "technique", "Sampling",
        "how the picture is computed: slices (across the view, on OpenGL), stacks (across the axes of the volume, on "

@@ -24,8 +24,9 @@ void checkScene(const ResolvedScene& scene, const ResidentVolume& resident) {
   if (!supports(Method::lightVolume, scene.model))
     throw InvalidArgument("model: " + modelName(scene.model) +
                           " is integrated by the reference alone; rays render emission, cone, ambient and lights");
-  refuseConeRays(scene, "rays on OpenGL");
-  if (occlusionMethod(scene).value_or(Method::lightVolume) != Method::lightVolume)
+  checkConeRays(scene);
+  const Method method = occlusionMethod(scene).value_or(Method::lightVolume);
+  if (method != Method::lightVolume && method != Method::coneRays)
     throw InvalidArgument("method: " + methodName(scene.method) +
                           " is one of slices; rays take light from a light volume");
   if (isShaded(scene)) checkShading(scene, resident.volume().layout.apron);
@@ -182,7 +183,10 @@ class RayCaster::Implementation {
     const std::vector<glm::dvec4> planes = viewPlanes(scene, volume_, background_);
     checkPlanes(planes.size());
     stats_.geometryMs = geometry.elapsedMs();
-    const bool lit = occlusionMethod(scene).has_value();
+    const bool lit = occlusionMethod(scene) == Method::lightVolume;
+    std::vector<LightDirection> coneLights;
+    if (occlusionMethod(scene) == Method::coneRays) coneLights = lightsOf(scene, sample);
+    stats_.directions = static_cast<int>(coneLights.size());
     light_.beginPicture();
     if (lit) light_.update(scene, sample, view, planes, *held_.transfer, *held_.bricks);
     held_.targets->clear(gl_);
@@ -195,6 +199,7 @@ class RayCaster::Implementation {
                         *held_.transfer,
                         *held_.bricks,
                         lit ? &light_ : nullptr,
+                        coneLights,
                         surfaces_ ? &start_.texture() : nullptr,
                         mesh_ ? &ends_.texture() : nullptr,
                         codes_,
@@ -252,12 +257,16 @@ class RayCaster::Implementation {
     plan.isShown = [&](const Range& value, const Range& gradient, const Range& emission) {
       return held_.transfer->isVisible(value, gradient, emission);
     };
+    if (!rays.coneLights.empty()) plan.together = "cone-rays";
     if (rays.light)
       plan.require = [&](std::span<const std::int32_t> positions) { light_.require(gl_, *held_.bricks, positions); };
     return plan;
   }
 
   void drawRun(const RayScene& rays, const RayFrame& frame, const RayRun& run) {
+    if (resident_.context().software() && 2 * RayPass::stepsToLight(rays, frame) > RayPass::kMostTurns)
+      throw InvalidArgument("occlusion.directions: " + std::to_string(rays.coneLights.size()) +
+                            " cone-rays of a segment are more than software OpenGL takes through this volume");
     const Stopwatch sweep;
     pass_.draw(rays, frame, run);
     gl_.Finish();  // only a wait for the last ray tells the time

@@ -12,6 +12,7 @@
 #include "shade/resident_light.h"
 #include "shade/transfer_lookup.h"
 #include "shade/voxel_codes.h"
+#include "umbrick/scene/lights.h"
 
 namespace umbrick {
 
@@ -39,9 +40,10 @@ struct RayScene {
   Box medium;                          // outside of which there is nothing to see, index coordinates
   const TransferLookup& transfer;
   const BrickSelection& bricks;
-  const ResidentLight* light;  // null: all is lit alike
-  const GlTexture* start;      // as ray_march.frag reads it; null: rays begin at the eye
-  const GlTexture* ends;       // as brick_walk.glsl reads it; null: rays end nowhere
+  const ResidentLight* light;                  // null: there is no light volume
+  std::span<const LightDirection> coneLights;  // that rays look for from each sample; none: they do not
+  const GlTexture* start;                      // as ray_march.frag reads it; null: rays begin at the eye
+  const GlTexture* ends;                       // as brick_walk.glsl reads it; null: rays end nowhere
   const VoxelCodes& codes;
   const Bricks& volume;
   const RayTargets& targets;
@@ -56,13 +58,22 @@ class RayPass {
   void draw(const RayScene& rays, const RayFrame& frame, const RayRun& run);
   std::uint64_t bytes() const { return slots_.bytes(); }
 
+  /// Software OpenGL takes no more turns of loops for a pixel.
+  static constexpr double kMostTurns = 65535;
+  /// Returns how many steps all rays towards the light of a segment may take.
+  static double stepsToLight(const RayScene& rays, const RayFrame& frame);
+
  private:
+  void takeLights(const RayScene& rays);
+  void endSaturated(const RayScene& rays);
+  static double segmentsAtOnce(const RayScene& rays, const RayFrame& frame);
   void setState(const RayScene& rays, const RayRun& run);
   SpecialisedProgram program_{"shade/full_screen.vert", "shade/ray_march.frag"};
   std::optional<SaturationTest> saturation_;
   std::optional<GlVertexArray> nothing_;  // an empty vertex array, since the core profile draws nothing without one
   SlotTable slots_;
-  bool first_ = true;  // nothing is drawn yet
+  GlTexture coneLights_;  // see cone_light.glsl
+  bool first_ = true;     // nothing is drawn yet
 };
 
 }  // namespace umbrick

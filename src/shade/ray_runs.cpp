@@ -2,9 +2,11 @@
 #include "shade/ray_runs.h"
 
 #include <algorithm>
+#include <string>
 
 #include "shade/brick_runs.h"
 #include "shade/constants.h"
+#include "umbrick/core/error.h"
 #include "umbrick/core/stopwatch.h"
 
 namespace umbrick {
@@ -28,7 +30,11 @@ void RayRuns::draw(const RayRunPlan& plan, const std::function<void(const RayFra
   if (plan.skips && SlotTable::fits(cellsAround(plan.bricks.origins(), interior, parts_.count())))
     walk.parts = parts_.count();
   BrickRuns(plan.view, plan.bricks.origins()).draw([&](std::span<const std::int32_t> positions) {
-    return drawRun(walk, positions);
+    if (drawRun(walk, positions)) return true;
+    if (!plan.together.empty())
+      throw InvalidArgument("bricks.budgetMiB: " + std::string(plan.together) +
+                            " need all visible bricks at once, which are more than fit the memory budget or OpenGL");
+    return false;
   });
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct RayRunPlan {
   double spacing = 1;
   int segments = 1;  // see RayFrame
   double phase = 0.5, corner = kAroundVoxels;
-  bool skips = true;  // cells are parts of bricks, so that rays skip what is empty in a brick
-  bool joins = true;  // see SlotCells
+  bool skips = true;               // cells are parts of bricks, so that rays skip what is empty in a brick
+  bool joins = true;               // see SlotCells
+  std::string_view together = {};  // what needs all bricks in one run; empty: nothing
   /// What the parts of bricks show. A number stands for it, which changes with it.
   std::uint64_t version = 0;
   std::function<bool(const Range& value, const Range& gradient, const Range& emission)> isShown = {};
@@ -47,6 +49,7 @@ class RayRuns {
   explicit RayRuns(ResidentVolume& resident) : resident_(resident), parts_(resident.volume()) {}
   /// @param draw   a run, whose places are counted as the frame says
   /// @param stats  gets the times
+  /// @throw InvalidArgument  bricks do not fit into one run that the plan wants together
   void draw(const RayRunPlan& plan, const std::function<void(const RayFrame&, const RayRun&)>& draw,
             RenderStats& stats);
 

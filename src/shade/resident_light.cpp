@@ -11,14 +11,6 @@
 
 namespace umbrick {
 
-namespace {
-
-std::vector<LightDirection> directionsOf(const ResolvedScene& scene, const RenderSample& sample) {
-  return sample.lights.empty() ? lightDirections(scene, scene.occlusion.ordinates.directions) : sample.lights;
-}
-
-}  // namespace
-
 // Begins with a medium: adds the planes that cut it, and takes what is known of its light.
 void ResidentLight::take(LightMedium& medium, const IndexView& view, std::span<const glm::dvec4> planes) {
   for (const glm::dvec4& plane : planes) {
@@ -39,7 +31,7 @@ void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sampl
                            std::span<const glm::dvec4> planes, const TransferLookup& transfer, BrickSelection& bricks) {
   const Stopwatch watch;
   LightMedium medium{scene.transfer,
-                     directionsOf(scene, sample),
+                     lightsOf(scene, sample),
                      {},
                      {bricks.origins().begin(), bricks.origins().end()},
                      scene.occlusion.ordinates.lightSpacing};
@@ -54,7 +46,7 @@ void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sampl
 void ResidentLight::updateSurfaces(const ResolvedScene& scene, const RenderSample& sample, const IndexView& view,
                                    std::span<const glm::dvec4> planes) {
   const Stopwatch watch;
-  LightMedium medium = lightAtSurfaces(resident_.volume(), scene, directionsOf(scene, sample));
+  LightMedium medium = lightAtSurfaces(resident_.volume(), scene, lightsOf(scene, sample));
   take(medium, view, planes);
   if (wantsGl()) note_ = "the light of surfaces is computed on the CPU";
   ms_ += sweepOnCpu(medium, scene) ? watch.elapsedMs() : 0;

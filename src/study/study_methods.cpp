@@ -158,6 +158,14 @@ const std::vector<StudyMethod>& studyMethods() {
                        .onCpu = onCpu,
                        .compared = true};
   };
+  // Each takes so long that they are few, and drawn where they are named.
+  const auto coneRays = [&](const char* name, const char* title, bool onCpu) {
+    StudyMethod rays = lit(name, title, applyConeRays, coneRaysWork, onCpu);
+    rays.slices = {64, 256};
+    rays.quickSlices = {64};
+    rays.compared = false;
+    return rays;
+  };
   static const std::vector<StudyMethod> methods = [&] {
     std::vector<StudyMethod> all{
         {.name = "emission",
@@ -239,14 +247,8 @@ const std::vector<StudyMethod>& studyMethods() {
             litCpuWork, true),
         unlit("rays-gl", "rays on OpenGL", applyTechnique<Technique::rays>, emissionWork, false),
         variant("rays-gl-box", "rays on OpenGL through the box of the volume", rayBox, emissionWork, false),
-        [&] {
-          // Each takes so long that they are few, and drawn where they are named.
-          StudyMethod rays = lit("cone-rays", "cone rays by rays on the CPU", applyConeRays, coneRaysWork, true);
-          rays.slices = {64, 256};
-          rays.quickSlices = {64};
-          rays.compared = false;
-          return rays;
-        }(),
+        coneRays("cone-rays", "cone rays by rays on the CPU", true),
+        coneRays("cone-rays-gl", "cone rays by rays on OpenGL", false),
         lit("rays-gl-light-volume", "light volume by rays on OpenGL", applyLitTechnique<Technique::rays>,
             lightVolumeWork, false),
     };

@@ -46,9 +46,4 @@ class BrickLight {
   std::uint64_t generation_ = kNoGeneration;  // of the bricks that have light
 };
 
-/// Returns the directions of a sample, or else those of its scene.
-inline std::vector<LightDirection> lightsOf(const ResolvedScene& scene, const RenderSample& sample) {
-  return sample.lights.empty() ? lightDirections(scene, scene.occlusion.ordinates.directions) : sample.lights;
-}
-
 }  // namespace umbrick

@@ -9,6 +9,7 @@
 
 #include "sweep/lattice_walk.h"
 #include "sweep/voxel_point.h"
+#include "umbrick/optics/medium.h"
 
 namespace umbrick {
 namespace {
@@ -50,12 +51,6 @@ glm::dvec4 meanOf(const MediumTable& table, double from, double to) {
   // Within a few steps of the table its points say more than differences of its integrals.
   if (std::abs(to - from) < 4) return 0.5 * (pointOf(table, from) + pointOf(table, to));
   return glm::max((integralTo(table, to) - integralTo(table, from)) / (to - from), glm::dvec4(0));
-}
-
-// Returns where in a segment of this optical depth the mean of what is seen of it lies, as a share of its length.
-double placeSeen(double tau) {
-  if (tau < 1e-3) return 0.5 - tau / 12;
-  return tau > 700 ? 1 / tau : 1 / tau - 1 / std::expm1(tau);
 }
 
 }  // namespace
@@ -162,7 +157,8 @@ ConeMarch::Pixel ConeMarch::march(ValueRay ray, double toEnd) {
       ++segments_;
       const double tau = medium.x * part * stretch;
       if (!(tau > 0)) continue;
-      const double at = begin + part * placeSeen(tau), share = (1 - pixel.opacity) * -std::expm1(-tau);
+      const double at = begin + part * static_cast<double>(placeSeen(static_cast<float>(tau))),
+                   share = (1 - pixel.opacity) * -std::expm1(-tau);
       const Light light = lightAt(ray.at(at));
       pixel.colour += share / medium.x * glm::dvec3(medium.y, medium.z, medium.w) * light.colour;
       pixel.opacity += share;

@@ -38,15 +38,12 @@ bool sweptSupports(const SceneSettings& scene, Technique technique) {
 SweptScene::SweptScene(const Bricks& volume, Technique technique)
     : technique_(technique), voxels_(volume), light_(volume) {}
 
-void SweptScene::checkConeRays(const ResolvedScene& next) const {
+void SweptScene::checkMethod(const ResolvedScene& next) const {
   if (technique_ != Technique::rays) refuseConeRays(next, techniqueName(technique_));
-  if (next.mode == Mode::hybrid) refuseConeRays(next, "surfaces");
-  if (occlusionMethod(next) != Method::coneRays) return;
-  if (isShaded(next)) throw InvalidArgument("shading.kind: phong takes light from a light volume, not from cone-rays");
-  if (next.emitted)
-    throw InvalidArgument("method: cone-rays takes no light that a second grid emits; emissionGrid must be none");
-  if (next.transfer.is2d())
-    throw InvalidArgument("method: cone-rays takes transfer functions of the value alone, without a gradient");
+  checkConeRays(next);
+  if (occlusionMethod(next) == Method::coneRays && next.transfer.is2d())
+    throw InvalidArgument(
+        "method: cone-rays on the CPU takes transfer functions of the value alone, without a gradient");
 }
 
 void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) {
@@ -54,7 +51,7 @@ void SweptScene::update(const ResolvedScene& next, const ResolvedScene* before) 
     throw InvalidArgument("model: " + modelName(next.model) + " is integrated by the reference alone; " +
                           techniqueName(technique_) + " renders emission, cone, ambient and lights");
   requireClassification(next);
-  checkConeRays(next);
+  checkMethod(next);
   if (!sweptSupports(next, technique_))
     throw InvalidArgument("method: " + methodName(next.method) + " is one of slices; " + techniqueName(technique_) +
                           " takes light from a light volume");

@@ -72,7 +72,7 @@ class SweptScene {
   std::uint64_t mediaBytes(bool classified) const;
   ShownValues shown() const { return {*table_, emission_ ? &*emission_ : nullptr}; }
 
-  void checkConeRays(const ResolvedScene& next) const;
+  void checkMethod(const ResolvedScene& next) const;
 
   Technique technique_;
   BrickVoxels voxels_;

@@ -27,6 +27,18 @@ TEST_CASE("Opacity and slab factor do not cancel for thin or overflow for thick 
   CHECK(slabFactor(std::numeric_limits<float>::denorm_min()) == 1.0f);
 }
 
+// The mean of x with the weight exp(-tau x) on [0, 1].
+TEST_CASE("The place that is seen of a segment is the mean by what gets out of it", "[optics]") {
+  double worst = 0;
+  for (int i = 0; i <= 4000; ++i) {
+    const float tau = static_cast<float>(std::pow(10.0, -1.5 + i * 1e-3));
+    const double t = static_cast<double>(tau);
+    worst = std::max(worst, std::abs(static_cast<double>(placeSeen(tau)) - (1 / t - 1 / std::expm1(t))));
+  }
+  CHECK(worst < 2e-6);
+  CHECK(placeSeen(0.0f) == 0.5f);
+}
+
 TEST_CASE("Opacity rises with optical depth across the switch of formulas", "[optics]") {
   float x = 0.4999f;
   while (x < 0.5001f) {

@@ -168,8 +168,8 @@ TEST_CASE("Monte Carlo finds what quadrature does of a fire, and of the smoke th
     scene.ambient = glm::dvec3(0);
   }
   ReferenceOptions exactly, random;
-  exactly.directions = 144;
-  exactly.tolerance = 2e-3;
+  exactly.directions = 484;
+  exactly.tolerance = 1e-3;
   random.integrator = Integrator::monteCarlo;
   random.samples = 2000;
   const Image exact = renderReference(grid, scene, exactly).colour;

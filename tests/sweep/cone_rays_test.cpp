@@ -111,8 +111,7 @@ TEST_CASE("What cone rays cannot draw is refused in one line", "[sweep][cpu]") {
   const ScalarGrid grid = blobGrid();
   ResolvedScene scene = coneScene(rampTo(1), smallCameras(8).front(), 4);
   const auto bricks = cutGrid(grid, BrickOptions{.interior = 16, .apron = 2}, true);
-  CHECK_THROWS_WITH(ShearWarpRenderer(*bricks, scene),
-                    "method: cone-rays is of media by rays on the CPU, not of shear-warp");
+  CHECK_THROWS_WITH(ShearWarpRenderer(*bricks, scene), "method: cone-rays is of media by rays, not of shear-warp");
   CHECK(!shearWarpSupports(scene));
   CHECK(raysSupport(scene));
   ResolvedScene shaded = scene;
@@ -123,9 +122,9 @@ TEST_CASE("What cone rays cannot draw is refused in one line", "[sweep][cpu]") {
   surface.mode = Mode::isosurface;
   surface.surfaces = {SceneSurface{.value = 0.5}};
   CHECK_THROWS_WITH(RayRenderer(*cutGrid(grid, BrickOptions{.interior = 16, .apron = 5}, true), surface),
-                    Contains("method: cone-rays is of media by rays on the CPU, not of surfaces"));
+                    Contains("method: cone-rays is of media by rays, not of surfaces"));
   scene.transfer = withGradientOpacity(scene.transfer, {0.1, 0.2});
   CHECK_THROWS_WITH(
       RayRenderer(*cutGrid(grid, BrickOptions{.interior = 16, .apron = 1, .gradients = true}, true), scene),
-      Contains("method: cone-rays takes transfer functions of the value alone"));
+      Contains("method: cone-rays on the CPU takes transfer functions of the value alone"));
 }

@@ -86,6 +86,9 @@ struct RenderSample {
   glm::dvec2 pixel{0.5};       // place in each pixel through which it is seen, in [0, 1]^2; 1/2: the centre
 };
 
+/// Returns the directions of a sample, or else those of its scene.
+std::vector<LightDirection> lightsOf(const ResolvedScene& scene, const RenderSample& sample);
+
 struct Picture {
   Image colour;      // linear premultiplied RGBA
   Image visibility;  // 1 channel: V weighted by opacity, so that V / A is the mean visibility along the ray

@@ -38,10 +38,13 @@ const MethodTraits& traitsOf(Method method);
 /// Returns the method that computes a scene's occlusion; none where the scene's model has no occlusion.
 std::optional<Method> occlusionMethod(const SceneSettings& scene);
 
-/// Refuses a scene whose occlusion is found by rays from each sample, which only rays on the CPU do, in media.
+/// Refuses a scene whose occlusion is found by rays from each sample, which only rays do, in media.
 /// @param other  what does not: "slices"
 /// @throw InvalidArgument
 void refuseConeRays(const SceneSettings& scene, std::string_view other);
+/// Refuses such a scene where it has what rays do not light so: surfaces, shading, light of a second grid.
+/// @throw InvalidArgument
+void checkConeRays(const SceneSettings& scene);
 
 /// Refuses a scene that interpolates media where its model has occlusion, or where it emits: both know values alone.
 /// @throw InvalidArgument

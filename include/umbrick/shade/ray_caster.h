@@ -20,12 +20,12 @@ namespace umbrick {
 /// in the atlas or how far there is none. Where bricks do not fit the atlas together, they are drawn in runs, nearest
 /// first. Sums are kept in 32 bits, whatever SamplingOptions::bits says.
 ///
-/// Renders the models emission, cone, ambient and lights, the last three with light volumes, and all modes. Projections
-/// are sampled on the voxels' own slices, and surfaces are found cell by cell, as by RayRenderer on the CPU; bricks
-/// then need an apron of one voxel, and of two for surfaces and for light that is reflected. Sources: Krüger and
-/// Westermann 2003, doi:10.1109/VISUAL.2003.1250384 (rays on graphics hardware); Amanatides and Woo 1987,
-/// doi:10.2312/egtp.19871000 (the walk through cells); Cohen and Sheffer 1994, doi:10.1007/BF01900697 (distances to
-/// what is next)
+/// Renders the models emission, cone, ambient and lights, the last three with light volumes or, where all visible
+/// bricks are drawn at once, cone rays, and all modes. Projections are sampled on the voxels' own slices, and surfaces
+/// are found cell by cell, as by RayRenderer on the CPU; bricks then need an apron of one voxel, and of two for
+/// surfaces and for light that is reflected. Sources: Krüger and Westermann 2003, doi:10.1109/VISUAL.2003.1250384 (rays
+/// on graphics hardware); Amanatides and Woo 1987, doi:10.2312/egtp.19871000 (the walk through cells); Cohen and
+/// Sheffer 1994, doi:10.1007/BF01900697 (distances to what is next)
 class RayCaster : public Renderer {
  public:
   /// @param volume  must have the apron and the gradients that the scene needs; outlives this

@@ -68,8 +68,8 @@ inline constexpr int kAutomaticSegments = 0;
 ///   rays-midpoint  rays with the medium at the middle of each segment, not the integral over its values
 ///   rays-pre       rays through media that were interpolated between classified voxels
 ///   rays-gl, rays-gl-light-volume                 rays on OpenGL, of the slices' segments
-///   cone-rays      rays towards the light from each sample of rays on the CPU
-///   rays-gl-box    the same by the simple set-up: through the box of the volume, one texture, without skipping
+///   cone-rays, cone-rays-gl                       rays towards the light from each sample of rays
+///   rays-gl-box    rays on OpenGL by the simple set-up: through the box of the volume, one texture, without skipping
 ///   LOOK-TECHNIQUE  each other look by each technique that has it: mip-rays, mip-rays-gl, phong-shear-warp, ...; how
 ///                   finely isosurfaces are drawn depends on no slices
 const std::vector<StudyMethod>& studyMethods();
