@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace umbrick {
 namespace {
@@ -55,7 +56,7 @@ ExtinctionTable::ExtinctionTable(const TransferFunction& transfer) : transfer_(t
   }
   // A function of a single step has no extent.
   const double low = transfer.values().front(), high = transfer.values().back();
-  const double extent = std::max(high - low, 1e-3 * std::max(std::abs(low), std::abs(high)) + 1e-30);
+  const double extent = std::max(high - low, 1e-3 * std::max(std::abs(low), std::abs(high)) + 1e-20);
   low_ = low;
   perUnit_ = (kSteps - 2 * kEnds) / extent;
   const double first = low - kEnds / perUnit_;
@@ -85,16 +86,19 @@ void ExtinctionTable::toSteps(std::span<float> values, std::span<const float> gr
   for (float& value : values) value = static_cast<float>(kEnds + (static_cast<double>(value) - low) * perUnit);
 }
 
+// Steps that no value has: of a function of a single point they are very many.
+constexpr float kAnything = std::numeric_limits<float>::max();
+
 void ExtinctionTable::findEmptyEnds() {
   // Where nothing is seen at all, the first end takes all values.
   if (opaque_.back() == 0 && below_ == 0 && above_ == 0) {
-    emptyBelow_ = 1e30f;
-    emptyAbove_ = 1e30f;
+    emptyBelow_ = kAnything;
+    emptyAbove_ = kAnything;
     return;
   }
   const auto first = std::ranges::upper_bound(opaque_, 0), last = std::ranges::lower_bound(opaque_, opaque_.back());
-  emptyBelow_ = below_ > 0 ? -1e30f : static_cast<float>(first - opaque_.begin() - 1);
-  emptyAbove_ = above_ > 0 ? 1e30f : static_cast<float>(last - opaque_.begin());
+  emptyBelow_ = below_ > 0 ? -kAnything : static_cast<float>(first - opaque_.begin() - 1);
+  emptyAbove_ = above_ > 0 ? kAnything : static_cast<float>(last - opaque_.begin());
   if (transfer_.is2d()) return;
   // The value of a step belongs to what is above it.
   const auto hasExtinction = [&](float steps) {

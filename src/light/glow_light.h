@@ -25,7 +25,7 @@ namespace umbrick {
 class GlowLight {
  public:
   static constexpr int kMostCells = 64 * 64 * 64;
-  static constexpr int kDirections = 96;
+  static constexpr int kDirections = 144;
 
   /// Computes the light of a medium, where it has any and anything that it depends on has changed.
   void update(const Bricks& volume, const LightMedium& medium);

@@ -190,3 +190,39 @@ TEST_CASE("The error of light falls with the square of a voxel's edge", "[light]
   CHECK(errors[0] < 4e-3);
   CHECK(errors[0] > 3.2 * errors[1]);  // 4 for the second order
 }
+
+TEST_CASE("A function of a single point or step dims light wherever it lies, whatever the values", "[light]") {
+  const Medium medium{glm::dvec3(1), 0.15}, none{glm::dvec3(1), 0};
+  const double step = GENERATE(0.0, 1e-20, 1.0, -3e5), unit = GENERATE(1e-6, 1.0, 1e6);
+  INFO("at " << step << ", values of some " << unit);
+  // All on one side of the step, or half of the voxels on each.
+  const auto lightOf = [&](const TransferFunction& function, double middle) {
+    const FieldBricks volume([&](const glm::ivec3& i) { return middle + unit * (i.z - 15.5); },
+                             {glm::ivec3(0), glm::ivec3(31)});
+    LightVolume light(volume);
+    const LightMedium lit = mediumOf(volume, function, {{glm::dvec3(0, 0, 1), glm::dvec3(1)}});
+    REQUIRE(light.update(lit, kPlenty));
+    std::vector<float> all, one(volume.layout.voxels());
+    for (const glm::ivec3& cell : lit.cells) {
+      light.read(cell, one);
+      all.insert(all.end(), one.begin(), one.end());
+    }
+    return all;
+  };
+  const auto differ = [](const std::vector<float>& a, const std::vector<float>& b) {
+    REQUIRE(a.size() == b.size());
+    float worst = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(a[i] - b[i]));
+    return worst;
+  };
+  // The same everywhere: as two points far off.
+  const std::vector<float> one = lightOf(TransferFunction({{step, medium}}), step);
+  const double far = 100 * unit + std::abs(step);
+  CHECK(*std::ranges::min_element(one) < 0.05);
+  CHECK(differ(one, lightOf(TransferFunction({{-far, medium}, {far, medium}}), step)) < 2.0 / 65535);
+  if (std::abs(step) > 1e3 * unit) return;  // single precision has no voxels on both sides
+  // A step: as a ramp over a thousandth of what voxels differ by.
+  const std::vector<float> stepped = lightOf(TransferFunction({{step, none}, {step, medium}}), step);
+  CHECK(differ(stepped, lightOf(TransferFunction({{step - 5e-4 * unit, none}, {step + 5e-4 * unit, medium}}), step)) <
+        1e-3);
+}

@@ -171,7 +171,7 @@ TEST_CASE("Monte Carlo finds what quadrature does of a fire, and of the smoke th
   exactly.directions = 484;
   exactly.tolerance = 1e-3;
   random.integrator = Integrator::monteCarlo;
-  random.samples = 2000;
+  random.samples = 20000;
   const Image exact = renderReference(grid, scene, exactly).colour;
   const ReferencePicture found = renderReference(grid, scene, random);
   const Deviations off = deviationsOf(found, exact);

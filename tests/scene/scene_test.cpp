@@ -129,7 +129,7 @@ TEST_CASE("A transfer function comes from a preset, a file or the scene itself",
   CHECK(read(R"({"volume": {"file": "a.vdb"}})").volume.file == folder.path() / "a.vdb");
   CHECK(read(R"({"volume": {"file": "/a.vdb"}})").volume.file == "/a.vdb");
   CHECK_THROWS_WITH(read("{\n\"transfer\": \"smoek\"}"),
-                    Contains("scene.json:2:13: transfer: expected a file or one of the presets ct-bone"));
+                    Contains("scene.json:2:13: transfer: expected a file or one of the presets cloud"));
   CHECK_THROWS_WITH(read(R"({"transfer": "bad.json"})"), Contains("bad.json:2:2: points: expected an array, found 7"));
   CHECK_THROWS_WITH(read(R"({"transfer": {"points": [{"value": 0}]}})"),
                     Contains("scene.json:1:26: transfer.points[0]: the field 'albedo' is missing"));

@@ -254,7 +254,7 @@ class LiveRenderer {
 PictureHandle reference(const py::object& volume, const py::object& sceneGiven, const py::dict& sceneKeywords,
                         const py::dict& values, const py::object& progress) {
   const Keywords keywords(values);
-  const ScenePlea plea = readScenePlea(sceneGiven, sceneKeywords);
+  ScenePlea plea = readScenePlea(sceneGiven, sceneKeywords);
   ReferenceOptions options;
   if (const auto integrator = keywords.get<std::string>("integrator", kText))
     options.integrator = parseName(kIntegrators, *integrator, "integrator");
