@@ -94,6 +94,7 @@ TEST_CASE("Every shader that is not an include compiles by itself, or says where
                                           {"kTaps", 9},
                                           {"kTextures", 1 + perspective},
                                           {"kLit", perspective},
+                                          {"kConeRays", planes > 0 && !perspective},
                                           {"kAlgorithm", 2 + perspective},
                                           {"kTileEdge", 8},
                                           {"kDirections", 16},

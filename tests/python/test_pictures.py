@@ -64,7 +64,7 @@ def test_fire_is_found_in_a_file_and_asked_for_of_a_volume(assets, program, tmp_
     assert by_program.scene["volume"]["emissionGrid"] == "heat"
     by_python = umbrick.render(path, layers=True, **SMALL)
     assert_same(by_python, by_program)
-    assert by_python.chosen["emission-grid"] == "'heat'"
+    assert by_python.chosen["emission_grid"] == "'heat'"
     of_volume = umbrick.render(umbrick.Volume.open(path, emission_grid="auto"), layers=True, **SMALL)
     np.testing.assert_array_equal(np.asarray(of_volume), np.asarray(by_program))
     assert "emissionGrid" not in umbrick.render(umbrick.Volume.open(path), **SMALL).scene["volume"]
