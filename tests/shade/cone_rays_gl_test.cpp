@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "support/closed_forms.h"
+#include "support/cone_scene.h"
 #include "sweep/picture_of_grid.h"
 #include "umbrick/core/error.h"
 #include "umbrick/scene/lights.h"
@@ -13,19 +14,6 @@ using Catch::Contains;
 
 namespace {
 
-TransferFunction greyRamp(double sigma_t) {
-  return TransferFunction({{0, {{0.9, 0.6, 0.3}, 0}}, {1, {{0.9, 0.6, 0.3}, sigma_t}}});
-}
-
-ResolvedScene sceneOfCone(const TransferFunction& transfer, const Camera& camera, int directions = 5) {
-  ResolvedScene scene = plainScene(transfer, camera, 0.5);
-  scene.model = Model::cone;
-  scene.method = Method::coneRays;
-  scene.occlusion.aperture = 60 * kDegree;
-  scene.occlusion.ordinates.directions = directions;
-  return scene;
-}
-
 Picture litOnGl(const GlContext& context, const ScalarGrid& grid, const ResolvedScene& scene, bool layers = false,
                 const AtlasLimits& limits = {}) {
   RenderOptions options;
@@ -34,37 +22,18 @@ Picture litOnGl(const GlContext& context, const ScalarGrid& grid, const Resolved
   return RayCaster(context, *bricks, scene, options, limits).render();
 }
 
-Image litReference(const ScalarGrid& grid, const ResolvedScene& scene) {
-  ReferenceOptions options;
-  options.lights = lightDirections(scene, scene.occlusion.ordinates.directions);
-  options.tolerance = 5e-4;
-  return renderReference(grid, scene, options).colour;
-}
-
 }  // namespace
 
-// See the test of rays on the CPU for the sum over directions.
 TEST_CASE("A slab lit by cone rays on OpenGL is that of the closed form", "[shade][rays][gl]") {
   const auto context = testContext();
   if (!context) return;
-  const ScalarGrid grid = makeFilled(glm::ivec3(64, 64, 24), glm::ivec3(0), [](const glm::ivec3&) { return 1.0; });
-  const double sigma_t = 0.1;
-  Camera camera = orthographicCamera({32, 32, 80}, {32, 32, 12}, 2, 2);
-  camera.up = {0, 1, 0};
-  ResolvedScene scene = sceneOfCone(homogeneous({0.8, 0.5, 0.25}, sigma_t), camera, 16);
-  scene.occlusion.aperture = 40 * kDegree;
-  scene.clipBox = Box{{1, 1, 4}, {62, 62, 20}};
-  double expected = 0;
-  for (const LightDirection& light : lightDirections(scene, 16)) {
-    const double c = light.direction.z;
-    expected += light.radiance.r * c / (1 + c) * -std::expm1(-sigma_t * 16 * (1 + 1 / c));
-  }
-  const Picture picture = litOnGl(*context, grid, scene);
+  const LitSlab slab(0.5);
+  const Picture picture = litOnGl(*context, slab.grid, slab.scene);
   // Segments of half a voxel, each with the light of one place, are off by (sigma_t / 2)^2 / 12 = 2e-4 of it or less.
-  CHECK(picture.colour.at(1, 1)[0] == Approx(0.8 * expected).epsilon(2e-4));
-  CHECK(picture.colour.at(1, 1)[2] == Approx(0.25 * expected).epsilon(2e-4));
-  CHECK(picture.colour.at(0, 1)[3] == Approx(-std::expm1(-sigma_t * 16)).epsilon(1e-5));
-  CHECK(picture.stats.directions == 16);
+  CHECK(picture.colour.at(1, 1)[0] == Approx(0.8 * slab.perAlbedo).epsilon(2e-4));
+  CHECK(picture.colour.at(1, 1)[2] == Approx(0.25 * slab.perAlbedo).epsilon(2e-4));
+  CHECK(picture.colour.at(0, 1)[3] == Approx(LitSlab::opacity()).epsilon(1e-5));
+  CHECK(picture.stats.directions == LitSlab::kDirections);
 }
 
 // Segments lie at other places: slabs of depth here, parts of groups of cells there. Over each the value counts as
@@ -78,7 +47,7 @@ TEST_CASE("Cone rays on OpenGL give the picture of those on the CPU", "[shade][r
     Camera base;
     base.width = base.height = 16;
     base.projection = projection;
-    ResolvedScene scene = sceneOfCone(greyRamp(1 / edge), orbitCamera(grid.worldBounds(), 1.7, 0.4, base));
+    ResolvedScene scene = coneRayScene(tintedRamp(1 / edge), orbitCamera(grid.worldBounds(), 1.7, 0.4, base), 0.5, 5);
     scene.sampling.spacing = 0.5 * edge;
     SECTION("cone") {}
     SECTION("lights") {
@@ -104,8 +73,9 @@ TEST_CASE("Cone rays on OpenGL take functions of value and gradient", "[shade][r
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = blobGrid();
-  ResolvedScene scene = sceneOfCone(withGradientOpacity(greyRamp(1.5), {0.02, 0.1}), smallCameras(12).front(), 4);
-  const Image exact = litReference(grid, scene);
+  ResolvedScene scene =
+      coneRayScene(withGradientOpacity(tintedRamp(1.5), {0.02, 0.1}), smallCameras(12).front(), 0.5, 4);
+  const Image exact = sameLightsReference(grid, scene, 5e-4);
   CHECK(largestAlpha(exact) > 0.2);
   // Value and gradient count as linear over half a voxel of a view ray, and over one of a ray towards the light.
   CHECK(rmsDifference(litOnGl(*context, grid, scene).colour, exact) < 2e-3);
@@ -117,7 +87,7 @@ TEST_CASE("Bricks and culling change nothing of cone rays on OpenGL", "[shade][r
   const ScalarGrid grid = makeSparse(glm::ivec3(-5, 7, 2), 3, 12, 90);
   const glm::dvec3 centre = grid.worldBounds().centre();
   ResolvedScene scene =
-      sceneOfCone(greyRamp(0.5), perspectiveCamera(centre + glm::dvec3(70, 90, 120), centre, 0.7, 16), 4);
+      coneRayScene(tintedRamp(0.5), perspectiveCamera(centre + glm::dvec3(70, 90, 120), centre, 0.7, 16), 0.5, 4);
   const Picture cut = litOnGl(*context, grid, scene);
   CHECK(largestAlpha(cut.colour) > 0.1);
   // The same segments, of view rays and of those towards the light; see kSameSegments of the tests of rays.
@@ -133,7 +103,7 @@ TEST_CASE("What cone rays on OpenGL cannot draw is refused in one line", "[shade
   const auto context = testContext();
   if (!context) return;
   const ScalarGrid grid = blobGrid();
-  ResolvedScene scene = sceneOfCone(greyRamp(1), smallCameras(8).front(), 4);
+  ResolvedScene scene = coneRayScene(tintedRamp(1), smallCameras(8).front(), 0.5, 4);
   scene.bricks.interior = 8;
   const auto bricks = bricksFor(grid, scene);
   const Picture all = litOnGl(*context, grid, scene);
@@ -145,7 +115,7 @@ TEST_CASE("What cone rays on OpenGL cannot draw is refused in one line", "[shade
   // Of 64 voxels times 600 directions it would not do all turns of the shader's loops.
   if (context->software()) {
     const ScalarGrid wide = makeFilled(glm::ivec3(64, 8, 8), glm::ivec3(0), [](const glm::ivec3&) { return 1.0; });
-    ResolvedScene many = sceneOfCone(greyRamp(1), perspectiveCamera({30, 4, 60}, {30, 4, 4}, 0.7, 4), 600);
+    ResolvedScene many = coneRayScene(tintedRamp(1), perspectiveCamera({30, 4, 60}, {30, 4, 4}, 0.7, 4), 0.5, 600);
     CHECK_THROWS_WITH(litOnGl(*context, wide, many),
                       "occlusion.directions: 600 cone-rays of a segment are more than "
                       "software OpenGL takes through this volume");
