@@ -64,11 +64,6 @@ class CellPlane {
 constexpr std::size_t kExtinction = 3;  // the plane behind those of red, green and blue
 using CellPlanes = std::array<CellPlane, 4>;
 
-CellPlanes emptyPlanes(int width, int height) {
-  const CellPlane one(width, height);
-  return {one, one, one, one};
-}
-
 /// A direction, and its radiance on the slice that it has come to.
 struct Beam {
   int u, v;                      // cells from a place to the first of the four that it comes from, on the slice before
@@ -155,18 +150,15 @@ void GlowLight::update(const Bricks& volume, const LightMedium& medium) {
 // Cells are as small as there may be many.
 void GlowLight::chooseCells(const IndexBox& domain) {
   if (domain.empty()) return;
-  const auto cellsAlong = [&](int axis, int edge) {
-    // They begin at multiples of their edge, so that those of bricks are whole where they can be.
-    const auto first = [&](int voxel) { return voxel >= 0 ? voxel / edge : -((edge - 1 - voxel) / edge); };
-    return first(domain.max[axis]) - first(domain.min[axis]) + 1;
-  };
   for (cell_ = 1;; cell_ *= 2) {
-    for (int axis = 0; axis < 3; ++axis) size_[axis] = cellsAlong(axis, cell_);
+    // They begin at multiples of their edge, so that those of bricks are whole where they can be.
+    const auto cellOf = [&](int voxel) { return voxel >= 0 ? voxel / cell_ : -((cell_ - 1 - voxel) / cell_); };
+    for (int axis = 0; axis < 3; ++axis) {
+      const int first = cellOf(domain.min[axis]);
+      origin_[axis] = first * cell_;
+      size_[axis] = cellOf(domain.max[axis]) - first + 1;
+    }
     if (double{1} * size_.x * size_.y * size_.z <= kMostCells) break;
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    const int low = domain.min[axis], rest = ((low % cell_) + cell_) % cell_;
-    origin_[axis] = low - rest;
   }
   extinction_.assign(placeOf({0, 0, size_.z}), 0.0f);
   emitted_.assign(extinction_.size(), glm::vec3(0));
@@ -254,7 +246,8 @@ void GlowLight::propagate(const glm::dmat4& indexToWorld) {
       const int width = size_[axes.u], height = size_[axes.v], slices = size_[axes.n];
       std::vector<Beam> beams;
       for (const SweptDirection& direction : side.directions) beams.push_back(beamOf(direction, cell_, width, height));
-      CellPlanes before = emptyPlanes(width, height), here = before;
+      const CellPlane dark(width, height);
+      CellPlanes before{dark, dark, dark, dark}, here = before;
       const auto cellAt = [&](int u, int v, int n) {
         glm::ivec3 cell(0);
         cell[axes.u] = u;
@@ -271,7 +264,6 @@ void GlowLight::propagate(const glm::dmat4& indexToWorld) {
             for (std::size_t c = 0; c < 3; ++c) here[c].row(v)[u] = emitted_[place][static_cast<glm::length_t>(c)];
             here[kExtinction].row(v)[u] = extinction_[place];
           }
-        const CellPlane dark(width, height);
         std::array<CellPlane, 3> light{dark, dark, dark};
         for (Beam& beam : beams) carryBeam(beam, before, here, light, width, height);
         for (int v = 0; v < height; ++v)

@@ -96,10 +96,15 @@ LightMedium lightAtSurfaces(const Bricks& volume, const ResolvedScene& scene, st
   return medium;
 }
 
-void lightFromEmission(const ResolvedScene& scene, LightMedium& medium) {
-  if (!emissionLights(scene)) return;
+LightMedium lightInMedium(const ResolvedScene& scene, std::vector<LightDirection> directions,
+                          std::vector<glm::ivec3> cells) {
+  LightMedium medium{
+      scene.transfer, std::move(directions), {}, std::move(cells), scene.occlusion.ordinates.lightSpacing};
+  medium.mesh = scene.mesh.shape;
+  if (!emissionLights(scene)) return medium;
   medium.emitted = scene.emitted;
   for (LightDirection& direction : medium.directions) direction.radiance *= scene.ambient;
+  return medium;
 }
 
 bool cutsMedium(const glm::dvec4& plane, std::span<const glm::ivec3> cells, const glm::ivec3& interior) {

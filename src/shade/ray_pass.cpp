@@ -8,6 +8,7 @@
 
 #include "shade/constants.h"
 #include "shade/phong_uniforms.h"
+#include "umbrick/light/light_paths.h"
 #include "umbrick/scene/capabilities.h"
 
 namespace umbrick {
@@ -67,8 +68,7 @@ void RayPass::begin(const RayScene& rays) {
 void RayPass::takeLights(const RayScene& rays) {
   const GlFunctions& gl = rays.gl;
   const glm::dmat3 toIndex = glm::inverse(glm::dmat3(rays.volume.indexToWorld));
-  glm::dvec3 whole(0);
-  for (const LightDirection& light : rays.coneLights) whole += light.radiance;
+  const glm::dvec3 whole = wholeLight(rays.coneLights);
   const double power = whole.r + whole.g + whole.b;
   std::vector<glm::vec4> steps, radiances;
   for (const LightDirection& light : rays.coneLights) {

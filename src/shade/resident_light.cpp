@@ -30,13 +30,8 @@ bool ResidentLight::wantsGl() const {
 void ResidentLight::update(const ResolvedScene& scene, const RenderSample& sample, const IndexView& view,
                            std::span<const glm::dvec4> planes, const TransferLookup& transfer, BrickSelection& bricks) {
   const Stopwatch watch;
-  LightMedium medium{scene.transfer,
-                     lightsOf(scene, sample),
-                     {},
-                     {bricks.origins().begin(), bricks.origins().end()},
-                     scene.occlusion.ordinates.lightSpacing};
-  lightFromEmission(scene, medium);
-  medium.mesh = scene.mesh.shape;
+  LightMedium medium =
+      lightInMedium(scene, lightsOf(scene, sample), {bricks.origins().begin(), bricks.origins().end()});
   take(medium, view, planes);
   if (wantsGl()) note_ = GlLightSweep::refusal(resident_, bricks, medium);
   const bool computed = wantsGl() && note_.empty() ? sweepOnGl(medium, transfer, bricks) : sweepOnCpu(medium, scene);

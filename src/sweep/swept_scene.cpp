@@ -127,11 +127,9 @@ void SweptScene::prepare(const ResolvedScene& scene, const RenderSample& sample,
   lights_ = 0;
   whole_ = glm::vec3(1);
   if (occlusionMethod(scene) == Method::lightVolume) {
-    LightMedium medium{scene.transfer, lightsOf(scene, sample), {}, {}, scene.occlusion.ordinates.lightSpacing};
-    lightFromEmission(scene, medium);
-    medium.mesh = scene.mesh.shape;
-    for (const Brick& brick : visible_) medium.cells.push_back(brick.origin);
-    light_.update(std::move(medium), scene, planes_, volume().layout);
+    std::vector<glm::ivec3> cells;
+    for (const Brick& brick : visible_) cells.push_back(brick.origin);
+    light_.update(lightInMedium(scene, lightsOf(scene, sample), std::move(cells)), scene, planes_, volume().layout);
     if (!inBands_) light_.store(voxels_);
     light_.addTo(stats);
     lights_ = light_.channels();

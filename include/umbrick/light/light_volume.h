@@ -74,9 +74,11 @@ struct LightMedium {
 /// transfer function shows, and those that a surface crosses.
 /// @throw InvalidArgument  as backgroundBricks
 LightMedium lightAtSurfaces(const Bricks& volume, const ResolvedScene& scene, std::vector<LightDirection> directions);
-/// Adds what a scene emits to the light of its medium, where it lights that, and multiplies the lights by L_a, so that
-/// all is in one unit. @see lightScale
-void lightFromEmission(const ResolvedScene& scene, LightMedium& medium);
+/// Returns what the light in a scene's medium depends on, but for the planes that cut it. Where what the scene emits
+/// lights the medium, the lights are multiplied by L_a, so that all is in one unit: see lightScale().
+/// @param cells  first owned voxels of the bricks in which something is visible
+LightMedium lightInMedium(const ResolvedScene& scene, std::vector<LightDirection> directions,
+                          std::vector<glm::ivec3> cells);
 /// Tells whether a function shows the background of a volume, whose medium ends at the faces of mediumBox() then.
 bool showsBackground(const TransferFunction& transfer, const Bricks& volume);
 

@@ -78,7 +78,7 @@ bool emits(const SceneSettings& scene);
 /// Tells whether what is emitted lights the medium around it, too. Only light volumes and the reference compute that.
 bool emissionLights(const SceneSettings& scene);
 /// Returns what renderers multiply the light in the medium by: L_a, but 1 where a light volume also holds light that is
-/// emitted, to which L_a is nothing. It holds L_a then (see lightFromEmission()).
+/// emitted, to which L_a is nothing. It holds L_a then (see lightInMedium()).
 glm::dvec3 lightScale(const SceneSettings& scene);
 
 /// Tells whether a picture of the scene reflects light.
